@@ -10,7 +10,7 @@ use rayon::prelude::*;
 const REACH: f64 = 500.0;
 /// Rows between two looks at whether the work was cancelled: some milliseconds.
 const CHECKED: u32 = 256;
-/// Most rows of a profile.
+/// Maximum number of rows of a profile.
 const MAX_ROWS: f64 = 1e6;
 
 /// Profile along a line of sight, one value for each of equally spaced places.

@@ -33,7 +33,7 @@ pub struct ViewpointReport {
 /// Height limits that protect a view.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProtectedView {
-    /// Least height of the protected views over each cell, local metres; NaN where none passes.
+    /// Lowest height of the protected views over each cell, local metres; NaN where none passes.
     pub limits: Raster<f32>,
     /// Report for each viewpoint.
     pub viewpoints: Vec<ViewpointReport>,
@@ -163,13 +163,13 @@ fn lower(limits: &mut [f64], grid: &MapGrid, faces: &[FaceCorners], control: &Co
 /// A face as a height over the map.
 struct Slope {
     shape: ConvexPolygon,
-    /// From south to north.
+    /// Slope from south to north.
     span: [f64; 2],
     /// Place where `height` is known, and its slope to the east and to the north.
     start: [f64; 2],
     height: f64,
     change: [f64; 2],
-    /// Least and greatest height of the corners.
+    /// Minimum and maximum height of the corners.
     range: [f64; 2],
 }
 

@@ -73,7 +73,7 @@ pub trait ObstacleParts: Sync {
 /// All that may stand between targets and the sky.
 #[derive(Clone, Copy)]
 pub enum SkyObstacles<'a> {
-    /// At once.
+    /// Scene in one piece.
     Whole(Obstacles<'a>),
     /// Part by part.
     InParts(&'a dyn ObstacleParts),
@@ -178,7 +178,7 @@ pub enum CrownRows<'a> {
 /// Obstruction of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LineLight {
-    /// Nothing.
+    /// No obstacle.
     Free,
     /// Something opaque.
     Blocked,
@@ -281,7 +281,7 @@ pub fn fold_rows(
     fold_blocks(surroundings, targets, directions, (BLOCK_BITS / of_target).max(1), control, fold)
 }
 
-/// As [`fold_rows`], with blocks of `block` targets.
+/// Folds rows as [`fold_rows`], with blocks of `block` targets.
 ///
 /// # Errors
 /// Those of [`fold_rows`], and [`Error::InvalidParameter`] for blocks without a target.

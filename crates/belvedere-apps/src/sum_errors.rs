@@ -46,7 +46,7 @@ pub enum Intervals {
 }
 
 impl Intervals {
-    /// With them if they are wanted.
+    /// Returns the choice for a flag.
     #[must_use]
     pub fn wanted(are_wanted: bool) -> Self {
         if are_wanted { Self::With } else { Self::Without }
@@ -85,7 +85,7 @@ impl SumKind {
         [(Self::Sun, "sun"), (Self::Sky, "sky"), (Self::Energy, "energy"), (Self::Plane, "plane")];
 }
 
-/// By how much the truth is more than the sum, as a share of the greatest possible sum.
+/// Truth less the sum, as a share of the maximum possible sum.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SumError {
     /// Mean.
@@ -138,7 +138,7 @@ pub struct Outlines {
     directions: Vec<[f64; 3]>,
     weights: Vec<f64>,
     neighbors: Vec<Vec<u32>>,
-    /// From a direction to its nearest neighbour, the median, degrees.
+    /// Median distance of a direction from its nearest neighbour, degrees.
     spacing: f64,
 }
 

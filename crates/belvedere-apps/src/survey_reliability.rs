@@ -19,9 +19,9 @@ use std::borrow::Cow;
 const BEHIND_M: f64 = 1.0;
 /// Side of the tiles that are resampled, metres: about a house with what stands around it.
 const TILE_SIDE_M: f32 = 25.0;
-/// From which probability of what is more likely on an answer counts as certain.
+/// Minimum probability of the more likely answer that counts as certain.
 const CERTAIN_FROM: f64 = 0.9;
-/// From how many cases on the share found in a tenth of probability is compared with what was expected.
+/// Minimum number of cases for which the share found in a tenth of probability is compared with the expected one.
 const MIN_CASES: usize = 200;
 
 /// Selection of the pulses that are kept out.
@@ -101,7 +101,7 @@ pub struct FoundAnswers {
 pub struct ProbabilityReliability {
     /// Lines of sight.
     pub cases: usize,
-    /// From which probability of what is more likely on an answer counts as certain.
+    /// Minimum probability of the more likely answer that counts as certain.
     pub certain_from: f64,
     /// Answers that are certain.
     pub certain_percent: f64,

@@ -26,7 +26,7 @@ const TROPIC: f64 = 0.409;
 pub enum Foliage {
     /// In leaf.
     InLeaf,
-    /// Without leaves.
+    /// Bare trees.
     Bare,
 }
 
@@ -52,7 +52,7 @@ impl Foliage {
 pub struct Transmissivity {
     /// In leaf. Default 0.03: that of SOLWEIG, within the 0.01 to 0.05 measured on single trees in full leaf.
     pub in_leaf: f64,
-    /// Without leaves. Default 0.5: that of SOLWEIG, within the 0.40 to 0.52 measured on single trees.
+    /// Share for bare trees. Default 0.5: that of SOLWEIG, within the 0.40 to 0.52 measured on single trees.
     pub bare: f64,
 }
 
@@ -95,7 +95,7 @@ impl Transmissivity {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Leaves {
-    /// By the date, as [`Foliage::on_day`] has it; in leaf where a question has no date. Default.
+    /// Foliage of the date, by [`Foliage::on_day`]; in leaf for a question without a date. Default.
     #[default]
     ByDate,
     /// In leaf, whatever the date.

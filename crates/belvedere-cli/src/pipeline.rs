@@ -1,4 +1,4 @@
-//! From arguments to clouds, scene models and views. Calls the library; decides and computes nothing itself.
+//! Converts arguments to clouds, scene models and views. Calls the library; decides and computes nothing itself.
 
 mod near;
 pub(crate) mod params;
@@ -367,7 +367,7 @@ impl ViewChoice {
         }
     }
 
-    /// From where a picture of a scene is taken.
+    /// Returns the position and projection of a picture of a scene.
     pub(crate) fn from(&self, scene: &LoadedScene, summary: &mut Summary) -> Result<ViewFrom> {
         match self.kind.panorama {
             Some(eye) => {

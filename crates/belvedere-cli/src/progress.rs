@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Least time between two lines of JSON about one stage.
+/// Minimum time between two lines of JSON about one stage.
 const BETWEEN_LINES: Duration = Duration::from_millis(200);
 
 /// The stages of a command, one after the other: what the library reports to, and where it learns of Ctrl-C.

@@ -174,8 +174,8 @@ impl BlockRule {
         (half + along > self.bias && half + before_viewer > self.bias).then_some([along - half, along + half])
     }
 
-    /// As [`BlockRule::blocks_line`], for a line that a picture plane or a near limit cuts `reach` metres from the
-    /// target: balls that reach past it block nothing.
+    /// Returns the result of [`BlockRule::blocks_line`] for a line that a picture plane or a near limit cuts `reach`
+    /// metres from the target: balls that reach past it block nothing.
     #[must_use]
     #[inline]
     pub fn blocks_before_plane(&self, ball: Ball, target: [f64; 3], towards: [f64; 3], reach: f64) -> Option<f64> {
@@ -249,7 +249,8 @@ impl BlockRule {
         Cover { towards: offset.map(|v| v / distance), cosine, highest }
     }
 
-    /// From the point of a line nearest to the centre to where the line leaves the profile, metres.
+    /// Returns the distance from the point of a line nearest to the centre to the exit of the line from the profile,
+    /// metres.
     #[inline]
     fn half_chord(&self, radius: f64, beside_square: f64) -> f64 {
         match self.profile {
@@ -341,7 +342,7 @@ pub struct Cover {
 /// Position of the centre of a ball relative to a line.
 #[derive(Clone, Copy)]
 struct LinePassing {
-    /// From the start of the line to its point nearest to the centre, metres.
+    /// Distance from the start of the line to its point nearest to the centre, metres.
     along: f64,
     /// Square of the distance between that point and the centre, m².
     beside_square: f64,

@@ -17,8 +17,8 @@ pub enum Instructions {
 }
 
 impl Instructions {
-    /// From now on indexes use no more than every machine has: to look for faults of a processor or of a virtual
-    /// machine. Answers stay the same bits. For programs, before any other call.
+    /// Disables AVX2 for the rest of the process, to find faults of a processor or of a virtual machine. Answers are
+    /// the same bits. For programs, before any other call.
     pub fn turn_avx2_off() {
         IS_SCALAR.store(true, Ordering::Relaxed);
     }

@@ -102,7 +102,7 @@ pub struct NodeParts {
     pub half_sizes: [[f32; PARTS]; 3],
 }
 
-/// Most parts of a node of a [`RayIndex`].
+/// Maximum number of parts of a node of a [`RayIndex`].
 pub const PARTS: usize = 8;
 
 /// Words of a node: see [`RayIndex::node_words`].

@@ -15,9 +15,9 @@ pub struct StripParams {
     /// Side of the cells in which lines are compared, metres, above 0. Default 2: at 2 pulses per m², of which half
     /// are of one line, four of its points.
     pub cell: f64,
-    /// Least number of points of each line in a cell. Default 3.
+    /// Minimum number of points of each line in a cell. Default 3.
     pub min_points: usize,
-    /// Most root mean square distance of the points of two lines in a cell from two parallel planes, metres. Default
+    /// Maximum root mean square distance of the points of two lines in a cell from two parallel planes, metres. Default
     /// 0.08: noise of usual scanners, and no plants.
     pub max_rms: f64,
     /// Steepest slope of these planes, metres a metre. Default 0.5: on steep slopes errors on the map show as heights.

@@ -37,7 +37,7 @@ pub struct CloudSummary {
     pub pulses: Option<PulseCounts>,
     /// First and last GPS time, and how many different ones there are.
     pub gps_time: Option<GpsTimes>,
-    /// Least and greatest scan angle in degrees.
+    /// Minimum and maximum scan angle in degrees.
     pub scan_angle_deg: Option<[f32; 2]>,
     /// Points that share their position with an earlier one.
     pub duplicate_count: usize,
@@ -75,9 +75,9 @@ impl PulseCounts {
 /// GPS times of a cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GpsTimes {
-    /// Least, seconds.
+    /// First time, seconds.
     pub first: f64,
-    /// Greatest, seconds.
+    /// Last time, seconds.
     pub last: f64,
     /// Number of different times.
     pub distinct_count: usize,

@@ -5,7 +5,7 @@ use belvedere_data::Result;
 use belvedere_data::vector::sub;
 use smallvec::SmallVec;
 
-/// By how much boxes and edges are widened before rays are tested exactly, metres: more than f32 errs near a packet.
+/// Widening of boxes and edges before rays are tested exactly, metres: more than f32 errs near a packet.
 const ROOM: f64 = 1e-3;
 /// The same as a share of coordinates: f32 rounds products of them by a tenth of this.
 const ROUNDING: f64 = 1e-6;

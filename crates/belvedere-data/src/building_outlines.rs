@@ -108,7 +108,7 @@ impl BuildingOutlines {
         self.planes.iter().filter(is_on).min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
-    /// Without the planes whose middles lie in polygons, local metres on the map, the lines that end these, and those
+    /// Removes the planes whose middles lie in polygons, local metres in plan, the lines that end these, and those
     /// whose own middles lie there.
     #[must_use]
     pub fn outside(self, index: &PolygonIndex) -> Self {

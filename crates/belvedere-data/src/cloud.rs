@@ -62,7 +62,7 @@ pub enum FileRows {
     All,
     /// The row of each point, counted over all files after each other.
     Of(Vec<u64>),
-    /// Not known.
+    /// Unknown rows.
     Unknown,
 }
 

@@ -484,7 +484,7 @@ impl GeographicProjection {
     }
 }
 
-/// Most rounds of correcting an inverse: one or two are enough where it is approximate at all.
+/// Maximum number of rounds of correcting an inverse: one or two are enough where it is approximate at all.
 const MAX_CORRECTIONS: u32 = 8;
 /// Distance that an inverse may miss, metres: far below a millimetre, above the rounding of degrees in f64 (2 nm).
 const UNPROJECT_TOLERANCE: f64 = 1e-6;

@@ -148,7 +148,7 @@ pub enum Error {
     UnsupportedViewer {
         /// The method.
         method: &'static str,
-        /// From where it can look.
+        /// Supported position of the viewer.
         what: &'static str,
     },
 }

@@ -187,7 +187,8 @@ impl Trajectory {
         Ok((positions, offset))
     }
 
-    /// As [`Trajectory::scanner_positions`], at `times`, (N), on the clock of `cloud`, in place of those of its points.
+    /// Returns [`Trajectory::scanner_positions`] at `times`, (N), on the clock of `cloud`, in place of those of its
+    /// points.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] where it knows a position at none of the times.
@@ -224,11 +225,11 @@ impl Trajectory {
     }
 }
 
-/// Farthest that a scanner may be from its points, metres: ten times what airborne scanners reach.
+/// Maximum distance of a scanner from its points, metres: ten times the range of airborne scanners.
 const MAX_DISTANCE: f64 = 50_000.0;
 /// Minimum height of a scanner above a point that counts as below it, metres: more than the roughness of the ground.
 const CLEARLY_BELOW: f32 = 0.5;
-/// Least share of the points that are below their scanner: those of a vehicle measure the road, those of an aircraft
+/// Minimum share of the points that are below their scanner: those of a vehicle measure the road, those of an aircraft
 /// everything.
 const MIN_BELOW: f64 = 0.1;
 

@@ -80,7 +80,7 @@ struct GlyphPixels {
 }
 
 impl GlyphPixels {
-    /// Nothing drawn yet, in pixels that hold `bounds` of a glyph that stands at `place`.
+    /// Creates empty pixels around `bounds` of a glyph at `place`.
     fn around(bounds: BoundingBox, place: [f32; 2], pixels_per_unit: f32) -> Self {
         // y grows downwards in pictures; a pixel of room on all sides holds what is rounded
         let low = [place[0] + bounds.x_min * pixels_per_unit, place[1] - bounds.y_max * pixels_per_unit];

@@ -30,7 +30,7 @@ const LABEL: f64 = 4.5;
 
 /// About so many coordinates along the longer side of a map.
 const COORDINATES: f64 = 5.0;
-/// Most round values beside a ramp.
+/// Maximum number of round values beside a ramp.
 const MAX_TICKS: f64 = 9.0;
 
 /// Content of a map.

@@ -63,7 +63,7 @@ pub(crate) struct Ready {
 
 #[derive(Debug)]
 enum Readiness {
-    /// Not yet needed.
+    /// Device that is not yet needed.
     Unopened,
     Ready(Arc<Ready>),
     /// There is none, or it failed.

@@ -34,7 +34,7 @@ const WIDENING: f64 = 2e-6;
 const NOBODY: u32 = 0;
 const DIRECTION: u32 = 1;
 const EYE: u32 = 2;
-/// By how much the length of a direction may differ from one: what f64 rounds, and then some.
+/// Maximum deviation of the length of a direction from one: more than the rounding of f64.
 const UNIT: f64 = 1e-12;
 
 /// A device with the shader.

@@ -105,7 +105,7 @@ struct ScanPoints {
     rows: Rows,
     scanner_index: Vec<u16>,
     invalid: usize,
-    /// Greatest coordinate of the scan that is read, in its own axes.
+    /// Maximum coordinate of the scan that is read, in its own axes.
     farthest: f64,
 }
 

@@ -27,7 +27,8 @@ pub(super) const NAME: &str = "ept.json";
 const NODES: &str = "ept-data";
 /// Largest page of a hierarchy that is read, bytes: some million nodes.
 const MAX_BYTES: u64 = 1 << 28;
-/// Most pages of a hierarchy that are read for one box. A country has some thousand, and each is a request.
+/// Maximum number of pages of a hierarchy that are read for one box. A country has some thousand, and each is a
+/// request.
 const MAX_PAGES: usize = 20_000;
 /// Maximum distance of points outside the cell of their node, in steps of the coordinates, and the default step of
 /// files.

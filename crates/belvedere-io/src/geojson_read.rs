@@ -172,7 +172,7 @@ fn system_of_name(name: &str) -> Option<Crs> {
 /// Conversion of coordinates of the file to metres of the cloud's system.
 struct Placing {
     projection: Option<GeographicProjection>,
-    /// From longitude and latitude of another datum to those of WGS 84.
+    /// Conversion from longitude and latitude of another datum to those of WGS 84.
     datum: Option<GeographicProjection>,
     scale: [f64; 3],
 }

@@ -12,7 +12,7 @@ use belvedere_data::crs::Crs;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Result};
 
-/// Most bytes of values for each byte of a file: LZW comes to 1365, Deflate to 1032.
+/// Maximum number of bytes of values for each byte of a file: LZW comes to 1365, Deflate to 1032.
 const MAX_PACKED: u64 = 1400;
 
 /// All bands of a raster of one of the types that results have.

@@ -22,7 +22,7 @@ pub(super) struct LasHeader {
     pub(super) points: u64,
     pub(super) scale: [f64; 3],
     pub(super) offset: [f64; 3],
-    /// Least and greatest x, y and z that the header gives.
+    /// Minimum and maximum x, y and z that the header gives.
     pub(super) bounds: [[f64; 2]; 3],
     /// Global encoding bit 0.
     pub(super) adjusted_gps_time: bool,

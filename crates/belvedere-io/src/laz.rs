@@ -48,7 +48,7 @@ pub(super) enum NeededChunks {
 
 /// Decompresses the points of a file batch by batch.
 pub(super) struct LazReader<'a> {
-    /// Without a buffer: chunks are read whole, and what is read ahead beyond one may never be needed.
+    /// Unbuffered file: chunks are read whole, and bytes read ahead beyond one may never be needed.
     file: Box<dyn ReadSeek + 'a>,
     /// Position of the next read; `None` before the first chunk.
     place: Option<u64>,

@@ -18,11 +18,11 @@ pub struct ObserverRow {
     pub corners: Vec<[f64; 3]>,
     /// Height above the ground, metres.
     pub height: Option<f64>,
-    /// Least and greatest distance, metres.
+    /// Minimum and maximum distance, metres.
     pub distance: [Option<f64>; 2],
     /// Azimuth from and to, degrees.
     pub azimuth_deg: [Option<f64>; 2],
-    /// Least and greatest elevation, degrees.
+    /// Minimum and maximum elevation, degrees.
     pub elevation_deg: [Option<f64>; 2],
     /// Azimuth that a camera looks to, degrees.
     pub heading_deg: Option<f64>,

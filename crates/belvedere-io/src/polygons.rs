@@ -22,7 +22,8 @@ const FEW_CORNERS: usize = 16;
 /// More than this for all such faces of a file would take more than a few seconds.
 const MAX_CROSSED_CUBES: f64 = 1e10;
 
-/// Most corners of a face, in all its rings: the time grows with their square where a face winds around itself.
+/// Maximum number of corners of a face, in all its rings: the time grows with their square for a face that winds around
+/// itself.
 const MAX_CORNERS: usize = 20_000;
 
 /// Counts of a mesh file: contents and what was left out.

@@ -310,7 +310,7 @@ enum SelectedBox {
     Local { bounds: Bounds, origin: [f64; 3], units: [f64; 3] },
 }
 
-/// By how much a box in local coordinates is widened at least when files are looked through for it, metres.
+/// Minimum widening of a box in local coordinates when files are searched for it, metres.
 const MIN_BOX_ROOM: f64 = 1e-3;
 
 /// Points that a selection passed over.

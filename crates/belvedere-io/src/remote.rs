@@ -18,9 +18,9 @@ use belvedere_data::shown::without_secrets;
 /// chunks and pages of COPC files may be small.
 const FIRST_BYTES: u64 = 1 << 14;
 const MIN_BYTES: u64 = 1 << 12;
-/// Most bytes requested ahead of the reader: half of those that it read since the last gap, up to this.
+/// Maximum number of bytes requested ahead of the reader: half of those that it read since the last gap, up to this.
 const MAX_AHEAD: u64 = 1 << 20;
-/// Most bytes of one request, however many the reader wants at once.
+/// Maximum number of bytes of one request, however many the reader wants at once.
 const MAX_BYTES: u64 = 1 << 24;
 /// Bytes that are taken from a connection at once.
 const BLOCK_BYTES: usize = 1 << 16;
@@ -28,14 +28,14 @@ const BLOCK_BYTES: usize = 1 << 16;
 const MAX_WHOLE: u64 = 1 << 28;
 /// Time to wait before asking again, where a server was busy or a connection broke.
 const PAUSES: [Duration; 3] = [Duration::from_millis(300), Duration::from_secs(1), Duration::from_secs(3)];
-/// Longest wait for a connection, for the next bytes, and for all of an answer: a whole file of the largest size at
+/// Maximum wait for a connection, for the next bytes, and for all of an answer: a whole file of the largest size at
 /// half a megabyte a second.
 const CONNECT: Duration = Duration::from_secs(20);
 const NO_PROGRESS: Duration = Duration::from_secs(30);
 const WHOLE_ANSWER: Duration = Duration::from_secs(600);
 
-/// Least speed of a server once it was waited for as long as [`NO_PROGRESS`], bytes a second: a third of what the
-/// slowest mobile networks have. One that sends a byte now and then would hold a command for ever.
+/// Minimum speed of a server after a wait of [`NO_PROGRESS`], bytes a second: a third of the slowest mobile networks.
+/// One that sends a byte now and then would hold a command for ever.
 const MIN_SPEED: u64 = 1000;
 
 /// Message for a server that sends nothing for too long.

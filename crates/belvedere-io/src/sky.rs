@@ -29,7 +29,7 @@ const MIN_SOLID_ANGLE: f64 = 0.3;
 /// Share of the returns that come from farther away than pulses prove their way empty. What returns that many pulses is
 /// no single reflector.
 const FARTHER_SHARE: f64 = 0.001;
-/// Most that the columns turn, radians: once around, and what scanners measure twice.
+/// Maximum turn of the columns, radians: once around, and the part that scanners measure twice.
 const MAX_TURN: f64 = 1.05 * TAU;
 /// Above this elevation a direction does not tell its column, radians.
 const NEAR_ZENITH: f64 = 80.0 * DEGREE;

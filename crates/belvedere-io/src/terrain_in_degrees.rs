@@ -11,10 +11,10 @@ const LIKE_WGS_84: [u32; 4] = [4326, 4979, 4258, 4269];
 const STEP: usize = 16;
 /// Places on each side of the raster whose projections give its extent.
 const PLACES: usize = 32;
-/// Most degrees that a raster may span: a zone of UTM, some 400 km. Formulas of projections err far from their area,
+/// Maximum extent of a raster, degrees: a zone of UTM, some 400 km. Formulas of projections err far from their area,
 /// without a word.
 const MAX_DEGREES: f64 = 6.0;
-/// Most cells of the result, as for rasters that need no projection.
+/// Maximum number of cells of the result, as for rasters that need no projection.
 const MAX_CELLS: f64 = 67e6;
 
 /// Returns true if a raster in this system can be projected.

@@ -25,7 +25,7 @@ const POINTS_PER_SLAB: usize = 1 << 20;
 const DEGREES_PER_SCAN_STEP: f64 = 0.006;
 /// Names of the columns that readers look for normals in.
 const NORMALS: [&str; 3] = ["NormalX", "NormalY", "NormalZ"];
-/// Most letters of the name of a column.
+/// Maximum number of letters of the name of a column.
 const MAX_NAME: usize = 31;
 /// Coarsest step between coordinates, metres.
 const MAX_STEP: f64 = 0.001;

@@ -13,7 +13,7 @@ pub enum VehicleHeading<'a> {
     /// Direction of motion; north while it stands.
     #[default]
     Course,
-    /// At each position, radians clockwise from the north of the grid, (M).
+    /// Heading at each position, radians clockwise from the north of the grid, (M).
     Given(&'a [f64]),
 }
 

@@ -22,7 +22,7 @@ pub(crate) struct DaysKeywords {
     step: Option<f64>,
     /// Degrees.
     min_sun_elevation: Option<f64>,
-    /// Most angle between a sun and its direction, degrees.
+    /// Maximum angle between a sun and its direction, degrees.
     tolerance: Option<f64>,
 }
 

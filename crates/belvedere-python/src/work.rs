@@ -52,7 +52,7 @@ impl Watch {
     }
 }
 
-/// Most threads, as the program has it.
+/// Maximum number of threads, as in the program.
 const MAX_THREADS: u64 = 1024;
 
 /// Refuses a number of threads in the environment that no computer needs.

@@ -21,7 +21,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
-/// Most points of a file: it then has 35 MB, which browsers open in a second.
+/// Maximum number of points of a file: it then has 35 MB, which browsers open in a second.
 const MAX_POINTS: usize = 3_000_000;
 const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
@@ -171,7 +171,7 @@ fn viewpoints(
     eyes.iter().zip(&params.viewpoints).map(of_eye).collect()
 }
 
-/// So many bits for each value, lowest bits first.
+/// Packs values into `width` bits each, lowest bits first.
 fn packed<T>(values: &[T], width: usize, code: impl Fn(&T) -> u8) -> Vec<u8> {
     let byte = |some: &[T]| (0..).step_by(width).zip(some).fold(0, |byte, (shift, value)| byte | code(value) << shift);
     values.chunks(8 / width).map(byte).collect()

@@ -16,7 +16,8 @@ const STEPS: f32 = 65_535.0;
 const NONE: u8 = 255;
 /// Byte of the greatest value.
 const GREATEST: f32 = 253.0;
-/// Most cells of a raster that are sent; of larger ones every second, third … row and column is.
+/// Maximum number of cells of a raster that are sent; larger rasters are thinned to every second, third … row and
+/// column.
 const MAX_CELLS: usize = 4_000_000;
 /// Height above the ground at which cells are drawn, metres: above the scatter of points. Lines are drawn above cells.
 const ABOVE: f64 = 0.15;

@@ -18,9 +18,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use tokio::sync::Semaphore;
 
-/// Most bytes of a question: a polygon with a thousand corners.
+/// Maximum number of bytes of a question: a polygon with a thousand corners.
 const MAX_BYTES: usize = 65_536;
-/// Most bytes of a mesh that is loaded.
+/// Maximum number of bytes of a mesh that is loaded.
 const MAX_MESH_BYTES: usize = 32 << 20;
 /// Maximum time for the rest of a request.
 const PATIENCE: Duration = Duration::from_secs(10);

@@ -1,4 +1,4 @@
-//! From files to a scene and from questions to replies, for a host that may be a browser.
+//! Opens files as a scene and answers questions, for a host that may be a browser.
 
 use belvedere::apps::ask::{remark_on_faces, remark_on_mesh, remarks_on_reading};
 use belvedere::cache::CloudKey;
@@ -157,7 +157,7 @@ pub struct Announced {
 }
 
 impl Announced {
-    /// From the headers, where all files have headers that tell.
+    /// Summarises the headers, if all files have complete ones.
     pub fn of<H: Host>(files: &[OpenedFile], host: &H) -> Option<Self> {
         let mut all: Option<Self> = None;
         for file in Chosen::of(files, host).clouds {

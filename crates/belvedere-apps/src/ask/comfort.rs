@@ -33,7 +33,7 @@ pub struct ComfortQuestion {
     pub target_height: Option<f64>,
     /// Longest side of the pieces that windows of a mesh are cut into, metres, above 0; `None` for 0.5.
     pub spacing: Option<f64>,
-    /// From which the places on these pieces are drawn.
+    /// Seed of the places on these pieces.
     pub seed: u64,
     /// True to keep the share of each route in shade for each sun. Each sun then has a direction of its own.
     pub shade: ShadeAtEachSun,

@@ -15,14 +15,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct DepthMapQuestion {
-    /// From where the picture is taken; whoever reads a question from text gives it.
+    /// Position and projection of the picture; must be set by whoever reads a question from text.
     #[serde(skip)]
     pub from: Option<ViewFrom>,
     /// True to keep the index of the ball in each pixel. Default: false.
     pub ball_ids: bool,
 }
 
-/// From where a picture is taken.
+/// Position and projection of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ViewFrom {
     /// One view.

@@ -22,7 +22,7 @@ use std::sync::Arc;
 
 /// Ground made around the parcel and what is protected, metres.
 const MARGIN: f64 = 5.0;
-/// Most suns and places that are named as those that limit the envelope.
+/// Maximum number of suns and places that are named as those that limit the envelope.
 const MAX_LIMITING: usize = 3;
 const SUN_EXPECTED: &str = "azimuth and elevation in degrees, the elevation above 0 and at most 90";
 
@@ -47,7 +47,7 @@ pub struct EnvelopeQuestion {
     /// Source of ground points.
     #[serde(skip)]
     pub ground: GroundPoints,
-    /// From which places on protected meshes are drawn.
+    /// Seed of the places on protected meshes.
     #[serde(skip)]
     pub seed: u64,
     /// Rings of the parcel, local metres on the map.

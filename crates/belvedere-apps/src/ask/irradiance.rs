@@ -26,7 +26,7 @@ use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Least number of cells of a plane that is listed.
+/// Minimum number of cells of a plane that is listed.
 const MIN_CELLS: usize = 10;
 /// Distance from which on a weather file counts as that of another place, metres.
 const FAR: f64 = 50_000.0;
@@ -99,7 +99,7 @@ pub struct Roofs {
     pub min_area: Option<f64>,
     /// Side of a panel, metres; `None` for the default of [`RoofPlaneParams`].
     pub panel: Option<f64>,
-    /// Least number of cells of a plane that is listed; smaller ones are counted. `None` for 10: the panels of the
+    /// Minimum number of cells of a plane that is listed; smaller ones are counted. `None` for 10: the panels of the
     /// smallest plant that is worth its inverter.
     pub min_cells: Option<usize>,
     /// Source of ground points.

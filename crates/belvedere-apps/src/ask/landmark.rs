@@ -20,7 +20,7 @@ use belvedere_data::{Error, Mesh, Parameter, PointCloud, Result};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// From where a landmark is seen, and how much of it.
+/// Views of a landmark, with its visible part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LandmarkQuestion {
     /// The landmark.
@@ -37,7 +37,7 @@ pub struct LandmarkQuestion {
     /// Source of ground points.
     #[serde(default)]
     pub ground: GroundPoints,
-    /// Greatest distance to the landmark, metres, above 0; `None` for no limit.
+    /// Maximum distance to the landmark, metres, above 0; `None` for no limit.
     #[serde(default)]
     pub max_distance: Option<f64>,
     /// Treatment of faces that are turned away from the observer.
@@ -63,7 +63,8 @@ pub enum LandmarkShape {
         /// The mesh; whoever reads a question from text reads it from its file.
         #[serde(skip)]
         mesh: Option<Arc<Mesh>>,
-        /// Longest side of the pieces that it is cut into, metres, above 0; `None` for about 1000, 0.25 at least.
+        /// Longest side of the pieces that it is cut into, metres, above 0; `None` for about 1000 pieces, at least
+        /// 0.25.
         spacing: Option<f64>,
         /// Seed of the places on them.
         seed: u64,

@@ -133,7 +133,7 @@ pub enum Question {
     Isovist(IsovistsQuestion),
     /// Places visible from observers, or from which a target is visible.
     Viewshed(ViewshedQuestion),
-    /// From where a landmark is seen, and how much of it.
+    /// Views of a landmark, with its visible part.
     Landmark(LandmarkQuestion),
     /// Views from windows.
     WindowViews(WindowViewsQuestion),

@@ -1,4 +1,4 @@
-//! From which north azimuths count: true north, or grid north where that is wanted or true north is unknown.
+//! North of azimuths: true north, or grid north if that is wanted or true north is unknown.
 
 use super::Remark;
 use super::scene::Scene;

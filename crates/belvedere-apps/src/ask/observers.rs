@@ -15,7 +15,7 @@ use belvedere_data::{Error, Parameter, Result};
 use serde::Serialize;
 use std::sync::Arc;
 
-/// Most eyes that are named one by one in remarks.
+/// Maximum number of eyes that are named one by one in remarks.
 const MAX_NAMED: usize = 5;
 /// Radius around a place within which its ground is compared, metres.
 const FOOTING_RADIUS: f64 = 10.0;

@@ -22,7 +22,7 @@ const NEAR_EDGE: &str = "are near the edge of the cloud: objects beyond it, as h
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Places {
-    /// Nothing but the scene as a whole.
+    /// The scene as a whole.
     Scene,
     /// The cells of a grid.
     Cells(GridCells),

@@ -15,7 +15,7 @@ use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Most viewpoints that the report lists one by one.
+/// Maximum number of viewpoints that the report lists one by one.
 const MAX_LISTED: usize = 10;
 
 /// Maximum building height on cells of the ground ([`Places::Cells`]) outside the view of a landmark.
@@ -25,12 +25,12 @@ pub struct ProtectedViewQuestion {
     /// The landmark.
     #[serde(skip)]
     pub landmark: Option<SharedObject<SurfacePieces>>,
-    /// From where it is seen today.
+    /// Positions from which it is visible today.
     #[serde(skip)]
     pub observers: Vec<Standing>,
     /// Height of observers above the ground, metres. Default 1.7.
     pub observer_height: f64,
-    /// Greatest distance from an observer to the landmark, metres, above 0; `None` for no limit.
+    /// Maximum distance from an observer to the landmark, metres, above 0; `None` for no limit.
     pub max_distance: Option<f64>,
     /// Treatment of unproven lines that nothing blocks: reported, the default, and visible ones are protected. A given
     /// value needs pulses.
@@ -46,7 +46,7 @@ impl Default for ProtectedViewQuestion {
 
 /// Height limits of buildings.
 pub struct ProtectedViewResults {
-    /// Greatest heights above the ground, metres; NaN where no protected view passes and where no ground is known.
+    /// Maximum heights above the ground, metres; NaN where no protected view passes and where no ground is known.
     pub heights: Raster<f32>,
     /// The same in the vertical system of the file.
     pub tops: Raster<f32>,

@@ -29,7 +29,7 @@ pub struct Report {
     /// Location of the scene on earth.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub location: Option<LocationSection>,
-    /// From which north azimuths count.
+    /// North of azimuths.
     #[serde(flatten)]
     pub north: Option<NorthReport>,
     /// The days.

@@ -94,7 +94,7 @@ pub struct KnownGround {
     pub report: GroundReport,
 }
 
-/// Most cells of a ground that is not made from the whole cloud once more: 25 times what one place needs.
+/// Maximum number of cells of a ground that is not made from the whole cloud once more: 25 times what one place needs.
 const FEW_CELLS: usize = 40_000;
 
 /// The ground that was made so far.
@@ -154,7 +154,7 @@ impl Scene {
         Self::of_fitted(model, cloud)
     }
 
-    /// As [`Scene::new`], for the cloud of another scene, whose heights are fitted already.
+    /// Creates a scene as [`Scene::new`], for the cloud of another scene, whose heights are fitted already.
     #[must_use]
     pub fn of_fitted(model: SceneModel, cloud: Arc<PointCloud>) -> Self {
         Self {

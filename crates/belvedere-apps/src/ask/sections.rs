@@ -271,7 +271,7 @@ pub struct TreesSection {
     /// Mean extinction in them, per metre.
     #[serde(skip_serializing_if = "Option::is_none")]
     mean_extinction: Option<f64>,
-    /// By what their optical depth is multiplied without leaves.
+    /// Factor of their optical depth without leaves.
     #[serde(skip_serializing_if = "Option::is_none")]
     depth_without_leaves: Option<f64>,
 }

@@ -29,7 +29,7 @@ pub struct SkyViewQuestion {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SkyParts {
-    /// So many directions, evenly spread, 1 to 100 000. Default 577.
+    /// Number of directions, evenly spread, 1 to 100 000. Default 577.
     Even(usize),
     /// The middles of 145 patches (Tregenza 1987).
     Tregenza,

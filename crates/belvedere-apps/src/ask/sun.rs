@@ -18,7 +18,7 @@ use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::fmt::{Display, Formatter};
 
-/// Most suns of which the report says where they stand.
+/// Maximum number of suns whose positions are in the report.
 pub const MAX_LISTED_SUNS: usize = 5;
 
 /// A place on earth, its clocks and its air.
@@ -30,7 +30,7 @@ pub struct SunPlace {
     /// Zone of times and days, such as Europe/Amsterdam or +02:00; `None` for that of a given time, else mean solar
     /// time.
     pub zone: Option<String>,
-    /// By how much the air lifts the sun.
+    /// Refraction of the sun by the air.
     pub refraction: Refraction,
     /// North of azimuths.
     pub north: North,
@@ -106,7 +106,7 @@ pub struct NamedSun {
 /// Permitted positions of a sun.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SunRange {
-    /// At any elevation; nothing is lit by one below the horizon.
+    /// Any elevation; a sun below the horizon lights nothing.
     AnyElevation,
     /// On the horizon or above it.
     NotBelowHorizon,

@@ -30,7 +30,7 @@ pub struct SunHoursQuestion {
     pub rules: Vec<String>,
     /// Location on earth, and clock.
     pub place: SunPlace,
-    /// Greatest angle between a sun and the direction that is tested for it, degrees, 0 to 5; `None` for 0 up to 2000
+    /// Maximum angle between a sun and the direction that is tested for it, degrees, 0 to 5; `None` for 0 up to 2000
     /// suns, else 1.
     pub sun_tolerance_deg: Option<f64>,
     /// Light through trees.

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Most lines of sight that are tested; of more, as many are taken at even steps.
+/// Maximum number of lines of sight that are tested; of more, as many are taken at even steps.
 const MAX_LINES: usize = 20_000;
 /// Sine of the elevation of suns below which no line is followed: half a degree.
 const LOWEST_SUN: f64 = 0.0087;
@@ -37,7 +37,7 @@ pub struct SurveyPlanQuestion {
     pub candidates: Candidates,
     /// Height of the scanner above the ground or the roof, metres, 0 or more; `None` for 1.8.
     pub station_height: Option<f64>,
-    /// Greatest range at which surfaces return pulses, metres, above 0; `None` for 100.
+    /// Maximum range at which surfaces return pulses, metres, above 0; `None` for 100.
     pub max_distance: Option<f64>,
     /// Angle between pulses, degrees, above 0 to 90; `None` for 0.1.
     pub angle_step_deg: Option<f64>,
@@ -190,7 +190,7 @@ impl SurveyPlanQuestion {
         Ok(some_of(rows.len() * eyes.len(), line, context))
     }
 
-    /// From above all that stands in the scene towards each sun down to the places.
+    /// Returns lines from above all objects of the scene towards each sun down to the places.
     fn lines_to_suns(
         &self,
         suns: &Suns,

@@ -28,7 +28,7 @@ use serde::{Deserialize, Serialize};
 use sights::{Sights, Things};
 use std::sync::Arc;
 
-/// Most eyes below the ground that are named one by one.
+/// Maximum number of eyes below the ground that are named one by one.
 const MAX_NAMED: usize = 5;
 
 /// Places visible from observers, or from which a target is visible.

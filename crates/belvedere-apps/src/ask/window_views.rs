@@ -25,7 +25,7 @@ pub struct WindowViewsQuestion {
     /// The windows.
     #[serde(skip)]
     pub windows: GivenWindows,
-    /// From which north their azimuths count.
+    /// North of their azimuths.
     pub north: North,
     /// Longest side of the pieces that faces of a mesh are cut into, metres, above 0. Default 2.
     pub spacing: f64,

@@ -37,7 +37,7 @@ impl Level {
         ("identify", Self::Identify),
     ];
 
-    /// Least pixels per metre.
+    /// Minimum pixels per metre.
     #[must_use]
     pub fn pixels_per_metre(self) -> f64 {
         match self {

@@ -16,7 +16,7 @@ pub const CAMERA_HEIGHT: f64 = 4.0;
 pub const ROOF_CAMERA_HEIGHT: f64 = 1.0;
 /// Height of what cameras look at above the ground, metres: the head of a person.
 pub const CAMERA_TARGET_HEIGHT: f64 = 1.5;
-/// Least height of a roof above the ground, metres: lower ones are cars and hedges.
+/// Minimum height of a roof above the ground, metres: lower ones are cars and hedges.
 const MIN_ROOF: f64 = 2.0;
 
 /// Motion of cameras: fixed or turning.
@@ -77,7 +77,7 @@ pub struct Mount {
     pub tilt: Option<f64>,
     /// Horizontal field of view, radians.
     pub width: Option<f64>,
-    /// Least and greatest distance, metres.
+    /// Minimum and maximum distance, metres.
     pub distance: [Option<f64>; 2],
     /// Azimuths that a camera can be turned to, radians clockwise from grid north, and its elevations.
     pub azimuth: Option<[f64; 2]>,

@@ -17,7 +17,7 @@ const RESTARTS: usize = 6;
 const MAX_LOOKS: usize = 4_000_000_000;
 /// Number of evaluations of each in a branch: the rounds of its bound.
 const LOOKS_PER_BRANCH: usize = 40;
-/// Most branches of a search, if no limit is given.
+/// Maximum number of branches of a search, if no limit is given.
 const MAX_BRANCHES: usize = 20_000;
 
 /// Goal of a selection of cameras.
@@ -39,8 +39,8 @@ pub struct PlacementParams {
     pub existing: Vec<usize>,
     /// Number of cameras that each target needs, 1 or more. A target with fewer counts in proportion. Default 1.
     pub required: u32,
-    /// Most branches of the search for the proven optimum; 0 for none. `None`, the default: by the size of the problem,
-    /// about half a minute.
+    /// Maximum number of branches of the search for the proven optimum; 0 for none. `None`, the default: by the size of
+    /// the problem, about half a minute.
     pub search_limit: Option<usize>,
 }
 
@@ -85,7 +85,7 @@ impl Placement {
         self.curve.last().copied().unwrap_or(0.0)
     }
 
-    /// By how much the coverage is at most below the best possible, as a share of that.
+    /// Returns the maximum gap between the coverage and the best possible, as a share of the latter.
     #[must_use]
     pub fn gap(&self) -> f64 {
         if self.bound > 0.0 { ((self.bound - self.coverage()) / self.bound).max(0.0) } else { 0.0 }

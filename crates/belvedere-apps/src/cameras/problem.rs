@@ -58,7 +58,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// By how much two values differ at least, if they are not equal.
+    /// Returns the minimum difference of two values that are not equal.
     fn step(&self) -> f64 {
         self.even.unwrap_or(0.0)
     }

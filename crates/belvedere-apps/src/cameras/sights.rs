@@ -15,7 +15,7 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CoverageParams {
-    /// Least pixels per metre, 0 or more. Default 0.
+    /// Minimum pixels per metre, 0 or more. Default 0.
     pub density: f64,
     /// Curvature of the earth on lines of sight.
     pub earth: EarthParams,

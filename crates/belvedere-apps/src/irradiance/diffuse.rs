@@ -39,9 +39,9 @@ impl std::fmt::Display for SkyModel {
 pub struct DiffuseParts {
     /// The same from all of the sky.
     pub even: f64,
-    /// From around the sun: lost where the sun is hidden.
+    /// Part around the sun: lost where the sun is hidden.
     pub sun: f64,
-    /// From along the horizon; below zero where that is darker than the rest.
+    /// Part along the horizon; negative where that is darker than the rest.
     pub horizon: f64,
 }
 
@@ -71,7 +71,7 @@ const PEREZ: [[f64; 6]; 8] = [
 const CLASSES: [f64; 7] = [1.065, 1.23, 1.5, 1.95, 2.8, 4.5, 6.2];
 /// Weight of the zenith's cube in the clearness, for angles in radians.
 const KAPPA: f64 = 1.041;
-/// Least cosine of the zenith that Hay & Davies' ratio divides by: a sun of one degree, as in pvlib.
+/// Minimum cosine of the zenith that Hay & Davies' ratio divides by: a sun of one degree, as in pvlib.
 const HAY_DAVIES_MIN: f64 = 0.01745;
 
 /// Clearness and brightness of a sky, and the class of its clearness.

@@ -12,7 +12,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Parts that rows of weather are cut into by default: of an hour 15 minutes, in which the sun moves 4 degrees.
 pub const PARTS: usize = 4;
-/// Most parts of a row: of an hour half a minute each.
+/// Maximum number of parts of a row: of an hour half a minute each.
 const MAX_PARTS: usize = 120;
 /// Instants of a clear sky beyond which something is mistyped: 20 years of minutes.
 const MAX_INSTANTS: f64 = 1.1e7;

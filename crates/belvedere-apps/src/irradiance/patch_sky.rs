@@ -67,9 +67,9 @@ const SHAPES: [[[f64; 4]; 5]; 8] = [
 ];
 /// Range of brightness that the coefficients were fitted in.
 const BRIGHTNESS: [f64; 2] = [0.01, 0.6];
-/// Least brightness of the classes between overcast and clear, below which the fit gives darkness around the sun.
+/// Minimum brightness of the classes between overcast and clear, below which the fit gives darkness around the sun.
 const MIN_BETWEEN: f64 = 0.2;
-/// Least height of a place of the sky, since the gradation divides by it.
+/// Minimum height of a place of the sky, since the gradation divides by it.
 const MIN_UP: f64 = 0.01;
 
 /// Computes the radiation of each patch of `sky` on a plane that faces it, W/m², (D): its radiance times its solid

@@ -54,10 +54,10 @@ belvedere_data::setters!(IrradianceParams {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Surroundings {
-    /// Nothing: radiation is a lower bound, and the loss by shading an upper one. Default.
+    /// No radiation: the sum is a lower bound, and the loss by shading an upper one. Default.
     #[default]
     Dark,
-    /// As much as the ground, as if all of them lay in the sun: an upper bound in streets.
+    /// Radiation of the ground, as if all obstacles lay in the sun: an upper bound in streets.
     LikeGround,
 }
 
@@ -108,7 +108,7 @@ impl IrradianceParams {
 /// Sine of the elevation below which it is night, −12°: within an hour around sunset the sun sinks to here where days
 /// are shortest.
 const NIGHT: f64 = -0.208;
-/// Most radiation that sensors show at night, W/m².
+/// Maximum radiation that sensors show at night, W/m².
 const MAX_AT_NIGHT: f64 = 20.0;
 
 /// An instant, or a part of an interval, of a period.

@@ -99,14 +99,15 @@ fn ends_of_sight(places: impl Iterator<Item = (f64, f64)>, reach: f64) -> Vec<(f
 /// Contribution of a ray to a sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct RayPart {
-    /// By how much more is expected than is seen.
+    /// Expected value less the visible one.
     more: f64,
     /// Standard deviation.
     deviation: f64,
 }
 
 impl RayPart {
-    /// From where sight ends, and where it may end in truth, if it adds `size` to the sum where it ends at a range.
+    /// Computes the part of a ray from the range of sight and its possible ends. It adds `size` to the sum if it ends
+    /// at a range.
     fn new(range: f64, ends: &[(f64, f64)], size: impl Fn(f64) -> f64) -> Self {
         let moment = |of: &dyn Fn(f64) -> f64| ends.iter().map(|&(at, likely)| likely * of(size(at))).sum::<f64>();
         let mean = moment(&|size| size);

@@ -2,14 +2,15 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Most of all directions that may be open in a closed room. Streets and courtyards see more sky.
+/// Maximum share of all directions that may be open in a closed room. Streets and courtyards see more sky.
 const MAX_OPEN: f64 = 0.1;
-/// Least share of neighbouring ranges that are alike, and how much they may differ: walls and furniture, but no crowns.
+/// Minimum share of similar neighbouring ranges, and maximum difference of these: walls and furniture, but no crowns.
 const MIN_SMOOTH: f64 = 0.9;
 const ALIKE: f64 = 1.15;
 /// An opening of up to this share of all directions is bounded by the surface around it: a floor below a tripod, a gap.
 const MAX_SHARE: f64 = 0.02;
-/// So is one that is this narrow, metres, however long: where a ceiling meets a wall, scans have no points.
+/// Maximum width of a gap that counts as closed at any length, metres: scans have no points where a ceiling meets a
+/// wall.
 const MAX_WIDTH: f64 = 0.5;
 /// Share of the greatest range: where the surface around an opening is further away, the place goes on, as corridors
 /// do.
@@ -24,7 +25,7 @@ pub(super) struct RangeGrid<'a> {
     pub(super) width: usize,
     /// Solid angle of a cell of each row, in steradians.
     pub(super) weights: &'a [f64],
-    /// Greatest range, metres.
+    /// Maximum range, metres.
     pub(super) reach: f64,
 }
 

@@ -31,7 +31,7 @@ pub struct IsovistParams {
     /// Range at which sight ends where nothing blocks, metres, above 0. Default 100: beyond it streets are no longer
     /// read as a space.
     pub max_range: f64,
-    /// Least jump in range that makes an edge of the plan, metres, above 0. Default 0.25: balls bulge by centimetres.
+    /// Minimum jump in range that is an edge of the plan, metres, above 0. Default 0.25: balls bulge by centimetres.
     pub jump: f64,
 }
 
@@ -89,7 +89,7 @@ pub struct Isovist {
     pub openness: f64,
     /// The same share of the directions above the horizon: the sky.
     pub sky_openness: f64,
-    /// From the eye to the middle of the volume seen, local metres.
+    /// Vector from the eye to the middle of the visible volume, local metres.
     pub drift: [f64; 3],
     /// Visible area in the level plane through the eye.
     pub plan: PlanIsovist,
@@ -100,11 +100,11 @@ pub struct Isovist {
 /// Statistics of ranges, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RadialStatistics {
-    /// Least.
+    /// Minimum.
     pub min: f64,
     /// Mean.
     pub mean: f64,
-    /// Greatest.
+    /// Maximum.
     pub greatest: f64,
     /// Mean square deviation from the mean, m².
     pub variance: f64,

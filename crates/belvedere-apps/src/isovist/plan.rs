@@ -26,7 +26,7 @@ pub struct PlanIsovist {
     pub openness: f64,
     /// Ranges in all azimuths, open ones as the greatest range.
     pub ranges: RadialStatistics,
-    /// From the eye to the middle of the area: east and north, metres.
+    /// Vector from the eye to the middle of the area: east and north, metres.
     pub drift: [f64; 2],
 }
 

@@ -7,9 +7,9 @@ use std::f64::consts::{PI, TAU};
 pub(super) struct SkyBox {
     /// Azimuth from and to, clockwise from north, radians; the second is the first plus the width, 0 to 2π.
     pub(super) azimuths: [f64; 2],
-    /// Least and greatest elevation, radians.
+    /// Minimum and maximum elevation, radians.
     pub(super) elevations: [f64; 2],
-    /// Least and greatest range of corners, metres.
+    /// Minimum and maximum range of corners, metres.
     pub(super) ranges: [f64; 2],
 }
 

@@ -24,9 +24,9 @@ use rayon::prelude::*;
 /// Pieces that a landmark is cut into where nothing is said: a share of it is then known to 1.6 % at worst, mostly to
 /// much less.
 const USUAL_PIECES: f64 = 1000.0;
-/// Least spacing where nothing is said, metres: balls know walls to about a decimetre.
+/// Minimum default spacing, metres: balls represent walls to about a decimetre.
 const MIN_SPACING: f64 = 0.25;
-/// Least range that measures are made of, metres: a piece that touches the eye would fill half of its view.
+/// Minimum range of a measured piece, metres: a piece that touches the eye would fill half of its view.
 const NEAREST: f64 = 1e-3;
 
 /// Parameters of views of landmarks.
@@ -40,7 +40,7 @@ pub struct LandmarkParams {
     pub unproven: UnprovenAs,
     /// Curvature of the earth on lines of sight.
     pub earth: EarthParams,
-    /// Greatest range of what counts, metres, above 0. Default: infinite.
+    /// Maximum range of pieces that count, metres, above 0. Default: infinite.
     pub max_range: f64,
     /// True to compute the expected visible area; needs pulses. Default: false.
     pub has_expected: bool,
@@ -124,7 +124,7 @@ impl LandmarkView {
 
 /// Default side of the cells that observers of a grid stand in, metres: a step or two.
 const OBSERVER_CELL: f64 = 2.0;
-/// Most cells of a default grid of observers: a thousand lines of sight each take about a minute.
+/// Maximum number of cells of a default grid of observers: a thousand lines of sight each take about a minute.
 const USUAL_OBSERVERS: f64 = 40_000.0;
 
 /// Returns the side of the cells of a default grid of observers over the box in plan from `low` to `high`, metres: 2,

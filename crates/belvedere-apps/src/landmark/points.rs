@@ -8,7 +8,7 @@ use belvedere_data::control::Control;
 use belvedere_data::polygon::is_inside;
 use belvedere_data::{Error, PointCloud, Result};
 
-/// Greatest radius of the surface that a point represents, metres: walls that few pulses reach have points a metre
+/// Maximum radius of the surface that a point represents, metres: walls that few pulses reach have points a metre
 /// apart.
 const MAX_RADIUS: f64 = 1.0;
 

@@ -11,7 +11,7 @@ const SHIFTS: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
 /// Mean number of points of a cell of the extent of a plane. Cells that the outline crosses then extend over it by as
 /// much as they lack ([`area`] has the formula), and few cells inside are empty by chance.
 const POINTS_OF_CELL: f64 = 2.0;
-/// Least side of a cell of an extent, metres: outlines of denser clouds need not be finer.
+/// Minimum side of a cell of an extent, metres: outlines of denser clouds need not be finer.
 const MIN_EXTENT_CELL: f64 = 0.2;
 /// Holes of an extent up to this area belong to it, m²: chimneys, windows and dormers. Pieces beside it of this area do
 /// not.

@@ -18,9 +18,9 @@ pub const GROUND_CELL: f64 = 1.0;
 /// Criterion that separates roofs from other objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RoofsFrom {
-    /// By the class of buildings.
+    /// Class of buildings.
     Class,
-    /// By their height above the ground.
+    /// Height above the ground.
     Height,
 }
 

@@ -5,7 +5,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Patches of each row of Tregenza's sky, from the horizon up; one more lies around the zenith.
 const TREGENZA: [usize; 7] = [30, 30, 24, 24, 18, 12, 6];
-/// Most directions of a sky: their bits of a million targets still fit into the memory of a usual machine.
+/// Maximum number of directions of a sky: their bits for a million targets still fit into the memory of a usual
+/// machine.
 const MAX_DIRECTIONS: usize = 100_000;
 
 /// Parts of the upper hemisphere, a direction for each.

@@ -104,7 +104,7 @@ pub fn sky_view(matrix: &VisibilityMatrix, sky: &SkyDirections, normals: Option<
     sky_shares(matrix, sky, normals, |target, column| f64::from(u8::from(matrix.is_free(target, column))))
 }
 
-/// As [`sky_view`], where what is behind crowns counts by the share that these let through, with this
+/// Computes [`sky_view`] with directions behind crowns weighted by the share that these let through, with this
 /// [`factor`](crate::tree_light::CrownLight::factor).
 ///
 /// # Errors

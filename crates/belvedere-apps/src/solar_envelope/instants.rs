@@ -3,7 +3,7 @@
 use crate::sun::{Date, DayParams, Site, Zone, sun_position_with};
 use belvedere_data::{Error, Parameter, Result};
 
-/// Most instants: three years at 10 minutes.
+/// Maximum number of instants: three years at 10 minutes.
 const MAX_INSTANTS: usize = 200_000;
 
 /// A sun that must reach what is protected.

@@ -31,7 +31,7 @@ use strip::ShadingStrip;
 
 /// A sun that stands this near to the zenith shades nothing beside a thing: cosine of its elevation.
 const OVERHEAD: f64 = 1e-9;
-/// Most pairs of a protected piece and a sun: some minutes of work.
+/// Maximum number of pairs of a protected piece and a sun: some minutes of work.
 const MAX_PAIRS: usize = 200_000_000;
 
 /// Bounds of an envelope besides the sun.
@@ -39,8 +39,8 @@ const MAX_PAIRS: usize = 200_000_000;
 #[serde(default)]
 #[non_exhaustive]
 pub struct EnvelopeParams {
-    /// Greatest height above the ground, metres, above 0: what zoning allows anyway. Default `None`: columns that no
-    /// sun bounds are infinitely high.
+    /// Maximum height above the ground, metres, above 0: the limit of zoning. Default `None`: columns that no sun
+    /// bounds are infinitely high.
     pub ceiling: Option<f64>,
 }
 
@@ -340,7 +340,7 @@ impl SolarEnvelope {
         self.columns.iter().map(|column| column.footprint.area).sum()
     }
 
-    /// Greatest height above the ground, metres; 0 without columns.
+    /// Returns the maximum height above the ground, metres; 0 without columns.
     #[must_use]
     pub fn greatest_height(&self) -> f64 {
         self.columns.iter().map(EnvelopeColumn::height).fold(0.0, f64::max)

@@ -5,9 +5,9 @@ use belvedere_core::ground::MapGrid;
 use belvedere_data::polygon::simple_rings;
 use belvedere_data::{Error, Parameter, Result};
 
-/// Most corners of a parcel: more are a slipped file, and each cell is cut at all of their heights.
+/// Maximum number of corners of a parcel: more are a damaged file, and each cell is cut at all of their heights.
 const MAX_CORNERS: usize = 10_000;
-/// Least area of a parcel, m²: below it the corners lie in a line.
+/// Minimum area of a parcel, m²: below it the corners lie in a line.
 const MIN_AREA: f64 = 0.01;
 /// Strips and pieces thinner than this are rounding, metres.
 const THIN: f64 = 1e-9;

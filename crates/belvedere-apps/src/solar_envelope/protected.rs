@@ -5,7 +5,7 @@ use belvedere_core::ground::Ground;
 use belvedere_core::query::SurfacePieces;
 use belvedere_data::{Error, Parameter, Result};
 
-/// Most pieces of lines: every sun sweeps each over the parcel.
+/// Maximum number of pieces of lines: every sun sweeps each over the parcel.
 const MAX_PIECES: usize = 1_000_000;
 
 /// A piece of what is protected: a point, an edge or a triangle.

@@ -75,8 +75,8 @@ impl ShadingStrip {
         [self.start, [0, 1, 2].map(|i| self.start[i] + self.along[i])]
     }
 
-    /// Greatest height, local metres, up to which everything over a piece of the map may stand without shading the
-    /// edge; `None` where nothing that stands there can shade it.
+    /// Returns the maximum height, local metres, of objects over a piece of the plan that do not shade the edge; `None`
+    /// if none there can shade it.
     pub(super) fn limit(&self, piece: &ConvexPolygon) -> Option<f64> {
         if self.is_ray() {
             return self.limit_of_ray(piece);

@@ -7,10 +7,10 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 const DAY: f64 = 86_400.0;
-/// Longest time between two looks at the elevation, seconds: a sun that shows between two of them and is gone again
-/// rises 0.02° at most.
+/// Maximum interval between two evaluations of the elevation, seconds: a sun that rises and sets between them rises
+/// 0.02° at most.
 const SAMPLING: f64 = 300.0;
-/// Most days of a period: ten years.
+/// Maximum number of days of a period: ten years.
 const MAX_DAYS: usize = 3700;
 /// Accuracy of the moment at which the sun passes the minimum elevation, seconds.
 const MOMENT: f64 = 0.01;
@@ -26,7 +26,7 @@ pub struct DayParams {
     /// is left out. Default 0: the flat horizon. Some rules leave out low suns.
     #[serde(rename = "least_elevation")]
     pub min_elevation: f64,
-    /// By how much air lifts the sun. Default [`Refraction::Standard`].
+    /// Refraction of the sun by the air. Default [`Refraction::Standard`].
     pub refraction: Refraction,
 }
 

@@ -19,7 +19,7 @@ const STANDARD_PRESSURE: f64 = 1013.25;
 /// Temperature that published tables of the sun assume, °C.
 const STANDARD_TEMPERATURE: f64 = 10.0;
 
-/// By how much air lifts the sun.
+/// Refraction of the sun by the air.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Refraction {
@@ -33,7 +33,7 @@ pub enum Refraction {
         /// Temperature, °C, −90 to 60.
         temperature: f64,
     },
-    /// Not at all: the apparent elevation is the geometric one.
+    /// No refraction: the apparent elevation is the geometric one.
     Without,
 }
 

@@ -6,7 +6,7 @@ use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Most steps for which each has its own direction where that is left to [`SunSchedule::new`].
+/// Maximum number of steps with a direction each, by default of [`SunSchedule::new`].
 const MAX_EXACT: usize = 2000;
 /// Angle within which a direction represents others where it is left to [`SunSchedule::new`]: 1°, two diameters of the
 /// sun.
@@ -65,7 +65,7 @@ pub struct SunSchedule {
     pub days: Vec<DayOfLight>,
     /// Unit vectors to the sun in the axes of the grid, (D, 3).
     pub directions: Vec<[f64; 3]>,
-    /// Greatest angle between a sun and the direction that represents it, radians; 0 where each has its own.
+    /// Maximum angle between a sun and the direction that represents it, radians; 0 where each has its own.
     pub greatest_error: f64,
     /// Root of the mean squared angle, each step counting by its length, radians.
     pub rms_error: f64,

@@ -67,7 +67,7 @@ impl Zone {
         &self.name
     }
 
-    /// By how many seconds its clocks are ahead of UTC at an instant; 0 for instants that no calendar holds.
+    /// Returns the offset of its clocks from UTC at an instant, seconds; 0 for instants that no calendar holds.
     #[must_use]
     pub fn offset_at(&self, unix_s: f64) -> f64 {
         timestamp(unix_s).map_or(0.0, |t| f64::from(self.zone.to_offset(t).seconds()))

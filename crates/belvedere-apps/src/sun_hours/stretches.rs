@@ -3,7 +3,7 @@
 
 use crate::sun::DayOfLight;
 
-/// By how much steps may differ and yet count as equally long, hours: what f32 rounds in differences of hours of a day.
+/// Maximum difference of equally long steps, hours: the rounding of f32 in differences of hours of a day.
 const EQUAL: f32 = 1e-5;
 
 /// Steps of a day that follow each other without gap, are equally long and have directions that follow each other.

@@ -34,7 +34,7 @@ const CHANCES: [f64; LEVELS.len()] = [0.75, 0.5, 0.2];
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ScannerParams {
-    /// Greatest range at which a surface returns pulses, metres, above 0. Default 100: medium-range scanners on tripods
+    /// Maximum range at which a surface returns pulses, metres, above 0. Default 100: medium-range scanners on tripods
     /// reach 100 to 130 m on most surfaces.
     pub max_range: f64,
     /// Angle between neighbouring pulses, radians, above 0. Default 0.1°: a coarse scan, of a minute or two.
@@ -95,7 +95,7 @@ pub struct SurveyPlan {
     pub reachable: SurveyGain,
     /// Unproven length of all lines, metres.
     pub unproven: f64,
-    /// By how much the worth of the choice is at most below the best possible, as a share of that.
+    /// Maximum gap between the worth of the choice and the best possible, as a share of the latter.
     pub gap: f64,
 }
 

@@ -17,9 +17,9 @@ const ROWS: usize = COLUMNS / 2;
 const RINGS: [(f64, u32); 3] = [(0.0, 1), (0.5, 6), (0.9, 12)];
 /// Through how much space that no pulse saw a way runs, metres: at most so much for each level.
 pub(super) const LEVELS: [f64; 3] = [4.0, 12.0, f64::INFINITY];
-/// Least side of the cells in which it is known whether pulses saw space, metres.
+/// Minimum side of the cells that hold whether pulses saw space, metres.
 const CELL: f64 = 1.0;
-/// Most of these cells, 64 MB; a larger scene has larger ones.
+/// Maximum number of these cells, 64 MB; a larger scene has larger ones.
 const MAX_CELLS: f64 = 64e6;
 
 /// Cells of space of which it is found out when first needed whether a pulse came near to their middle.

@@ -29,9 +29,9 @@ pub struct Measure {
 pub struct MeasureStatistics {
     /// Mean of the values, all counting alike.
     pub mean: f64,
-    /// Least value.
+    /// Minimum value.
     pub min: f64,
-    /// Greatest value.
+    /// Maximum value.
     pub max: f64,
 }
 

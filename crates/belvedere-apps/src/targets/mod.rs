@@ -186,13 +186,13 @@ impl Targets {
         self.groups.iter().map(mean).collect()
     }
 
-    /// Least of `values`, (M), in each group; NaN for a group without any value.
+    /// Returns the minimum of `values`, (M), in each group; NaN for a group without any value.
     #[must_use]
     pub fn group_minima(&self, values: &[f32]) -> Vec<f64> {
         self.group_extremes(values, f64::min)
     }
 
-    /// Greatest of `values`, (M), in each group; NaN for a group without any value.
+    /// Returns the maximum of `values`, (M), in each group; NaN for a group without any value.
     #[must_use]
     pub fn group_maxima(&self, values: &[f32]) -> Vec<f64> {
         self.group_extremes(values, f64::max)

@@ -19,13 +19,13 @@ pub enum Facing {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MeshParams {
-    /// Longest side of a piece, metres, above 0. Default 0.5: what points of usual airborne surveys resolve on a wall.
+    /// Longest side of a piece, metres, above 0. Default 0.5: the resolution of usual airborne surveys on a wall.
     pub spacing: f64,
-    /// From which the place on each piece is drawn. Default 0.
+    /// Seed of the place on each piece. Default 0.
     pub seed: u64,
     /// Orientation of the targets.
     pub facing: Facing,
-    /// By how much targets lie before their face, metres. Default: that of [`MeshTargetParams`].
+    /// Distance of targets before their face, metres. Default: that of [`MeshTargetParams`].
     pub lift: f64,
 }
 

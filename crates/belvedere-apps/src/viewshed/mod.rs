@@ -127,7 +127,7 @@ pub fn answers_of_bands(bands: &[Measure]) -> Vec<Answer> {
 /// Default side of a cell, metres: what points of usual airborne surveys (0.3 to 0.5 m apart) can tell.
 pub const CELL: f64 = 0.5;
 
-/// Most cells of a default grid.
+/// Maximum number of cells of a default grid.
 const USUAL_CELLS: f64 = 4e6;
 
 /// The side of the cells of a default grid over the box on the map from `low` to `high`, metres: [`CELL`], doubled

@@ -15,12 +15,12 @@ pub struct Observer {
 /// Directions and distances that an observer looks at; targets outside are not tested.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SightLimits {
-    /// From and to, radians clockwise from grid north: from 5.2 to 1 runs through north. `None`, the default: all
-    /// around.
+    /// First and last azimuth, radians clockwise from grid north: from 5.2 to 1 runs through north. `None`, the
+    /// default: all around.
     pub azimuth: Option<[f64; 2]>,
-    /// Least and greatest angle above the horizon, radians, −π/2 to π/2. `None`, the default: all.
+    /// Minimum and maximum angle above the horizon, radians, −π/2 to π/2. `None`, the default: all.
     pub elevation: Option<[f64; 2]>,
-    /// Least and greatest distance on the map, metres, 0 or more; the second may be infinite. Default: 0 to infinity.
+    /// Minimum and maximum distance on the map, metres, 0 or more; the second may be infinite. Default: 0 to infinity.
     pub distance: [f64; 2],
 }
 

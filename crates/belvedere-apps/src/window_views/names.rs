@@ -12,7 +12,7 @@ pub struct NamedView {
     pub windows: usize,
     /// Mean share of each of [`SeenKind::ALL`], 0 to 1; NaN where no window has a view.
     pub shares: [f64; SeenKind::ALL.len()],
-    /// Least and greatest share of vegetation and water of a window: the green and blue of the worst and of the best
+    /// Minimum and maximum share of vegetation and water of a window: the green and blue of the worst and of the best
     /// view.
     pub green_and_blue: [f64; 2],
 }

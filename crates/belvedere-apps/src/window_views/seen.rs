@@ -13,7 +13,7 @@ const FARTHEST_FROM_POINT: f64 = 1.0;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SeenKind {
-    /// Nothing blocks, at the horizon or above it.
+    /// Sky: nothing blocks, at the horizon or above it.
     Sky,
     /// Trees, hedges and lower plants.
     Vegetation,
@@ -26,8 +26,7 @@ pub enum SeenKind {
     /// Whatever else blocks: cars, bridges, wires, and points without a class.
     #[default]
     Other,
-    /// Nothing in the cloud blocks, but this is no sky: below the horizon, where the cloud ends and no far terrain is
-    /// known.
+    /// Space beyond the cloud: nothing in it blocks, below the horizon, and no far terrain is known.
     Beyond,
 }
 

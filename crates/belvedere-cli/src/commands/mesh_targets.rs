@@ -14,7 +14,7 @@ use belvedere::results::FaceRows;
 use belvedere::view::View;
 use std::path::Path;
 
-/// Longest side of a piece, metres: what points of usual airborne surveys tell of a wall.
+/// Longest side of a piece, metres: the resolution of usual airborne surveys on a wall.
 pub(super) const SPACING: f64 = 0.5;
 
 /// Refuses flags of meshes for targets that are points.

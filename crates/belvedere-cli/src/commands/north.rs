@@ -1,4 +1,4 @@
-//! From which north azimuths are counted: true north, or grid north where that is wanted or true north is unknown.
+//! North of azimuths: true north, or grid north if that is wanted or true north is unknown.
 
 use crate::arguments::NorthArguments;
 use crate::pipeline::LoadedScene;

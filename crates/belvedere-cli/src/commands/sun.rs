@@ -21,7 +21,7 @@ impl SunPlaceArguments {
         self.place(&NorthArguments { grid_north: false })
     }
 
-    /// By how much air lifts the sun.
+    /// Returns the refraction of the sun by the air.
     pub(crate) fn refraction(&self) -> Result<Refraction> {
         match (self.elevation, &self.air) {
             (ElevationChoice::Geometric, Some(_)) => {

@@ -1,4 +1,4 @@
-//! From flags to the parameters of a scene model.
+//! Converts flags to the parameters of a scene model.
 
 use crate::arguments::{Cleaning, MethodChoice, NeighborChoice, OrientChoice, Shrinking, Usage};
 use crate::run::CommandContext;

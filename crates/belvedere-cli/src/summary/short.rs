@@ -54,7 +54,7 @@ pub(super) fn text(headlines: &[String], entries: &Map<String, Value>) -> String
     lines.into_iter().map(|line| line + "\n").collect()
 }
 
-/// At most `max` lines, of which the last counts those left out.
+/// Shortens the lines to at most `max`; the last one counts those left out.
 fn limited(mut lines: Vec<String>, max: usize, what: &str) -> Vec<String> {
     if lines.len() > max {
         let more = lines.len() + 1 - max;

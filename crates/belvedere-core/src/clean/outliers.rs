@@ -45,7 +45,7 @@ pub enum IsolationRadius {
     SpacingMultiple(f64),
 }
 
-/// Least radius from a multiple of the spacing.
+/// Minimum radius from a multiple of the spacing.
 const MIN_RADIUS_M: f64 = 1.0;
 
 impl Default for IsolatedPoints {

@@ -71,7 +71,7 @@ impl BallBound {
     }
 }
 
-/// By how much a ball is drawn too large or too small, metres.
+/// Returns the margin by which a ball is drawn too large or too small, metres.
 pub(super) fn margin(size: f64, radius: f64) -> f64 {
     ROUNDING * (size + radius) + MIN_ROUNDING
 }

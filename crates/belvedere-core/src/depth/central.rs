@@ -17,7 +17,7 @@ pub(super) struct CentralSplat {
     radius: f32,
     /// More than f32 errs by at this ball, metres.
     margin: f32,
-    /// At most the depth that is drawn anywhere.
+    /// Lower bound of the depth that is drawn anywhere.
     near: f32,
     /// Columns and rows, pixels.
     extent: [[f32; 2]; 2],
@@ -91,9 +91,9 @@ pub(super) struct Directions {
     /// Depth per range of each pixel, and the least of them.
     depth_per_range: [f32; TILE * TILE],
     min_depth_per_range: f32,
-    /// From the middle of a block to anywhere within its pixels.
+    /// Turn from the middle of a block to anywhere within its pixels.
     block: Turn,
-    /// From the middle of a pixel to anywhere within it.
+    /// Turn from the middle of a pixel to anywhere within it.
     pixel: [Turn; 2],
 }
 
@@ -134,7 +134,7 @@ pub(super) struct PixelRay<'a> {
 pub(super) struct Central<S> {
     view: View,
     limits: [f32; 2],
-    /// At most the sine of the angle from the middle of any pixel to its corners.
+    /// Lower bound of the sine of the angle from the middle of any pixel to its corners.
     min_pixel: f64,
     surface: S,
 }

@@ -18,9 +18,9 @@ use rayon::prelude::*;
 pub struct Panorama {
     /// Range in metres from the eye; +∞ where nothing is hit.
     pub range: Raster<f32>,
-    /// As [`DepthMap::balls`](super::DepthMap::balls).
+    /// Index of the ball in each pixel, see [`DepthMap::balls`](super::DepthMap::balls).
     pub balls: Option<Raster<u32>>,
-    /// As [`DepthMap::around_eye_count`](super::DepthMap::around_eye_count).
+    /// Number of balls around the eye, see [`DepthMap::around_eye_count`](super::DepthMap::around_eye_count).
     pub around_eye_count: usize,
 }
 

@@ -45,14 +45,14 @@ pub(super) trait SplatSurface: Sync {
     fn place(&self, center: [f32; 3], radius: f32, ball: u32) -> Option<Self::Splat>;
     /// Row of the ball.
     fn ball(splat: &Self::Splat) -> u32;
-    /// At most the least depth of the ball at any pixel.
+    /// Returns a lower bound of the depth of the ball at any pixel.
     fn near(splat: &Self::Splat) -> f32;
-    /// Least and most column, and least and most row, that pixel centres on the ball may have, in pixels.
+    /// Returns the range of columns and of rows that pixel centres on the ball may have, in pixels.
     fn extent(&self, splat: &Self::Splat) -> [[f32; 2]; 2];
     /// The tile whose upper left pixel stands at a column and a row.
     fn tile(&self, left: usize, top: usize) -> Self::PixelTile;
-    /// At most the least depth of the ball at any pixel of the block at a column and a row of the tile, +∞ where it
-    /// touches none.
+    /// Returns a lower bound of the depth of the ball at any pixel of the block at a column and a row of the tile, +∞
+    /// if it touches none.
     fn min_depth(&self, tile: &Self::PixelTile, splat: &Self::Splat, block: [usize; 2]) -> f32;
     /// Depths at the pixels of one row of a block, which starts at a column and a row of the tile; +∞ beside the ball.
     fn depths(&self, tile: &Self::PixelTile, splat: &Self::Splat, first: [usize; 2]) -> [f32; BLOCK];
@@ -230,7 +230,7 @@ struct Tile<'a, S: SplatSurface> {
     top: usize,
     depth: [f32; TILE * TILE],
     nearest: [u32; TILE * TILE],
-    /// At least the farthest depth of each block.
+    /// Upper bound of the depth of each block.
     farthest: [f32; BLOCKS * BLOCKS],
     /// True for blocks that were drawn on since their farthest depth was taken.
     stale: [bool; BLOCKS * BLOCKS],

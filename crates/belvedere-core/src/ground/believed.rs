@@ -4,16 +4,16 @@ use belvedere_data::Result;
 use belvedere_data::control::Control;
 use rayon::prelude::*;
 
-/// Most points of a group that is doubted: more are a pit, a terrace or a roof of which nobody can say what it is.
+/// Maximum number of points of a group that is doubted: more are a pit, a terrace or a roof of unknown kind.
 const MAX_GROUP_POINTS: usize = 30;
-/// Most cells between the sides of such a group.
+/// Maximum number of cells between the sides of such a group.
 const MAX_GROUP_CELLS: i32 = 8;
 /// Maximum height difference between a group and the ground around it, metres, beside a slope of 45° on the way there.
 /// It is more than errors of classes beside walls, hedges and cars.
 const MAX_STEP: f32 = 2.0;
-/// Least side of the cells in which points are joined, metres.
+/// Minimum side of the cells in which points are joined, metres.
 const MIN_CELL: f32 = 1.0;
-/// Most side of these cells, metres: larger ones would join what lies metres apart.
+/// Maximum side of these cells, metres: larger ones would join points metres apart.
 const MAX_CELL: f32 = 4.0;
 /// Search radius for ground around a group, cells.
 const SEARCH: i32 = 30;

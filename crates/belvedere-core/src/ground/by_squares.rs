@@ -16,7 +16,7 @@ const MAX_SQUARES: usize = 64;
 /// reads the whole cloud again. The results are the same bits.
 pub struct GroundBySquares {
     params: GroundParams,
-    /// Without cells.
+    /// Report without cells.
     report: GroundReport,
     points: Vec<[f32; 3]>,
     nearest: NeighborIndex,

@@ -2,7 +2,7 @@
 
 use belvedere_data::{Error, Parameter, Result};
 
-/// Most cells of a grid: what a few bytes each still fit into the memory of a usual machine.
+/// Maximum number of cells of a grid: a few bytes each still fit into the memory of a usual machine.
 const MAX_CELLS: f64 = 1e8;
 /// Cells up to this side may be larger than the area that they divide, metres: a small area still is one cell.
 const MIN_SIDE: f64 = 100.0;

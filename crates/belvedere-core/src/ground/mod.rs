@@ -180,7 +180,7 @@ impl GroundRows {
         }
     }
 
-    /// Without cells.
+    /// Returns the report without cells.
     fn report(&self, point_count: usize, shift: Option<GroundShift>) -> GroundReport {
         let Self { from, doubted_count, .. } = *self;
         GroundReport { from, point_count, doubted_count, shift, cell_count: 0 }

@@ -10,7 +10,7 @@ pub struct HighestPoints {
 }
 
 impl HighestPoints {
-    /// Without a point so far.
+    /// Creates a grid without points.
     #[must_use]
     pub fn new(grid: MapGrid) -> Self {
         Self { grid, heights: Raster::filled(grid.width, grid.height, f32::NAN) }
@@ -65,10 +65,10 @@ pub fn highest_points(positions: &[[f32; 3]], ground: &Ground) -> Raster<f32> {
     highest.filled(|cell| ground.heights.values().get(cell).copied().unwrap_or(f32::NAN))
 }
 
-/// Least distance to the next ground point for a cell to count as hidden, metres: a few spacings of usual airborne
+/// Minimum distance to the next ground point for a cell to count as hidden, metres: a few spacings of usual airborne
 /// surveys.
 const HIDDEN_GAP: f32 = 1.0;
-/// Least height of what hides it, metres: more than cars and hedges.
+/// Minimum height of the object that hides it, metres: more than cars and hedges.
 const HIDDEN_BELOW: f32 = 2.0;
 
 /// Flags the cells of `ground` whose ground no survey saw, (cells): no ground point lies within a metre, and something

@@ -16,14 +16,14 @@ use std::collections::BTreeMap;
 
 /// Minimum offset of the ground, metres: more than kerbs, stairs and steep slopes do within a cell.
 const MIN_SHIFT: f32 = 0.7;
-/// Least gap between two levels of a cell, and how far below the ground a return contradicts it, metres: beside noise
-/// and slopes.
+/// Minimum gap between two levels of a cell, and minimum depth below the ground of a return that contradicts it,
+/// metres: beside noise and slopes.
 const MIN_GAP: f32 = 0.5;
-/// Most that the quartiles of a shift differ, as a share of it: a strip lies off by the same everywhere.
+/// Maximum difference between the quartiles of a shift, as a share of it: a strip is off by the same everywhere.
 const MAX_SPREAD: f32 = 0.4;
 /// The same of a layer of other returns: crowns and crops are rougher.
 const MAX_LAYER_SPREAD: f32 = 0.3;
-/// Least and most side of cells, metres.
+/// Minimum and maximum side of cells, metres.
 const CELLS: [f32; 2] = [1.0, 8.0];
 /// Ground points that a cell should have.
 const POINTS_OF_CELL: usize = 4;
@@ -33,14 +33,14 @@ const SQUARE: i32 = 6;
 const MIN_CELLS: usize = 8;
 /// Squares that must say the same.
 const MIN_SQUARES: usize = 2;
-/// Least share of the cells of a square that have two levels: a wall across it crosses a third.
+/// Minimum share of the cells of a square that have two levels: a wall across it crosses a third.
 const MIN_TWO_LEVELS: f32 = 0.6;
 /// Maximum mean horizontal offset between the upper and the lower level of the cells of a square, as a share of a cell.
 /// On a slope the upper level lies uphill.
 const MAX_LEAN: f32 = 0.25;
 /// Search radius for the ground around squares with two levels, squares.
 const AROUND: i32 = 2;
-/// Least share of the cells of a square with a return below its ground.
+/// Minimum share of the cells of a square with a return below its ground.
 const MIN_BELOW: f32 = 0.5;
 /// Search radius for the ground around, and radius within which it counts at any height, squares.
 const SEARCH: [i32; 2] = [8, 6];

@@ -7,7 +7,7 @@ use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
-/// Greatest distance from the middle of a cell at which a point tells what covers the middle, metres: half of a cell
+/// Maximum distance from the middle of a cell at which a point shows the cover of the middle, metres: half of a cell
 /// that is larger.
 const NEAR: f64 = 0.5;
 /// Distance to the next point up to which it tells of the middle of a cell, metres: that of sparse surveys, or the side
@@ -23,7 +23,7 @@ const ON_A_LINE: f64 = 1e-3;
 pub struct SurfaceParams {
     /// Points around the middle that are looked at, 3 to 256. Default 12: a square metre of usual airborne surveys.
     pub neighbors: usize,
-    /// Greatest step between the heights of points of one layer, metres, above 0. Default 0.4: twelve points on a roof
+    /// Maximum step between the heights of points of one layer, metres, above 0. Default 0.4: twelve points on a roof
     /// of 60 degrees lie closer than that, eaves and chimneys stand higher.
     pub step: f64,
     /// Root mean squared distance in height of the points of a layer from their plane beyond which it is no plane,
@@ -44,7 +44,8 @@ impl Default for SurfaceParams {
 }
 
 impl SurfaceParams {
-    /// Greatest distance from a point, metres, at which [`top_surface`] may give a cell of this side a height.
+    /// Returns the maximum distance from a point, metres, at which [`top_surface`] may give a cell of this side a
+    /// height.
     #[must_use]
     pub fn reach(cell: f64) -> f64 {
         // to the middle of a cell, or to the next cell

@@ -18,12 +18,12 @@ const MIN_APART: f32 = 0.1;
 /// may hide the others.
 const SECTORS: usize = 36;
 const MIN_SECTORS: usize = 24;
-/// Greatest distance of the floor's nearest points from the foot of a tripod, in heights of the scanner above them:
+/// Maximum distance of the floor's nearest points from the foot of a tripod, in heights of the scanner above them:
 /// scanners look down to 30° from straight down or more.
 const MAX_HEIGHTS: f32 = 1.2;
 /// A scanner is higher above the floor than that, metres; what is nearer is the tripod itself.
 const MIN_HEIGHT: f32 = 0.5;
-/// Greatest slope of a floor; what lies farther above or below the others is no part of it.
+/// Maximum slope of a floor; what lies farther above or below the others is no part of it.
 const MAX_SLOPE: f32 = 0.5;
 
 /// A place on the floor below a tripod.

@@ -20,13 +20,13 @@ use std::collections::BTreeMap;
 /// Counts of balls by outcome of [`carved_balls`].
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CarvedReport {
-    /// By the points.
+    /// Counts of shrinking by the points.
     #[serde(flatten)]
     pub shrinking: ShrinkReport,
-    /// By the pulses.
+    /// Counts of carving by the pulses.
     #[serde(flatten)]
     pub carving: CarveReport,
-    /// By the rules: names of the report and how many points or balls.
+    /// Counts of the rules: names of the report and numbers of points or balls.
     #[serde(flatten)]
     pub rules: BTreeMap<&'static str, usize>,
 }

@@ -4,7 +4,7 @@ use super::marks::{Fill, FillPlace};
 
 /// Smallest radius of a ball worth keeping, as a share of the largest.
 pub(super) const MIN_SHARE: f32 = 0.25;
-/// Most balls below each other, so that odd parameters cannot fill the memory.
+/// Maximum number of balls below each other, so that odd parameters cannot fill the memory.
 const MAX_BELOW: usize = 64;
 
 /// Chain of balls that hang below a point.
@@ -14,7 +14,7 @@ pub(super) struct Chain {
     pub(super) row: usize,
     /// Largest radius, metres, above 0.
     pub(super) radius: f32,
-    /// From centre to centre, metres, above 0.
+    /// Distance from centre to centre, metres, above 0.
     pub(super) spacing: f32,
 }
 

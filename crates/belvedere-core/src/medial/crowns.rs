@@ -14,7 +14,7 @@ use std::f32::consts::PI;
 
 /// Points handed to a thread at once.
 const CHUNK: usize = 512;
-/// Most neighbours that a spacing is taken from.
+/// Maximum number of neighbours from which a spacing is taken.
 const MAX_NEIGHBORS: usize = 64;
 
 /// Representation of crowns.

@@ -28,8 +28,8 @@ const BALLS_AT_ONCE: usize = 1 << 16;
 /// Steps towards a scanner, metres on the map: half a cell; and how many are made at most.
 const STEP_M: f32 = 0.5;
 const MAX_STEPS: u16 = 4096;
-/// Least sine of the angle between a pulse and the vertical. Pulses that are assumed to fall straight down do not tell
-/// what lies in the shadow of something.
+/// Minimum sine of the angle between a pulse and the vertical. Pulses that are assumed to fall straight down show no
+/// shadow of objects.
 const MIN_LEAN: f32 = 1e-4;
 
 /// Parameters of cutting balls at data voids.

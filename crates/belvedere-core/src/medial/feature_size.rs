@@ -135,7 +135,7 @@ pub struct SimplifyParams {
     /// A cell whose points differ in height by more than this, metres, keeps a hundred times as many: edges of roofs
     /// and kerbs. `None`: never; masbcpp: 0.5, which only columns can exceed with its cells.
     pub edge_height: Option<f32>,
-    /// Least and most points per square metre to leave.
+    /// Minimum and maximum number of points per square metre to leave.
     pub density_limits: [f32; 2],
     /// Seed of the random choice.
     pub seed: u64,

@@ -31,7 +31,7 @@ pub enum Kind {
     Ground,
     /// Classes 3 to 5.
     Vegetation,
-    /// Not the first return of its pulse, and neither ground nor vegetation.
+    /// Return after the first of its pulse, and neither ground nor vegetation.
     Later,
     /// Anything else.
     Other,

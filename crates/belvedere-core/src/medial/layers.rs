@@ -9,7 +9,7 @@ const STEP: f32 = 0.4;
 /// Voxels up and down that count as of the same height, which allows for slopes up to 45° and for the parapet of a
 /// balcony.
 const SAME_HEIGHT: i32 = 2;
-/// Most cells: beyond this the columns would take gigabytes.
+/// Maximum number of cells: beyond this the columns would take gigabytes.
 const MAX_CELLS: f32 = 5e8;
 
 /// East and north number of a cell.

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::sync::atomic::{AtomicBool, Ordering as Memory};
 
-/// Least cosine between the direction to a ball's centre and the inward normal for it to lie on the inner side.
+/// Minimum cosine between the direction to a ball's centre and the inward normal for it to lie on the inner side.
 const SAME_SIDE: f32 = 0.5;
 
 /// Parameters of [`prune`].

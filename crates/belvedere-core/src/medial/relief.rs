@@ -24,14 +24,14 @@ pub struct ReliefParams {
     /// 2.4: 0.85 m at 8 pulses per m², and 0.27 m at 80, where 0.75 m takes slopes for edges and costs own points 0.6
     /// points false-blocked.
     pub reach_spacings: f32,
-    /// Least and most height above that level, metres. Default 0.2 to 1.5: less is noise; what falls off deeper may
-    /// overhang, and 2.5 m blocks a point more of what is visible from the street.
+    /// Minimum and maximum height above that level, metres. Default 0.2 to 1.5: less is noise; what falls off deeper
+    /// may overhang, and 2.5 m blocks a point more of what is visible from the street.
     pub heights: [f32; 2],
     /// Radius above which the ball at a point represents it well enough, metres, above 0. Default 0.75: 0.4 gains 0.5
     /// points less on roofs; 1.5 gains another 0.1 of twice as many points.
     pub well_represented: f32,
-    /// Most radius of the balls that fill, in spacings of pulses, above 0. Default 0.47: 0.8 gains another 0.3 points
-    /// on roofs and loses 0.6 on walls, beside which no pulse passes near enough.
+    /// Maximum radius of the balls that fill, in spacings of pulses, above 0. Default 0.47: 0.8 gains another 0.3
+    /// points on roofs and loses 0.6 on walls, beside which no pulse passes near enough.
     pub radius_spacings: f32,
     /// Distance of these balls below each other, metres, above 0. Default 0.15; 0.2 saves a fifth of them and lets
     /// 0.1 points more through, on roofs and streets.

@@ -42,7 +42,7 @@ pub struct ShrinkParams {
     /// [`ShrinkMethod::Tau`] that met no point gets this radius too. Nothing lies behind its surface, as behind the
     /// outer walls of a scanned room, and that surface blocks.
     pub max_radius: f32,
-    /// Most radius of interior balls of [`ShrinkMethod::Tau`] in point spacings at their points, above 0; +∞ for no
+    /// Maximum radius of interior balls of [`ShrinkMethod::Tau`] in point spacings at their points, above 0; +∞ for no
     /// such limit. Where points are dense, balls need not be thick to leave no gap, and thick ones stand out of thin
     /// things. The penetration is then at most a quarter of the limit.
     pub max_spacings: f32,
@@ -249,7 +249,7 @@ struct Ball {
     center: [f32; 3],
     radius: f32,
     touch: u32,
-    /// Most radius that it is left with.
+    /// Maximum radius after shrinking.
     limit: f32,
 }
 

@@ -27,21 +27,21 @@ pub struct SlenderParams {
     /// Depth below its point at which the balls touch, metres, 0 or more; never below the lowest point near by. Default
     /// 0.7: more than the gap, so that pulses that end beside the point, on the same roof, do not count.
     pub lowering: f32,
-    /// Most radius of the balls at its points, in spacings of pulses, above 0. Default 0.32: pulses pass closer on both
-    /// sides.
+    /// Maximum radius of the balls at its points, in spacings of pulses, above 0. Default 0.32: pulses pass closer on
+    /// both sides.
     pub radius_spacings: f32,
-    /// Least height above the lowest point near by, metres, 0 or more. Default 0.3: kerbs and noise are lower.
+    /// Minimum height above the lowest point near by, metres, 0 or more. Default 0.3: kerbs and noise are lower.
     pub min_height: f32,
     /// Height up to which it stands on the ground, rather than hang in the air, metres. Default 2.5: higher fences are
     /// rare, lower wires too.
     pub standing_height: f32,
-    /// Most radius of the balls that fill what stands, in spacings of pulses, above 0. Default 0.47: what pulses passed
-    /// by cannot be blocked, and 0.32 lets more through.
+    /// Maximum radius of the balls that fill standing things, in spacings of pulses, above 0. Default 0.47: space that
+    /// pulses passed cannot be blocked, and 0.32 lets more through.
     pub standing_spacings: f32,
     /// Distance of these balls below each other, metres, above 0. Default 0.2.
     pub spacing: f32,
-    /// Most distance of two points of one thing between which it is filled as well, metres, 0 or more. Default 1: twice
-    /// the distance of most hits along a fence; wider gaps may be gates.
+    /// Maximum distance of two points of one thing between which it is filled as well, metres, 0 or more. Default 1:
+    /// twice the distance of most hits along a fence; wider gaps may be gates.
     pub reach: f32,
 }
 

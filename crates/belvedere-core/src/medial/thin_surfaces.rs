@@ -27,8 +27,7 @@ const SAME_SURFACE: f32 = 0.6;
 const WIDEST_OF_ALL: f32 = 3.2;
 /// Minimum depth below a voxel of points that are not part of its surface, metres: more than the height of a voxel.
 const OF_THE_SURFACE: f32 = 0.5;
-/// Farthest neighbours that a surface goes on between, in spacings of pulses: hardly any of a surface are farther
-/// apart.
+/// Maximum distance of neighbours on one surface, in spacings of pulses: hardly any of a surface are farther apart.
 const FARTHEST_APART_SPACINGS: f32 = 3.0;
 /// Share of the gap between neighbours, around its middle, that is clear of others. With points at random places, 0.75
 /// leaves 1.8 % of a surface uncovered and adds 3.4 balls for each point; 1 leaves 7.7 % and adds 1.9. Balls at points
@@ -36,7 +35,7 @@ const FARTHEST_APART_SPACINGS: f32 = 3.0;
 const CLEAR_SHARE: f32 = 0.75;
 /// Nearest neighbours that anything is filled between, metres: above noise.
 const MIN_APART: f32 = 0.05;
-/// Most difference in height of neighbours on a surface, metres.
+/// Maximum difference in height of neighbours on a surface, metres.
 const SAME_LEVEL: f32 = 0.3;
 /// FreeSegments, or points, handed to a thread at once.
 const CHUNK: usize = 1024;
@@ -49,12 +48,12 @@ const CHECK_EACH: usize = 64;
 /// pulse must pass below an edge, were chosen later, on towns of seeds 1 to 3 at 10, where small stalls were missed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinSurfaceParams {
-    /// Most radius of balls at points of a thin surface, and midway between neighbours among them, in spacings of
+    /// Maximum radius of balls at points of a thin surface, and midway between neighbours among them, in spacings of
     /// pulses, above 0. Default 0.6. With balls at points only it took 0.95 to close the surface, which made it half as
     /// thick again.
     pub radius_spacings: f32,
-    /// Least and most depth below a surface at which a pulse proves it thin, metres. Default 1 to 5: nearer is noise
-    /// and relief, farther the arcade of a house, whose roof is not thin.
+    /// Minimum and maximum depth below a surface at which a pulse proves it thin, metres. Default 1 to 5: nearer is
+    /// noise and relief, farther the arcade of a house, whose roof is not thin.
     pub depths: [f32; 2],
     /// Minimum side of the cells of surfaces, metres, and in mean spacings of pulses: the larger of both, above 0.
     /// Default 0.5 and 1.56, which is 0.5 m at ten pulses per m². At 2 pulses, half of the cells of 0.5 m are empty. A

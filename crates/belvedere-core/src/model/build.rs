@@ -1,4 +1,4 @@
-//! From a cloud to a scene model.
+//! Builds a scene model from a cloud.
 
 use super::blocked_pulses::blocked_pulses;
 use super::params::{BallParams, ModelParams};

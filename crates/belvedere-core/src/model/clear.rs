@@ -19,7 +19,7 @@ use std::sync::OnceLock;
 
 /// ASPRS class of ground.
 const GROUND: u8 = 2;
-/// Most columns in which space is freed: their side is doubled until they are no more.
+/// Maximum number of columns in which space is freed: their side is doubled until they are no more.
 const MAX_CELLS: f64 = 4e6;
 
 /// Side of the squares whose polygons are cleared together, metres: columns of the usual width over one are fewer than

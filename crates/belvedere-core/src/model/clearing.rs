@@ -53,7 +53,7 @@ enum IndexedArea {
 impl Clearing {
     /// Side of the columns in which space is freed, metres, where they are not made larger to have fewer.
     pub const CELL: f64 = 0.25;
-    /// Farthest on the map from a point that is cleared to the middle of a column that is, metres.
+    /// Maximum horizontal distance of the middle of a cleared column from a cleared point, metres.
     pub const REACH: f64 = AROUND;
 
     /// Prepares the clearing of `area` over `grid`. `cloud` holds all points around it, far enough for the ground to be

@@ -15,7 +15,7 @@ use std::path::Path;
 /// Reach of the rules for balls around a point, metres. Edges of roofs reach three spacings of pulses, at most 3 m
 /// each; cells of a metre with their neighbours, crowns and relief reach less.
 const RULES_REACH: f64 = 12.0;
-/// By how much pulses may lean more than the most of a sample, as a share of that.
+/// Allowance for the lean of pulses over the maximum of a sample, as a share of that.
 const LEAN_ROOM: f64 = 1.1;
 
 /// Extremes of all points of a survey, from one pass.
@@ -23,7 +23,7 @@ const LEAN_ROOM: f64 = 1.1;
 pub struct SurveyExtremes {
     /// Highest point, local metres.
     pub top: f32,
-    /// As [`SurveyStatistics::relief`].
+    /// Relief, see [`SurveyStatistics::relief`].
     pub relief: f64,
     /// True if any point has class 2, ground.
     pub has_ground: bool,

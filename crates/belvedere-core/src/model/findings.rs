@@ -43,7 +43,7 @@ pub struct DatedSurvey {
 pub struct SurveyChange {
     /// Area on the map, m².
     pub area_m2: f64,
-    /// Most difference in height, metres.
+    /// Maximum difference in height, metres.
     pub max_m: f64,
     /// Position of the change, local metres.
     pub at: [f64; 2],
@@ -60,7 +60,7 @@ const MIN_GROUND_POINTS: usize = 100;
 /// Side of the cells in which surveys are compared, metres, and the fewest points of each in a cell.
 const CELL: f64 = 2.0;
 const MIN_POINTS: u32 = 3;
-/// Least difference of the highest points that is a change, metres.
+/// Minimum difference of the highest points that is a change, metres.
 const MIN_CHANGE: f64 = 2.0;
 /// Neighbouring cells that must have changed as well: an edge changes with every flight.
 const MIN_CHANGED_ABOUT: usize = 3;
@@ -78,7 +78,7 @@ impl SurveyFindings {
         *self == Self::default()
     }
 
-    /// As it is kept in the provenance of a model.
+    /// Writes it for the provenance of a model.
     pub(super) fn to_text(&self) -> Option<String> {
         serde_json::to_string(self).ok()
     }

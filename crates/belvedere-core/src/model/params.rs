@@ -80,11 +80,11 @@ impl StripHeights {
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub enum OrientBy {
-    /// By the pulses where the scanner can be found and the balls are to be carved; otherwise as the cloud gives its
-    /// normals; otherwise towards its scanner positions; otherwise up.
+    /// By pulses if the scanner can be found and the balls are to be carved; otherwise the normals of the cloud;
+    /// otherwise towards its scanner positions; otherwise up.
     #[default]
     Auto,
-    /// As the cloud gives its normals.
+    /// Normals of the cloud.
     Given,
     /// Upward.
     Up,
@@ -101,7 +101,7 @@ pub enum OrientBy {
     Trajectory(Trajectory),
     /// Towards where the pulses say that the scanner was.
     Pulses,
-    /// As the faces of this mesh, in the metres of the cloud's reference system.
+    /// Faces of this mesh, in the metres of the cloud's reference system.
     Mesh(Mesh),
 }
 
@@ -123,12 +123,11 @@ impl OrientBy {
 /// Construction of balls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BallParams {
-    /// From the points alone.
+    /// Points alone.
     Shrunk(ShrinkParams),
-    /// From points and pulses. Building fails where the scanner is not known.
+    /// Points and pulses. Building fails if the scanner is not known.
     Carved(CarvedParams),
-    /// From points and pulses, or from the points alone where pulses cannot carve: where they are only assumed, and
-    /// few.
+    /// Points and pulses, or the points alone if pulses cannot carve: they are only assumed, and few.
     CarvedIfPossible(CarvedParams, ShrinkParams),
 }
 
@@ -145,7 +144,7 @@ pub(super) enum Carving {
     Wanted,
     /// Carving, if they can.
     IfPossible,
-    /// Nothing.
+    /// No need.
     Unwanted,
 }
 

@@ -1,4 +1,4 @@
-//! From a cloud to a cleaned cloud with outward normals, and what its pulses prove empty.
+//! Prepares a cloud: cleaning, outward normals, and the space that its pulses prove empty.
 
 use super::close_range_normals::CloseRange;
 use super::findings::SurveyFindings;
@@ -143,7 +143,7 @@ fn check_memory(count: usize) -> Result<()> {
     Vec::<u8>::new().try_reserve_exact(bytes).map_err(refused)
 }
 
-/// As [`OrientedSurvey::prepare`]. A cloud that is given away is freed as soon as nothing needs it.
+/// Prepares a cloud as [`OrientedSurvey::prepare`]. A cloud that is given away is freed as soon as nothing needs it.
 pub(super) fn prepare(
     cloud: Cow<'_, PointCloud>,
     params: &ModelParams,

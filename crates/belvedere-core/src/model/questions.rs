@@ -1,4 +1,4 @@
-//! From a scene model to scenes that answer lines of sight.
+//! Creates scenes that answer lines of sight from a scene model.
 
 use super::SceneModel;
 use crate::medial::without_vegetation;

@@ -28,7 +28,7 @@ pub struct SurveyStatistics {
     pub carves: bool,
     /// Highest point of the survey, local metres: pulses prove nothing far above it.
     pub top: f32,
-    /// Most height of a point above the lowest one within a few hundred metres, metres.
+    /// Maximum height of a point above the lowest one within a few hundred metres, metres.
     pub relief: f64,
     /// Noise of points along their normals, metres; `None` where they stay where they are.
     pub noise: Option<f32>,

@@ -9,7 +9,7 @@ use serde::Serialize;
 /// also less than the error of heights in feet taken for metres in all but the lowest terrain.
 const MAX_OFFSET: f32 = 25.0;
 
-/// Farthest that the sea lies from the ellipsoid, metres.
+/// Maximum distance between the sea and the ellipsoid, metres.
 const MAX_GEOID: f64 = 107.0;
 const METRES_PER_FOOT: f64 = 0.3048;
 

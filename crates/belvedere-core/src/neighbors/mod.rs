@@ -68,8 +68,8 @@ impl NeighborIndex {
         Self::with_instructions(points, Instructions::detect(), control)
     }
 
-    /// As [`NeighborIndex::new`], searched with the given instructions. Asking for a set this machine lacks gives
-    /// scalar searches.
+    /// Creates the index as [`NeighborIndex::new`], searched with the given instructions. A set that this machine lacks
+    /// gives scalar searches.
     ///
     /// # Errors
     /// As [`NeighborIndex::new`].

@@ -85,7 +85,7 @@ pub fn estimate(
     Ok(estimate_with_scatter(positions, index, neighborhood, control)?.0)
 }
 
-/// As [`estimate`], and how points scatter about the planes that the normals belong to.
+/// Computes [`estimate`], and the scatter of points around the planes of the normals.
 ///
 /// # Errors
 /// Those of [`estimate`].
@@ -98,7 +98,7 @@ pub fn estimate_with_scatter(
     estimate_within(positions, index, neighborhood, f32::INFINITY, control)
 }
 
-/// As [`estimate_with_scatter`], with neighbours no farther than `farthest` metres away.
+/// Computes [`estimate_with_scatter`], with neighbours no farther than `farthest` metres away.
 ///
 /// # Errors
 /// Those of [`estimate`].
@@ -184,9 +184,9 @@ pub(crate) fn estimate_within_reach(
 #[derive(Clone, Copy)]
 struct Plane {
     normal: [f32; 3],
-    /// As [`Normals::quality`].
+    /// Quality of the normal, see [`Normals::quality`].
     quality: f32,
-    /// From the point to the plane along the normal, metres.
+    /// Distance from the point to the plane along the normal, metres.
     offset: f32,
     /// Root mean square distance of the neighbourhood from it, metres.
     roughness: f32,
@@ -341,7 +341,7 @@ pub(crate) fn min_component(m: [f64; 6]) -> ([f64; 3], [f64; 3]) {
 }
 
 #[expect(clippy::needless_range_loop, reason = "two rows change at once")]
-/// As [`min_component`], by cyclic Jacobi rotations: slower, and exact for any spectrum.
+/// Computes [`min_component`] by cyclic Jacobi rotations: slower, and exact for any spectrum.
 fn jacobi(m: [f64; 6]) -> ([f64; 3], [f64; 3]) {
     let [xx, yy, zz, xy, yz, zx] = m;
     let mut a = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];

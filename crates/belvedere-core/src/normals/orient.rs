@@ -48,9 +48,9 @@ pub enum Orientation<'a> {
     /// Towards where the scanner was when it measured each point, (N, 3), local metres; NaN where that is unknown. As
     /// [`Orientation::Up`] where that is so, and where the pulse ran within 17° of the surface.
     Pulses(&'a [[f32; 3]]),
-    /// As the nearest face of this mesh, or towards the side of the point that is outside the mesh.
+    /// Nearest face of this mesh, or the side of the point that is outside the mesh.
     Mesh(&'a Mesh),
-    /// As the file gives them; its normals replace the estimated ones.
+    /// Normals of the file, which replace the estimated ones.
     Given,
 }
 
@@ -63,11 +63,11 @@ pub struct OrientReport {
     pub point_count: usize,
     /// Points whose normal is zero: nothing to orient.
     pub without_normal_count: usize,
-    /// As given by the file.
+    /// Number of signs given by the file.
     pub by_file_count: usize,
     /// Towards a scanner at a known place, set-up or trajectory.
     pub by_scanner_count: usize,
-    /// As an aligned face of the mesh.
+    /// Number of signs from an aligned face of the mesh.
     pub by_face_count: usize,
     /// Towards the side of the point that is outside the mesh.
     pub by_parity_count: usize,

@@ -57,7 +57,8 @@ impl OrientedCloud {
         Ok(Self { positions, origin: [0.0; 3], crs: Crs::default(), normals, quality, confidence })
     }
 
-    /// As [`OrientedCloud::new`] for normals that are beyond doubt, such as those of a mesh: quality and confidence 1.
+    /// Creates a cloud as [`OrientedCloud::new`] for normals that are certain, such as those of a mesh: quality and
+    /// confidence 1.
     ///
     /// # Errors
     /// As [`OrientedCloud::new`].

@@ -7,11 +7,11 @@ use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::{cross, dot, sub};
 use belvedere_data::{Mesh, Result};
 
-/// Farthest a face may be for its normal to say something about a point: generalised models leave out dormers and
-/// terraces of that size.
+/// Maximum distance of a face whose normal decides about a point: generalised models leave out dormers and terraces of
+/// that size.
 const MAX_FACE_DISTANCE_M: f64 = 2.0;
 
-/// Least |cosine| between the normals of point and face for the face to count as the point's own surface (60°).
+/// Minimum |cosine| between the normals of point and face for the face to count as the point's own surface (60°).
 const MIN_ALIGNMENT: f64 = 0.5;
 
 /// Faces that are farther than the nearest by no more than this are candidates too: noise of laser points near an edge.

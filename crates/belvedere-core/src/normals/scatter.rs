@@ -20,7 +20,7 @@ const STEEP: f32 = 0.5;
 /// Plane through the neighbourhood of each point.
 #[derive(Clone, Debug, Default)]
 pub struct Scatter {
-    /// From each point to the plane, (N, 3), metres.
+    /// Vector from each point to the plane, (N, 3), metres.
     pub to_plane: Vec<[f32; 3]>,
     /// Root mean square distance of its neighbourhood from that plane, (N), metres; infinite where there is no plane.
     pub roughness: Vec<f32>,

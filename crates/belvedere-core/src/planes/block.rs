@@ -19,7 +19,7 @@ const CELL: f64 = 2.0;
 const GROUND: u8 = 2;
 /// Classes of bridge decks: that of ASPRS, and that of the Dutch AHN.
 const DECKS: [u8; 2] = [17, 26];
-/// Least upward part of the way to a scanner that flies, as a share.
+/// Minimum upward part of the direction to a scanner that flies, as a share.
 const MIN_UP: f64 = 0.3;
 
 /// A return as surfaces need it, metres from the corner of the block.
@@ -87,7 +87,7 @@ pub(super) struct Block {
     grid: Grid,
     /// Lowest return.
     pub(super) lowest: f64,
-    /// Most lean of a pulse.
+    /// Maximum lean of a pulse.
     pub(super) max_lean: f64,
     /// Number of first returns in each cell of the grid.
     counts: Vec<u32>,

@@ -13,7 +13,7 @@ use crate::ground::sides;
 pub(super) const PASSED: f64 = 0.15;
 /// Maximum height above the plane of points of buildings that show that the building goes on, metres.
 const ABOVE: f64 = 4.0;
-/// Least share of the returns within that lie on the plane itself.
+/// Minimum share of the returns within that lie on the plane itself.
 const MIN_OWN_SHARE: f64 = 0.3;
 /// Width inside a line within which these are counted, spacings.
 const OWN_SPACINGS: f64 = 3.2;
@@ -71,7 +71,7 @@ pub(super) struct EdgeLine {
 pub(super) struct Parapet {
     /// Metres above the plane; 0 where nothing stands.
     pub(super) height: f64,
-    /// From the edge to its inner face, metres.
+    /// Distance from the edge to its inner face, metres.
     pub(super) width: f64,
 }
 

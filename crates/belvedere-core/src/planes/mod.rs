@@ -47,7 +47,7 @@ pub(crate) const BLOCK: f64 = 64.0;
 pub struct PlaneParams {
     /// Margin around a block within which points are used, metres. Default 8: 16 improves nothing.
     pub margin: f64,
-    /// Least number of points on a plane of a roof. Default 12.
+    /// Minimum number of points on a plane of a roof. Default 12.
     pub min_points: usize,
     /// Required accuracy of edges.
     pub edges: EdgeParams,
@@ -60,13 +60,13 @@ pub struct PlaneParams {
 /// Required accuracy of edges of roofs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeParams {
-    /// Most standard deviation of the place of a sure edge, one that cuts balls and ends patches, metres. Default 0.1:
-    /// at five pulses per m² facades are falsely blocked a tenth more often with 0.08; at ten nothing changes.
+    /// Maximum standard deviation of the position of a sure edge, one that cuts balls and ends patches, metres. Default
+    /// 0.1: at five pulses per m² facades are falsely blocked a tenth more often with 0.08; at ten nothing changes.
     pub max_sd: f64,
-    /// Most standard deviation of the mean of the middles along a sure edge, metres. Default 0.08.
+    /// Maximum standard deviation of the mean of the middles along a sure edge, metres. Default 0.08.
     pub max_scatter: f64,
-    /// Most standard deviation of the place of an edge below which walls are looked for, in spacings of pulses, where
-    /// that is more than `max_sd`. Default 0.35: at 2 pulses per m², 9 walls are found without it, and 199 at 10.
+    /// Maximum standard deviation of the position of an edge below which walls are searched, in spacings of pulses,
+    /// where that is more than `max_sd`. Default 0.35: at 2 pulses per m², 9 walls are found without it, and 199 at 10.
     pub max_sd_spacings: f64,
     /// The same of the mean of the middles. Default 0.28.
     pub max_scatter_spacings: f64,
@@ -75,17 +75,17 @@ pub struct EdgeParams {
 /// Parameters of walls below edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallParams {
-    /// Least number of points on a wall at `spacing` and closer. Default 8. Farther apart pulses need fewer, in
-    /// proportion to how many a row along the wall holds.
+    /// Minimum number of points on a wall at `spacing` and closer. Default 8. Sparser pulses need fewer, in proportion
+    /// to the number in a row along the wall.
     pub min_points: f64,
     /// The same for a wall that is closed between its points. Default 10.
     pub min_closed_points: f64,
     /// Spacing of pulses from which on fewer points are enough, metres. Default 0.32, of ten pulses per m².
     pub spacing: f64,
-    /// Least number of points at any spacing. Default 4: at 2 pulses per m² facades are falsely visible in 5.4 %,
+    /// Minimum number of points at any spacing. Default 4: at 2 pulses per m² facades are falsely visible in 5.4 %,
     /// instead of 7.3 with 8 and 10.
     pub fewest_points: f64,
-    /// Least share of the points below an edge that lie on a wall, for it to be closed between its points. Default
+    /// Minimum share of the points below an edge that lie on a wall, for it to be closed between its points. Default
     /// 0.5: fronts of stacked balconies have 0.3 to 0.4.
     pub min_share: f64,
     /// Maximum distance from its points at which a wall is closed, in spacings of pulses. Default 4.7, which is 1.5 m
@@ -146,7 +146,7 @@ impl Default for PlaneParams {
 /// The points that surfaces are found in. Columns have a row for each point.
 #[derive(Clone, Copy)]
 pub struct SurveyPoints<'a> {
-    /// As measured, (N, 3) local metres.
+    /// Measured positions, (N, 3) local metres.
     pub positions: &'a [[f32; 3]],
     /// The scanner at each point, (N, 3) local metres, NaN where unknown.
     pub scanner: &'a [[f32; 3]],

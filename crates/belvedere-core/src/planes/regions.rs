@@ -162,7 +162,7 @@ pub fn cap(
     Ok(capped.len())
 }
 
-/// Least radius of a capped ball, metres: smaller ones block nothing that patches do not.
+/// Minimum radius of a capped ball, metres: smaller ones block nothing that patches do not.
 const MIN_RADIUS: f32 = 0.01;
 /// Balls that a thread looks at in one go.
 const CHUNK: usize = 256;

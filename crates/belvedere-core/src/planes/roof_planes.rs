@@ -13,13 +13,13 @@ use std::collections::BTreeMap;
 pub(super) const NEIGHBORS: usize = 12;
 /// No plane, or no neighbour.
 pub(super) const NONE: u32 = u32::MAX;
-/// Farthest neighbours that a plane goes on between, metres.
+/// Maximum distance of neighbours on one plane, metres.
 const MAX_STEP: f64 = 1.5;
 /// Cosine of the angle up to which a point faces the way of the plane it is added to: 10°.
 const SAME_WAY: f64 = 0.985;
 /// Cosine of the angle up to which planes that touch may be one: 6°.
 const ONE_PLANE: f64 = 0.9945;
-/// Least upward part of the normal of a roof: 70° of slope.
+/// Minimum upward part of the normal of a roof: 70° of slope.
 const MIN_UP: f64 = 0.34;
 /// Noise of ranges that is believed, metres, whatever the points say.
 const NOISE: [f64; 2] = [0.004, 0.08];
@@ -31,8 +31,7 @@ const SWEEPS: usize = 3;
 /// Pairs of neighbours on two planes that touch.
 pub(super) const MIN_PAIRS: usize = 4;
 
-/// Longest diagonal of the top of what may stand on a roof, metres, and the least upward part of its normal: 11° of
-/// slope.
+/// Longest diagonal of the top of an object on a roof, metres, and minimum upward part of its normal: 11° of slope.
 const SMALL: f64 = 5.0;
 const LEVEL: f64 = 0.98;
 

@@ -13,9 +13,9 @@ use std::cmp::Ordering;
 const MIN_AREA: f64 = 0.005;
 /// Width of the solid part of a building inside the edge of a roof, metres.
 const WITHIN: f64 = 0.5;
-/// Least height of an edge above what lies below it for that, metres.
+/// Minimum height of an edge above what lies below it for that, metres.
 const MIN_DROP: f64 = 2.0;
-/// Least share of such edges of a roof that have a wall below them: canopies and decks have none.
+/// Minimum share of such edges of a roof that have a wall below them: canopies and decks have none.
 const MIN_WALLED: f64 = 0.5;
 /// Minimum depth of such a wall below its edge, metres: sides of slabs and canopies are lower.
 const MIN_WALL_DEPTH: f64 = 1.0;
@@ -31,22 +31,22 @@ const PARAPET_LEVEL: f64 = 0.06;
 /// Length of the pieces of an edge that they must be on, metres, and the least share of these.
 const PARAPET_PIECE: f64 = 0.8;
 const PARAPET_SHARE: f64 = 0.55;
-/// Least and most height of a step between roofs, metres: balconies lie farther below each other.
+/// Minimum and maximum height of a step between roofs, metres: balconies lie farther below each other.
 const STEP: [f64; 2] = [0.25, 1.8];
-/// Most height of a step all round onto one roof, metres: of what stands on it.
+/// Maximum height of a step all round onto one roof, metres: of an object on it.
 const MAX_BOX_STEP: f64 = 3.5;
-/// Least share of the pulses that pass an edge which end on the roof below, and their least number.
+/// Minimum share of the pulses that pass an edge which end on the roof below, and their minimum number.
 const STEP_SHARE: f64 = 0.6;
 const STEP_PULSES: usize = 3;
 /// Distance of the pulses beyond an edge, spacings.
 const STEP_SPACINGS: f64 = 2.5;
-/// Least height of what stands on a roof, metres, its fewest points, and its longest side, metres.
+/// Minimum height of an object on a roof, metres, its minimum number of points, and its longest side, metres.
 const BOX_HEIGHT: f64 = 0.25;
 const BOX_POINTS: usize = 3;
 const BOX_SIDE: f64 = 4.0;
 /// Half of its points at least lie so near to the height of its top, metres: those of a wall do not.
 const BOX_LEVEL: f64 = 0.15;
-/// Least share of the pulses over it that it stopped.
+/// Minimum share of the pulses over it that it stopped.
 const BOX_DENSITY: f64 = 0.4;
 /// Maximum depth below the foot of a box at which pulses that pass it may end, metres: deeper ones pass the roof, too.
 const BELOW_ROOF: f64 = 1.0;

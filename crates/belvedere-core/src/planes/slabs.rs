@@ -18,16 +18,17 @@ use std::f64::consts::TAU;
 /// simulator. There 89 to 97 % of the points marked lay on slabs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlabParams {
-    /// Least and most depth below a slab at which a pulse proves it, metres. Default 0.8 to 12.
+    /// Minimum and maximum depth below a slab at which a pulse proves it, metres. Default 0.8 to 12.
     pub depths: [f64; 2],
-    /// Least share of the cells of a square metre that hold points of a slab and that pulses run below, 0 to 1.
+    /// Minimum share of the cells of a square metre that hold points of a slab with pulses passing below, 0 to 1.
     /// Default 0.25.
     pub min_share: f64,
-    /// Least upward part of the normal of a slab. Default 0.98, 11° of slope.
+    /// Minimum upward part of the normal of a slab. Default 0.98, 11° of slope.
     pub min_up: f64,
-    /// Most root mean square distance of its points from its plane, metres. Default 0.06.
+    /// Maximum root mean square distance of its points from its plane, metres. Default 0.06.
     pub max_noise: f64,
-    /// From its top to its underside, metres. Default 0.3. With one sheet 0.2 to 0.7 points more are falsely visible.
+    /// Distance from its top to its underside, metres. Default 0.3. With one sheet 0.2 to 0.7 points more are falsely
+    /// visible.
     pub thickness: f64,
     /// Distance within which points of the slab must lie around a pulse below it, metres, and in spacings of pulses:
     /// the larger of both. Default 0.75 and 2.4.

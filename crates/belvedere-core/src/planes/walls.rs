@@ -13,13 +13,13 @@ const BEFORE: f64 = 0.4;
 const BELOW: f64 = 0.25;
 /// Steepest turn of a wall from its edge: 3.4°.
 const MAX_TURN: f64 = 0.06;
-/// Least share of the edge that the points of a wall take, and the least length instead, metres.
+/// Minimum share of the edge that the points of a wall take, and minimum length instead, metres.
 const MIN_SHARE: f64 = 0.4;
 const MIN_LENGTH: f64 = 1.5;
 
 /// Maximum distance from the end of its edge at which a wall may cross another one, metres.
 const CORNER: f64 = 1.2;
-/// Least distance of an edge before its wall that makes eaves, metres.
+/// Minimum distance of an edge before its wall that makes eaves, metres.
 pub(super) const MIN_EAVES: f64 = 0.12;
 /// Length of a wall below eaves beyond its points, metres.
 const BEYOND_POINTS: f64 = 0.2;

@@ -56,7 +56,7 @@ struct FreeSegment {
 pub struct FreeSegments {
     /// Segments of all trees, one tree after the other.
     free_segments: Vec<FreeSegment>,
-    /// At most one for each way; none is empty.
+    /// Trees, at most one for each direction; none is empty.
     trees: Vec<SegmentTree>,
     /// Height that none rises above.
     top: f32,

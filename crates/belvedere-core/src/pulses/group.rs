@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, PointCloud, Result};
 
-/// Most points of one time, line and channel: LAS counts returns to 15, and two full pulses in one tick of a clock do
-/// not occur.
+/// Maximum number of points of one time, line and channel: LAS counts returns to 15, and two full pulses in one tick of
+/// a clock do not occur.
 const MAX_PER_TIME: usize = 15;
 /// Times between two looks at whether to go on.
 const CHECK_EACH: usize = 4096;

@@ -27,7 +27,7 @@ pub enum FoundBy {
     ScanAngle,
     /// A search for the stations of tripods in the points.
     StationSearch,
-    /// Nothing: pulses are assumed to fall straight down.
+    /// Assumption that pulses fall straight down.
     Assumed,
 }
 

@@ -1,5 +1,5 @@
-//! By how much the times of a trajectory are off those of a cloud: pulses with several returns point to where the
-//! scanner was.
+//! Offset between the times of a trajectory and those of a cloud: pulses with several returns point to the position of
+//! the scanner.
 
 use super::Pulses;
 use belvedere_data::PointCloud;
@@ -8,7 +8,7 @@ use belvedere_data::report::rounded;
 use belvedere_data::trajectory::{ClockOffset, Trajectory};
 use belvedere_data::vector::{cross, length, sub};
 
-/// Least distance between first and last return for a pulse to give its direction, metres.
+/// Minimum distance between first and last return for a pulse to give its direction, metres.
 const MIN_LENGTH: f64 = 3.0;
 /// Fewest such pulses, and the most that are looked at: the median angle of two thousand is known to some hundredths.
 const MIN_PAIRS: usize = 100;

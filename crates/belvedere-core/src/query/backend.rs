@@ -75,8 +75,8 @@ pub trait PreparedBackend: Send + Sync {
     }
 }
 
-/// By how much the depth of a pixel that a backend draws may differ from that of
-/// [`depth_map`](crate::depth::depth_map()), as a share of it: 1 mm at 100 m.
+/// Maximum difference between the depth of a pixel from a backend and that of [`depth_map`](crate::depth::depth_map()),
+/// as a share of it: 1 mm at 100 m.
 pub const DEPTH_MAP_TOLERANCE: f32 = 1e-5;
 
 /// Balls made ready to be drawn by a backend.
@@ -95,7 +95,7 @@ pub trait Drawable: Send + Sync {
 pub enum Viewers<'a> {
     /// Infinitely far away, in the directions of these unit vectors.
     Directions(&'a [[f64; 3]]),
-    /// At these places, local metres.
+    /// Viewers at these places, local metres.
     Eyes(&'a [[f64; 3]]),
 }
 
@@ -131,7 +131,7 @@ pub enum LineAnswer {
     Free,
     /// A ball blocks it.
     Blocked,
-    /// Not known: the exact line of sight decides.
+    /// Undecided: the exact line of sight decides.
     Open,
 }
 

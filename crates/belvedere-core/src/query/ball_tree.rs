@@ -23,8 +23,8 @@ pub struct BallTree {
     rule: BlockRule,
 }
 
-/// By how much radii are taken for larger until lines are tested exactly: far more than f32 errs. Metres, a share of
-/// the size of the scene, a share of the radius.
+/// Margin of radii until lines are tested exactly: far more than f32 errs. Metres, a share of the size of the scene, a
+/// share of the radius.
 pub(super) const MARGIN: f64 = 1e-3;
 const MARGIN_OF_SCENE: f64 = 1e-6;
 const MARGIN_OF_RADIUS: f32 = 1e-5;

@@ -107,9 +107,9 @@ pub(super) struct LineInView {
 /// End of the line of sight of a target in a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LineEnd {
-    /// At the viewer.
+    /// End at the viewer.
     Viewer,
-    /// At the picture plane, or the near limit of a view from an eye.
+    /// End at the picture plane, or the near limit of a view from an eye.
     Plane,
 }
 

@@ -5,7 +5,7 @@ use super::{EarthParams, MedialScene};
 use crate::triangle_tree::Corners;
 use belvedere_data::vector::{length, sub, unit};
 
-/// Least step upward, metres: where rounding leaves a line of sight in a ball whose top it just reached.
+/// Minimum step upward, metres: for rounding that leaves a line of sight in a ball whose top it just reached.
 const MIN_STEP: f64 = 1e-3;
 /// To what the top of a ball that gives way to the target is known, metres.
 const TOP_TOLERANCE: f64 = 1e-3;

@@ -86,7 +86,7 @@ impl Term {
         (Self::UnprovenSkyFromGround, "unproven_sky_from_ground"),
         (Self::UnprovenPairFromGround, "unproven_pair_from_ground"),
     ];
-    /// Most classes of a term.
+    /// Maximum number of classes of a term.
     const CLASSES: usize = 9;
 }
 
@@ -99,7 +99,7 @@ pub struct ScoreKey {
 }
 
 impl std::fmt::Display for ScoreKey {
-    /// As a line of the file of scores begins.
+    /// Writes the beginning of a line of the file of scores.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (_, name) = Term::ALL[self.term as usize];
         write!(f, "{name},{},{}", if self.is_free { "free" } else { "blocked" }, self.class)
@@ -254,8 +254,8 @@ impl MedialScene {
         self.probabilities(pairs.len(), sight, control)
     }
 
-    /// As [`MedialScene::visible_probabilities`], for light through crowns that were measured: `solid` is this scene
-    /// without its vegetation, `medium` its vegetation.
+    /// Computes [`MedialScene::visible_probabilities`] for light through measured crowns: `solid` is this scene without
+    /// its vegetation, `medium` its vegetation.
     ///
     /// # Errors
     /// Those of [`MedialScene::visible_probabilities`].

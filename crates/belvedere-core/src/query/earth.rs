@@ -13,7 +13,7 @@ pub const EARTH_RADIUS: f64 = 6_371_008.8;
 pub const CURVED_FROM: f64 = 2000.0;
 /// Horizontal length of a chord, metres: with the usual refraction it lies 4 mm off the curve at most.
 const CHORD: f64 = 500.0;
-/// Most chords of one line.
+/// Maximum number of chords of one line.
 const MAX_CHORDS: f64 = 10_000.0;
 
 /// Lines of sight that follow the curvature of the earth.
@@ -96,7 +96,7 @@ impl EarthParams {
         (1.0 - self.refraction) * span * span / (2.0 * self.radius)
     }
 
-    /// By how much places sink for each square metre of their distance on the map: 0 over a plane.
+    /// Returns the fall of places for each square metre of their squared distance in plan, 1/m: 0 over a plane.
     #[must_use]
     pub(super) fn fall_rate(&self) -> f64 {
         if self.curvature == Curvature::Off { 0.0 } else { self.fall(1.0) }

@@ -16,7 +16,7 @@ const FREQUENCIES_GHZ: [f64; 2] = [0.001, 1000.0];
 /// Length of the pieces of a link whose boxes are searched for obstacles, metres: shorter ones search less air and more
 /// often.
 const PIECE: f64 = 16.0;
-/// Most pieces of a link: longer ones have longer pieces.
+/// Maximum number of pieces of a link: longer ones have longer pieces.
 const MAX_PIECES: f64 = 10_000.0;
 /// Steps in which the narrowest place of a zone is found: each keeps two thirds of the range.
 const STEPS: usize = 60;

@@ -257,8 +257,8 @@ impl MedialScene {
         self.answer_free(target, towards, range)
     }
 
-    /// As [`MedialScene::answer`] where the line ends at a viewer; where it ends at a picture plane or a near limit,
-    /// balls that reach past that block nothing.
+    /// Returns the answer of [`MedialScene::answer`] for a line that ends at a viewer. At a picture plane or a near
+    /// limit, balls that reach past it block nothing.
     pub(super) fn answer_of(&self, line: &LineInView) -> Answer {
         let &LineInView { sight: Ray { origin, direction, ranges: [_, range] }, end } = line;
         let is_blocked = match end {

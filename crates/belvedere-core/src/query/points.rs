@@ -13,9 +13,10 @@ use serde::{Deserialize, Serialize};
 pub enum Answer {
     /// A ball lies before it.
     Blocked = 0,
-    /// Nothing lies before it.
+    /// Visible: nothing lies before it.
     Visible = 1,
-    /// Nothing lies before it, but too much of the line of sight runs through space that no pulse came near to.
+    /// Unproven: nothing lies before it, but too much of the line of sight runs through space that no pulse came near
+    /// to.
     Unproven = 2,
     /// It lies beside the picture or behind its plane, or its position is not finite: the view says nothing of it.
     OutsideView = 3,
@@ -128,9 +129,10 @@ pub fn query_points(map: &DepthMap, targets: &[[f32; 3]], depth_bias: f32) -> Ve
         .collect()
 }
 
-/// Most random targets of one run, which needs some 100 bytes for each. More come from runs with other seeds.
+/// Maximum number of random targets of one run, which needs some 100 bytes for each. More come from runs with other
+/// seeds.
 pub const MAX_RANDOM_TARGETS: usize = 50_000_000;
-/// Most random pairs of one run, which needs some 400 bytes for each.
+/// Maximum number of random pairs of one run, which needs some 400 bytes for each.
 pub const MAX_RANDOM_PAIRS: usize = 10_000_000;
 
 /// `count` positions spread evenly at random over the local box from `low` to `high`: the paper's experiment. The same

@@ -434,7 +434,7 @@ fn whole(number: f64) -> usize {
     number as usize
 }
 
-/// From the middle of a square to its corners.
+/// Returns the distance from the middle of a square to its corners.
 fn half_diagonal(side: f64) -> f64 {
     side * std::f64::consts::FRAC_1_SQRT_2
 }

@@ -125,7 +125,7 @@ impl MedialScene {
         Ok(skyline)
     }
 
-    /// From the eye to a place; over a curved earth far places sink.
+    /// Returns the vector from the eye to a place; over a curved earth far places sink.
     fn offset(&self, eye: [f64; 3], place: [f64; 3], earth: &EarthParams) -> [f64; 3] {
         let mut offset = sub(place, eye);
         if earth.bends(eye, place) {
@@ -134,7 +134,8 @@ impl MedialScene {
         offset
     }
 
-    /// From the eye to the centre of a ball, and its radius after giving way; `None` if it holds the eye even so.
+    /// Returns the vector from the eye to the centre of a ball, and its reduced radius; `None` if it holds the eye even
+    /// so.
     fn before(&self, eye: [f64; 3], ball: Ball, earth: &EarthParams) -> Option<([f64; 3], f64)> {
         let (mut offset, radius) = self.tree().rule().seen_from(ball, eye)?;
         if earth.bends(eye, ball.center.map(f64::from)) {

@@ -7,7 +7,7 @@ use belvedere_data::vector::{cross, dot, length, sub, unit};
 use belvedere_data::{Error, Mesh, Parameter, Result};
 use rayon::prelude::*;
 
-/// Most pieces of a surface: 60 bytes each still fit into the memory of a usual machine.
+/// Maximum number of pieces of a surface: 60 bytes each still fit into the memory of a usual machine.
 const MAX_PIECES: usize = 50_000_000;
 /// Number of neighbours whose distance gives the area that a point represents.
 const NEIGHBORS: usize = 8;

@@ -145,8 +145,8 @@ impl BlockingTriangles {
         self.tree.triangles().iter().zip(self.faces.iter()).map(|(corners, face)| (corners, face.blocker))
     }
 
-    /// Without the triangles of meshes for whose middles, local metres, `is_cleared` is true; `None` where none is
-    /// left. Patches stay.
+    /// Removes the triangles of meshes for whose middles, local metres, `is_cleared` is true; `None` if none is left.
+    /// Patches stay.
     ///
     /// # Errors
     /// Those of [`TriangleTree::new`].

@@ -9,9 +9,9 @@ use belvedere_data::{Error, Parameter, Result};
 pub enum Viewer<'a> {
     /// Infinitely far away, in this direction from the scene (local, unit length): the sun.
     Direction([f64; 3]),
-    /// At one point, local metres: an observer.
+    /// One point, local metres: an observer.
     Eye([f64; 3]),
-    /// At a point of its own for each target, (M, 3), local metres: pairs of points.
+    /// One point for each target, (M, 3), local metres: pairs of points.
     Each(&'a [[f32; 3]]),
 }
 

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 /// Boxes from which on a tree is made of parts: fewer take some hundredths of a second.
 const LARGE: usize = 1 << 16;
-/// Most boxes of a leaf.
+/// Maximum number of boxes of a leaf.
 const MAX_IN_LEAF: u32 = 3;
 /// Bits that mark a node among the parts of a node, beside its place.
 const IS_NODE: u8 = 0b0011_1000;

@@ -12,9 +12,9 @@ pub(super) const ALONG: f32 = 0.97;
 const TRIMMED: f64 = 0.01;
 /// Part of the height, from either end, in which floor and ceiling lie: thresholds, beams and lamps.
 const SLAB: f32 = 0.12;
-/// Least share of the level points in each of the two.
+/// Minimum share of the level points in each of the two.
 const MIN_SLAB_SHARE: f64 = 0.2;
-/// Least share of the points on level surfaces and on walls.
+/// Minimum share of the points on level surfaces and on walls.
 const MIN_LEVEL_SHARE: f64 = 0.15;
 const MIN_WALL_SHARE: f64 = 0.1;
 /// Maximum height of a room as a share of its sides, if nothing but its extents shows its height.
@@ -33,7 +33,7 @@ const MIN_FURNITURE: f64 = 1.05;
 
 /// A closed room along an axis.
 struct RoomExtent {
-    /// From floor to ceiling, in the unit of the cloud.
+    /// Distance from floor to ceiling, in the unit of the cloud.
     height: f32,
     /// Points above the floor in the lower half of the room for each one in the upper half.
     furniture: f64,

@@ -8,7 +8,7 @@ use belvedere_data::control::Control;
 use belvedere_data::crs::CrsKind;
 use belvedere_data::{Bounds, Result};
 
-/// Least share of the points on flat surfaces along y of a cloud whose y is up: ground is half of most clouds.
+/// Minimum share of the points on flat surfaces along y of a cloud whose y is up: ground is half of most clouds.
 const MIN_SHARE: f64 = 0.15;
 /// Minimum ratio of these points to those on flat surfaces along z: walls along one axis are no more than ground and
 /// roofs.

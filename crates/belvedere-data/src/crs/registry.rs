@@ -48,12 +48,12 @@ pub(super) fn wkt(text: &str) -> Option<String> {
     proj_wkt::to_wkt(&proj_wkt::parse_crs(text).ok()?).ok()
 }
 
-/// From longitude and latitude of WGS 84 in degrees to the coordinates of a system, and back.
+/// Conversion between longitude and latitude of WGS 84 in degrees and the coordinates of a system.
 pub(super) struct CrsProjection {
     definition: String,
-    /// With the step between datums that is best for the area of the system.
+    /// Conversion with the step between datums that is best for the area of the system.
     of_area: Projecting,
-    /// With the step that is best at the first place; on failure the reason.
+    /// Conversion with the step that is best at the first place; on failure the reason.
     near: OnceLock<Result<Projecting, String>>,
 }
 
@@ -149,7 +149,7 @@ impl Projecting {
         Ok(Self::of(valid.unwrap_or(found)))
     }
 
-    /// Without a step between datums.
+    /// Creates the conversion without a step between datums.
     fn untied(system: &CrsDef) -> Result<Self, String> {
         let wgs_84 = proj_core::lookup_epsg(4326).ok_or("WGS 84 is not in the database")?;
         let horizontal = system.horizontal_crs().ok_or("it has no horizontal part")?;

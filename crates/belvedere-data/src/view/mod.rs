@@ -9,9 +9,9 @@ pub use central::panorama_direction;
 pub use frame::ViewFrame;
 pub use projection::Projection;
 
-/// Most pixels a view may have, so that a mistyped pixel size is an error and not a crash: 1 GiB of f32.
+/// Maximum number of pixels a view may have, so that a mistyped pixel size is an error and not a crash: 1 GiB of f32.
 pub const MAX_PIXEL_COUNT: usize = 1 << 28;
-/// Most pixels on a side: longer pictures are slips, and many programs cannot open them.
+/// Maximum number of pixels on a side: longer pictures are slips, and many programs cannot open them.
 pub const MAX_SIDE: usize = 1 << 16;
 /// Width and height of a camera where no size is given, pixels: what screens show.
 pub const CAMERA_SIZE: [usize; 2] = [1280, 720];

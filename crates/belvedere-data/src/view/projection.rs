@@ -1,4 +1,4 @@
-//! From positions to places of the picture and back.
+//! Conversion between positions and places of the picture.
 
 use super::{View, ViewFrame};
 use crate::Parameter;
@@ -17,9 +17,9 @@ pub enum Projection {
     Perspective {
         /// Pixels from the middle of the picture to what is seen 45° off the axis.
         focal_px: f64,
-        /// Least depth that is seen, metres, 0 or more.
+        /// Minimum visible depth, metres, 0 or more.
         near: f64,
-        /// Most depth that is seen, metres, above `near`; may be infinite.
+        /// Maximum visible depth, metres, above `near`; may be infinite.
         far: f64,
     },
     /// A stereographic map of the directions around `forward`: a ball's outline is a disc. A direction at the angle θ
@@ -28,9 +28,9 @@ pub enum Projection {
     Hemispherical {
         /// Pixels from the middle of the picture to directions at right angles to the axis.
         radius_px: f64,
-        /// Least range that is seen, metres, 0 or more.
+        /// Minimum visible range, metres, 0 or more.
         near: f64,
-        /// Most range that is seen, metres, above `near`; may be infinite.
+        /// Maximum visible range, metres, above `near`; may be infinite.
         far: f64,
     },
 }
@@ -126,7 +126,7 @@ impl View {
         }
     }
 
-    /// Least and most depth that is seen, metres.
+    /// Returns the minimum and maximum visible depth, metres.
     #[must_use]
     pub fn limits(&self) -> [f64; 2] {
         match self.projection {

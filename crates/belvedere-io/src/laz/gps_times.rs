@@ -11,7 +11,7 @@ use ::laz::decompressors::{IntegerDecompressor, IntegerDecompressorBuilder};
 use ::laz::models::{ArithmeticModel, ArithmeticModelBuilder};
 use ::laz::record::FieldDecompressor;
 
-/// Greatest and least multiple of the last difference that has a symbol of its own; symbols count from 0 to 500, then
+/// Maximum and minimum multiple of the last difference that has a symbol of its own; symbols count from 0 to 500, then
 /// from −1 to −10.
 const GREATEST_MULTIPLE: i32 = 500;
 const MIN_MULTIPLE: i32 = -10;

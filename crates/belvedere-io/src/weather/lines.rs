@@ -4,7 +4,7 @@ use belvedere_data::weather::CalendarDay;
 use belvedere_data::{Error, Result};
 use std::path::Path;
 
-/// Most radiation that any instrument below the atmosphere shows, W/m², with room for clouds that reflect.
+/// Maximum radiation that any instrument below the atmosphere shows, W/m², with room for clouds that reflect.
 const MAX_RADIATION: f64 = 3000.0;
 /// Values that mark missing radiation: nines, in some files with zeros behind.
 const MISSING: std::ops::RangeInclusive<f64> = 9999.0..=1e7;

@@ -20,7 +20,7 @@ use std::sync::Arc;
 #[serde(deny_unknown_fields)]
 pub(super) struct SunRequest {
     place: [f64; 3],
-    /// Such as 2026-06-21.
+    /// Date, such as 2026-06-21.
     date: String,
     zone: String,
     /// Light through trees.

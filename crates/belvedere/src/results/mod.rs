@@ -31,7 +31,7 @@ use std::path::Path;
 /// Source of targets, if it is written along with their measures.
 #[derive(Clone, Copy)]
 pub enum TakenFrom<'a> {
-    /// Nothing but the targets is written: cells.
+    /// Targets alone are written: cells.
     Nothing,
     /// The points of a cloud, with their attributes.
     Cloud(&'a PointCloud),

@@ -25,9 +25,9 @@ pub struct CameraLens {
     pub tilts_deg: Vec<f64>,
     /// True if they turn and tilt to each target.
     pub is_turning: bool,
-    /// Least horizontal distance, metres; `None` for 0.
+    /// Minimum horizontal distance, metres; `None` for 0.
     pub min_distance: Option<f64>,
-    /// Greatest horizontal distance, metres; `None` for no limit.
+    /// Maximum horizontal distance, metres; `None` for no limit.
     pub max_distance: Option<f64>,
 }
 

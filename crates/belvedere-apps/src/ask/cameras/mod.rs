@@ -35,7 +35,8 @@ pub struct CamerasQuestion {
     pub goal: CameraGoal,
     /// Cameras that each target needs, 1 or more; one with fewer counts in proportion. Default 1.
     pub per_target: u32,
-    /// Most branches of the search for the proven optimum, 0 for no search; `None` for about half a minute.
+    /// Maximum number of branches of the search for the proven optimum, 0 for no search; `None` for about half a
+    /// minute.
     pub search_limit: Option<usize>,
     /// Possible positions.
     pub candidates: Candidates,
@@ -48,7 +49,7 @@ pub struct CamerasQuestion {
     pub lens: CameraLens,
     /// Targets to cover, and places that must stay private.
     pub targets: CameraTargets,
-    /// From which north azimuths count.
+    /// North of azimuths.
     pub north: North,
     /// Curvature of the earth on lines of sight.
     #[serde(skip)]

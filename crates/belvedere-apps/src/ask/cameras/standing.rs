@@ -46,7 +46,7 @@ pub struct GivenCamera {
     pub tilt_deg: Option<f64>,
     /// Horizontal field of view, degrees.
     pub fov_deg: Option<f64>,
-    /// Least and greatest horizontal distance, metres.
+    /// Minimum and maximum horizontal distance, metres.
     pub distance: [Option<f64>; 2],
     /// Azimuths that it can be turned to, degrees.
     pub azimuth_deg: Option<[f64; 2]>,

@@ -21,11 +21,11 @@ pub struct ViewLimits {
     /// Azimuths from and to, clockwise from the north of the question, degrees; 300 to 60 runs through north. `None`
     /// for all.
     pub azimuth_range_deg: Option<[f64; 2]>,
-    /// Least and greatest angle above the horizon, degrees, -90 to 90. `None` for all.
+    /// Minimum and maximum angle above the horizon, degrees, -90 to 90. `None` for all.
     pub elevation_range_deg: Option<[f64; 2]>,
-    /// Least distance on the map, metres; `None` for 0.
+    /// Minimum distance on the map, metres; `None` for 0.
     pub min_distance: Option<f64>,
-    /// Greatest distance on the map, metres; `None` for no limit.
+    /// Maximum distance on the map, metres; `None` for no limit.
     pub max_distance: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! From flags to the questions of a plan.
+//! Converts flags to the questions of a plan.
 
 use crate::arguments::{AreaChoice, CellFor, CityPlan, MapPosition, Usage};
 use crate::commands::irradiance::radiation;

@@ -1,4 +1,4 @@
-//! From flags and weather files to where radiation comes from.
+//! Converts flags and weather files to the source of radiation.
 
 use crate::arguments::{ClearSkyChoice, RadiationModel, Usage};
 use crate::run::CommandContext;

@@ -23,7 +23,7 @@ const SEEN_COLOR: [u8; 3] = [255, 176, 0];
 const HIDDEN_COLOR: [u8; 3] = [38, 52, 96];
 /// Terrain over which the cloud lies, which has cells of its own.
 const CLOUD_COLOR: [u8; 3] = [120, 120, 120];
-/// Most pixels of a map of terrain.
+/// Maximum number of pixels of a map of terrain.
 const MAX_PIXELS: f64 = 4e6;
 
 /// Viewshed of cells, and their position.

@@ -21,7 +21,7 @@ const MIN_POINTS: usize = 200;
 const ROUNDS: usize = 6;
 /// Minimum number of pulses with several returns in a part for the test of whether they agree.
 const MIN_PAIRS: usize = 20;
-/// Least distance between first and last return for a pulse to give its direction, metres.
+/// Minimum distance between first and last return for a pulse to give its direction, metres.
 const MIN_LENGTH: f64 = 3.0;
 
 /// A point with what is needed of it.

@@ -9,7 +9,7 @@ use belvedere_data::PointCloud;
 
 /// Rounds of improvement and reweighting; offsets of a tenth of the height settle in four.
 const ROUNDS: usize = 8;
-/// Least distance between first and last return for a pulse to give its direction, metres.
+/// Minimum distance between first and last return for a pulse to give its direction, metres.
 const MIN_LENGTH: f64 = 3.0;
 /// Fewest such pulses.
 const MIN_PAIRS: usize = 100;

@@ -12,7 +12,7 @@ const RAYLEIGH_MEDIAN: f64 = 1.177_41;
 /// First and last return of a pulse.
 pub(super) struct ReturnPair {
     pub(super) first: Vector3<f64>,
-    /// From the first to the last.
+    /// Vector from the first to the last.
     pub(super) along: Vector3<f64>,
     /// Seconds after the middle of the part.
     pub(super) since: f64,
@@ -83,7 +83,7 @@ fn scale_of(misses: &[Miss]) -> f64 {
 
 /// Residual of a pulse against a scanner position.
 pub(super) struct Miss {
-    /// From the line through the scanner and the first return to the last return, metres.
+    /// Vector from the line through the scanner and the first return to the last return, metres.
     pub(super) offset: Vector3<f64>,
     /// Metres by which the offset changes with a metre of the scanner across the way.
     pub(super) slope: f64,

@@ -8,7 +8,7 @@ use std::ops::{ControlFlow, Range};
 const LEAF: usize = 8;
 /// Below this many segments a thread continues alone.
 const PARALLEL: usize = 8192;
-/// Least distance of the two planes of a node, metres: rounding must not tilt what lies between them.
+/// Minimum distance of the two planes of a node, metres: rounding must not tilt the space between them.
 const MIN_SPAN: f32 = 0.01;
 /// Segments by which a way of splitting a node is judged.
 const SAMPLE: usize = 32;
@@ -64,7 +64,7 @@ impl SegmentAxis {
 /// Segments are straight, so they lie within the box interpolated between the two planes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SegmentNode {
-    /// Least of both axes across, then most, at the lower plane.
+    /// Minimum of both axes across, then maximum, at the lower plane.
     pub(super) below: [f32; 4],
     pub(super) above: [f32; 4],
     /// The two planes: least and most along the axis.

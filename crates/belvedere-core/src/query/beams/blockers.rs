@@ -14,7 +14,7 @@ pub(super) struct IndexNode {
     pub(super) number: u32,
 }
 
-/// Up to eight nodes.
+/// Block of up to eight nodes.
 #[derive(Clone, Copy)]
 pub(super) struct NodeBlock {
     pub(super) sides: PartSides,
@@ -23,7 +23,7 @@ pub(super) struct NodeBlock {
     pub(super) count: usize,
 }
 
-/// Up to eight balls.
+/// Block of up to eight balls.
 #[derive(Clone, Copy)]
 pub(super) struct BallBlock {
     /// Centres by axis, and radii: below zero for those that are not taken, which nothing meets.

@@ -41,7 +41,7 @@ pub(super) struct TreeSweep<'a> {
     targets: &'a TargetTree,
     viewer: Viewer<'a>,
     pub(super) apex: Apex,
-    /// By how much beams are widened, metres: what f32 may misplace anything in the scene by.
+    /// Widening of beams, metres: the maximum error of a position in the scene by f32.
     pub(super) room: f64,
     control: &'a Control<'a>,
 }

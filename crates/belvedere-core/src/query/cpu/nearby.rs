@@ -7,7 +7,7 @@ use crate::ray_index::{NodePart, PARTS, Ray};
 /// Distance to the sides of a target, and above it, up to which balls count as near, metres. Beyond, rising rays have
 /// left the surface of the target.
 pub(super) const NEAR: [f64; 2] = [2.0, 0.6];
-/// By how much the cosine to the outline of a ball is taken too small: more than the error of f32.
+/// Reduction of the cosine to the outline of a ball: more than the error of f32.
 const ROUNDING: f32 = 1e-5;
 /// Covers tested at once.
 const LANES: usize = 8;

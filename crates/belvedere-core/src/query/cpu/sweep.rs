@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 /// Targets from the highest down.
 struct Descending {
-    /// With their places in the order of the tree.
+    /// Targets with their places in the order of the tree.
     targets: Vec<(TargetCell, u32)>,
 }
 

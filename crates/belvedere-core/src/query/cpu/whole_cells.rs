@@ -17,12 +17,12 @@ const SLOPE_BITS: u32 = 26;
 const ACROSS_BITS: u32 = HEIGHT_BITS + SLOPE_BITS;
 /// A line closer than this part of a cell (2 to the power of minus this) to a border may belong to the next cell.
 const BORDER_BITS: u32 = 12;
-/// Most cells that a target lies above or below the lowest layer: 2 km where cells are 0.5 m. Lines of others stay
+/// Maximum height of a target above or below the lowest layer, cells: 2 km for cells of 0.5 m. Lines of others stay
 /// open.
 const MAX_HEIGHT: f64 = 4096.0;
-/// Most cells that a target lies from the corner along x or y: 131 km where cells are 0.5 m.
+/// Maximum distance of a target from the corner along x or y, cells: 131 km for cells of 0.5 m.
 const MAX_ACROSS: f64 = 262_144.0;
-/// Most cells that a line of sight moves on in a layer; flatter directions are not swept.
+/// Maximum shift of a line of sight in a layer, cells; flatter directions are not swept.
 const MAX_SLOPE: f64 = 24.0;
 
 /// A target, in cells from the corner of the layers.
@@ -96,13 +96,13 @@ impl SweptDirection {
         })
     }
 
-    /// By how many whole cells, least and most, lines of sight move in `depth` layers along an axis.
+    /// Returns the minimum and maximum shift of lines of sight in `depth` layers along an axis, whole cells.
     pub(super) fn range(&self, axis: usize, depth: usize) -> [i64; 2] {
         let (a, b) = (whole(0.0), whole(depth as f64 * self.slope_exact[axis]));
         [a.min(b) - 1, a.max(b) + 1]
     }
 
-    /// By how many whole cells along x and y lines of sight have moved in each stretch of a layer, into `moves`.
+    /// Writes the shift along x and y of lines of sight in each stretch of a layer, whole cells, into `moves`.
     ///
     /// The lines of a cell lie over two by two cells of the layer, the same ones until they pass a side of a cell to
     /// the east or north. A stretch runs from one such passage to the next.

@@ -268,7 +268,7 @@ impl TerrainHeights {
         }
     }
 
-    /// From which distance terrain counts at least, metres.
+    /// Returns the minimum distance of terrain that counts, metres.
     fn nearest(&self) -> f64 {
         self.grid.cell()[0].max(self.grid.cell()[1])
     }

@@ -24,12 +24,12 @@ const MAX_TARGETS: usize = BLOCK << 10;
 /// balls beside a tile of a village.
 const WORTH_SETTLING: f64 = 0.1;
 
-/// By how much the box around balls is taken for larger, metres: far more than is rounded.
+/// Widening of the box around balls, metres: far more than the rounding.
 const ROOM: f64 = 0.01;
 
 /// Lines of sight that are still free and run near balls.
 struct Meeting {
-    /// At least as many as there are.
+    /// Upper bound of their number.
     line_count: usize,
     /// Columns of any of them.
     columns: Vec<usize>,

@@ -7,7 +7,7 @@ use super::super::ball_tree::{BallTree, MARGIN, near_reach};
 use crate::ray_index::{END, Ray, Visit};
 use belvedere_data::vector::{cross, dot, sub, unit};
 
-/// Most lines of a packet.
+/// Maximum number of lines of a packet.
 pub(super) const LANES: usize = 8;
 /// Maximum distance between the targets of a packet along an axis, metres. The sky of the points of a town (10 per m²,
 /// 256 directions) took 20.3 s with 0.5, 16.1 with 1, 15.4 with 2 and 16.3 with 4.

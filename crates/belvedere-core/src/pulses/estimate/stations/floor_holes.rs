@@ -29,7 +29,7 @@ const MAX_UNEVEN: f64 = 0.4;
 const MAX_STEP: f64 = 0.5;
 /// Tripods on one floor stand farther apart than that, metres.
 const MIN_APART: f64 = 0.8;
-/// Most cells beside a hole, most dense first, so that no cloud costs more than some tenths of a second.
+/// Maximum number of cells beside a hole, densest first, so that no cloud costs more than some tenths of a second.
 const MAX_EDGES: usize = 20_000;
 
 /// A cell of the map with its floor.
