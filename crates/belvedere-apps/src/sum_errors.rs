@@ -103,7 +103,7 @@ impl SumError {
 
     /// The expected value of a sum of at most `max`, and the ends of its interval.
     #[must_use]
-    pub fn around(&self, sum: f64, max: f64) -> [f64; 3] {
+    pub fn interval(&self, sum: f64, max: f64) -> [f64; 3] {
         let Self { mean, interval: [low, high] } = *self;
         [mean, low, high].map(|error| (sum + error * max).clamp(0.0, max.max(0.0)))
     }
@@ -230,7 +230,7 @@ pub fn expected_measures(
 ) -> Vec<Measure> {
     let of_row = |(row, (&sum, &class)): (usize, (&f32, &u8))| match sum.is_nan() {
         true => [f64::NAN; 3],
-        false => SumError::of(kind, class).around(f64::from(sum), max(row)),
+        false => SumError::of(kind, class).interval(f64::from(sum), max(row)),
     };
     let found: Vec<[f64; 3]> = sums.values.iter().zip(classes).enumerate().map(of_row).collect();
     let measure = |(number, (suffix, text)): (usize, &(&str, &'static str))| {

@@ -1,11 +1,11 @@
 //! Converts arguments to clouds, scene models and views. Calls the library; decides and computes nothing itself.
 
-mod near;
 pub(crate) mod params;
 mod plan;
+mod scene_in_reach;
 
-pub(crate) use near::scene_in_reach;
 pub(crate) use plan::{areas, mesh_in, planned};
+pub(crate) use scene_in_reach::scene_in_reach;
 
 use crate::arguments::{
     CloudInput, GroundChoice, MethodChoice, ProfileChoice, SceneInput, SizeChoice, SkyPlaces, UnprovenChoice, UpChoice,
@@ -358,7 +358,7 @@ impl From<ProfileChoice> for Profile {
 impl ViewChoice {
     /// The views on a scene, reported: one, or the two halves of a panorama.
     pub(crate) fn views(&self, scene: &LoadedScene, summary: &mut Summary) -> Result<Vec<View>> {
-        let from = self.from(scene, summary)?;
+        let from = self.view_from(scene, summary)?;
         summary.remarks(from.remark(scene.model.coverage().as_ref()));
         summary.add("view", Summary::of(&from.section()));
         match from {
@@ -368,7 +368,7 @@ impl ViewChoice {
     }
 
     /// Returns the position and projection of a picture of a scene.
-    pub(crate) fn from(&self, scene: &LoadedScene, summary: &mut Summary) -> Result<ViewFrom> {
+    pub(crate) fn view_from(&self, scene: &LoadedScene, summary: &mut Summary) -> Result<ViewFrom> {
         match self.kind.panorama {
             Some(eye) => {
                 let (eye, width) = (scene.local_from_file(eye.0), self.panorama_width()?);

@@ -2,13 +2,13 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
-mod opened;
+mod open_node;
 mod search_tree;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 mod simd128;
 mod walk;
 
-pub(crate) use opened::{OpenNode, PartSides};
+pub(crate) use open_node::{OpenNode, PartSides};
 pub(crate) use walk::Visit;
 
 use crate::instructions::Instructions;
@@ -230,7 +230,7 @@ impl RayIndex {
 
     /// Calls `visit` for every row whose box may meet the box between two corners, local metres, in no particular
     /// order.
-    pub fn near(&self, low: [f64; 3], high: [f64; 3], mut visit: impl FnMut(usize)) {
+    pub fn visit_near(&self, low: [f64; 3], high: [f64; 3], mut visit: impl FnMut(usize)) {
         // what the corners of nodes are rounded by
         let slack = (0..3).map(|axis| self.center[axis].abs() + self.half_size[axis]).fold(0.0, f64::max) * BOX_PADDING;
         let mut nodes: Vec<u32> = self.root().into_iter().collect();
@@ -276,7 +276,7 @@ impl RayIndex {
     #[inline]
     pub fn parts(&self, node: u32) -> Option<NodeParts> {
         let node = self.tree.nodes.get(node as usize)?;
-        let parts = std::array::from_fn(|child| opened::part_of(node, child));
+        let parts = std::array::from_fn(|child| open_node::part_of(node, child));
         let steps = node.compute_extent().to_array();
         let origin = node.p.to_array();
         let sides = [

@@ -85,7 +85,7 @@ impl TriangleTree {
             let shadow = Shadow::new(triangle.map(|corner| axes.seen(corner)));
             let mut left = 0;
             for (group, start) in groups.iter_mut().zip((0..).step_by(RayGroup::LANES)) {
-                let mut near = group.near(&shadow);
+                let mut near = group.rays_near(&shadow);
                 while near != 0 {
                     let lane = near.trailing_zeros();
                     near &= near - 1;
@@ -123,7 +123,7 @@ impl TriangleTree {
     /// Calls `visit` with the row of every triangle whose box may meet the box between two corners, local metres, in no
     /// particular order.
     pub fn each_near(&self, low: [f64; 3], high: [f64; 3], visit: impl FnMut(usize)) {
-        self.index.near(low, high, visit);
+        self.index.visit_near(low, high, visit);
     }
 
     fn range(&self, crossing: &RayAxes, row: usize, ray: &Ray) -> Option<f64> {
@@ -262,7 +262,7 @@ impl RayGroup {
 
     /// The rays that are left and may cross a triangle, a bit each.
     #[inline]
-    fn near(&self, shadow: &Shadow) -> u32 {
+    fn rays_near(&self, shadow: &Shadow) -> u32 {
         let meets = (0..2).all(|axis| shadow.low[axis] <= self.high[axis] && self.low[axis] <= shadow.high[axis]);
         if self.left == 0 || !meets {
             return 0;

@@ -114,13 +114,13 @@ impl BuildingOutlines {
     pub fn outside(self, index: &PolygonIndex) -> Self {
         let is_out = |[a, b]: [[f64; 2]; 2]| !index.holds([0, 1].map(|i| f64::midpoint(a[i], b[i])));
         let on_map = |ends: [[f64; 3]; 2]| ends.map(|[x, y, _]| [x, y]);
-        let (planes, plane_at) = kept(self.planes, |plane| is_out(on_map([plane.center; 2])));
+        let (planes, plane_at) = retain_with_places(self.planes, |plane| is_out(on_map([plane.center; 2])));
         let edges = self.edges.into_iter().map(|edge| {
             let plane = plane_at.get(edge.plane).copied().flatten().filter(|_| is_out(on_map(edge.ends)));
             plane.map(|plane| Edge { plane, ..edge })
         });
         let edges: Vec<Option<Edge>> = edges.collect();
-        let (edges, edge_at) = kept(edges, Option::is_some);
+        let (edges, edge_at) = retain_with_places(edges, Option::is_some);
         let ridges = self.ridges.into_iter().filter(|ridge| is_out(on_map(ridge.ends))).filter_map(|ridge| {
             let [a, b] = ridge.planes.map(|plane| plane_at.get(plane).copied().flatten());
             Some(Ridge { planes: [a?, b?], ..ridge })
@@ -167,7 +167,7 @@ pub fn median_sd(edges: &[Edge]) -> Option<f64> {
 }
 
 /// Returns the items to keep, and the new index of each item, if kept.
-fn kept<T>(all: Vec<T>, is_kept: impl Fn(&T) -> bool) -> (Vec<T>, Vec<Option<usize>>) {
+fn retain_with_places<T>(all: Vec<T>, is_kept: impl Fn(&T) -> bool) -> (Vec<T>, Vec<Option<usize>>) {
     let mut left = Vec::new();
     let place = |one: T| {
         let place = is_kept(&one).then_some(left.len());

@@ -39,7 +39,7 @@ pub fn camera_picture(view: &View, depth: &Raster<f32>, title: &str) -> Picture 
         |[column, row]: [usize; 2], depth: f64| view.position([column as f64 + 0.5, row as f64 + 0.5], depth);
     let colors = DepthColors::by_ratio(depth);
     let shaded = colored(depth, &colors, |pixel| {
-        facing(depth, pixel, position).map_or(1.0, |(normal, to_eye)| lit(normal, to_eye, [-0.4, -0.6, 0.0]))
+        facing(depth, pixel, position).map_or(1.0, |(normal, to_eye)| shade(normal, to_eye, [-0.4, -0.6, 0.0]))
     });
     with_legend(&enlarged(shaded), &colors, title, "depth (m)")
 }
@@ -55,7 +55,7 @@ pub fn panorama_picture(range: &Raster<f32>, title: &str) -> Picture {
         facing(range, pixel, position).map_or(1.0, |(normal, to_eye)| {
             // left of the line of sight, and up
             let left = unit([-to_eye[1], to_eye[0], 0.0]).unwrap_or([0.0; 3]).map(|v| -0.4 * v);
-            lit(normal, to_eye, [left[0], left[1], 0.6])
+            shade(normal, to_eye, [left[0], left[1], 0.6])
         })
     });
     with_legend(&with_compass(&enlarged(shaded)), &colors, title, "range (m)")
@@ -163,7 +163,7 @@ fn facing(
 }
 
 /// Share of its colour that a surface shows under a lamp which lies `aside` of the eye.
-fn lit(normal: [f64; 3], to_eye: [f64; 3], aside: [f64; 3]) -> f64 {
+fn shade(normal: [f64; 3], to_eye: [f64; 3], aside: [f64; 3]) -> f64 {
     let to_light = unit(std::array::from_fn(|i| to_eye[i] + aside[i])).unwrap_or(to_eye);
     AMBIENT + (1.0 - AMBIENT) * dot(normal, to_light).max(0.0)
 }

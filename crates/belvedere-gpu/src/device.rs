@@ -143,7 +143,7 @@ impl Device {
             .map_err(|error| Error::Device { what: format!("{}: {error}", info.name) })?;
         let trouble = Trouble::default();
         let (of_errors, of_loss) = (trouble.clone(), trouble.clone());
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| of_errors.note(said(&error))));
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| of_errors.note(describe(&error))));
         device.set_device_lost_callback(move |_, why| of_loss.note(format!("the device was lost: {why}")));
         Ok(Self { info, device, queue, trouble })
     }
@@ -186,7 +186,7 @@ impl Device {
     }
 }
 
-fn said(error: &wgpu::Error) -> String {
+fn describe(error: &wgpu::Error) -> String {
     match error {
         wgpu::Error::OutOfMemory { .. } => "the memory of the device is full".to_owned(),
         other => other.to_string().lines().collect::<Vec<_>>().join(" "),

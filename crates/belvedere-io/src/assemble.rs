@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::part::{Coordinates, FilePart, unquantise};
+use super::file_part::{Coordinates, FilePart, unquantise};
 use super::read_options::{DistantFiles, ReadOptions, RowNumbers};
 use super::read_report::ReadReport;
 use belvedere_data::Frame;

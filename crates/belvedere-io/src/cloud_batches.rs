@@ -4,9 +4,9 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 
 use super::assemble::assemble;
+use super::file_part::FilePart;
 #[cfg(feature = "las")]
 use super::las::{self, LasPoints};
-use super::part::FilePart;
 use super::read_cloud::{Systems, files_of, read_one};
 use super::read_options::{ReadOptions, Reading, UpAxis};
 use super::source::Source;

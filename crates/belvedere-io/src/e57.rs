@@ -6,7 +6,7 @@ use std::path::Path;
 use ::e57::{E57Reader, PointCloud as Scan, Quaternion, Record, RecordDataType, RecordName, RecordValue};
 
 use super::e57_counts::records_in_section;
-use super::part::{COARSE_STEP, FilePart, single_step};
+use super::file_part::{COARSE_STEP, FilePart, single_step};
 use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, role_of};
 use super::sky::ScanGrid;
@@ -52,13 +52,13 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
         }
         plan.check(path, scan, i, size)?;
         if let Some(fault) = pose_fault(scan) {
-            let what = format!("the pose of scan {}{} {fault}; export it again", i + 1, named(scan));
+            let what = format!("the pose of scan {}{} {fault}; export it again", i + 1, name_of(scan));
             return Err(Error::malformed(path, what));
         }
         if let Some(length) = scan.transform.as_ref().map(|pose| quaternion_length(&pose.rotation))
             && (length - 1.0).abs() > LENGTH_TOLERANCE
         {
-            let what = format!("the rotation of scan {}{} has the length {length:.4}", i + 1, named(scan));
+            let what = format!("the rotation of scan {}{} has the length {length:.4}", i + 1, name_of(scan));
             part.note(format!("{what}; it is used as a rotation without scale"));
         }
         let index = plan.scanner.map_or(u16::MAX, |position| {
@@ -87,7 +87,7 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
         let text = format!(
             "scan {}{} counts {counted} points, but {beyond} more follow in the file: its writer was interrupted; export it again",
             i + 1,
-            named(scan)
+            name_of(scan)
         );
         let found = POINTS_NOT_COUNTED.found(text).with("counted", counted as f64).with("beyond", beyond as f64);
         part.contradict(found);
@@ -393,7 +393,7 @@ impl GridBounds {
 }
 
 /// Name of a scan for messages.
-fn named(scan: &Scan) -> String {
+fn name_of(scan: &Scan) -> String {
     let name: String = scan.name.as_deref().unwrap_or_default().chars().take(40).collect();
     if name.is_empty() { String::new() } else { format!(" (\"{name}\")") }
 }

@@ -11,13 +11,13 @@ use ::las::point::Format;
 use ::las::{PointData, PointDataBuilder, Transform, Vector};
 
 use super::copc::{self, ChunkPlace, CopcNodes};
+use super::file_part::{Coordinates, FilePart};
 use super::las_columns::{LasColumns, UnreadFields};
 use super::las_extra::{ExtraField, ExtraNormals, find_columns, find_extra_normals};
 use super::las_header::{COPC, LasHeader, RecordSize, read_header};
 use super::las_records;
 use super::las_system::{find_crs, unnamed_degrees};
 use super::laz::{self, LazFields, LazReader, NeededChunks, is_chunked};
-use super::part::{Coordinates, FilePart};
 use super::read_options::{FileBox, PassedOver, Reading, RowNumbers, Selection};
 use super::source::{Input, Source, SourceReader, web_address};
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
@@ -156,7 +156,7 @@ impl<'a> LasFile<'a> {
             }
             (_, None) => self.batches_of(extra, iter::once(0..all), None)?,
         };
-        let left = batches.records.left();
+        let left = batches.records.remaining();
         Ok((batches, all.saturating_sub(left), note))
     }
 
@@ -206,10 +206,10 @@ enum Records<'a> {
 
 impl Records<'_> {
     /// Points that are still to come.
-    fn left(&self) -> u64 {
+    fn remaining(&self) -> u64 {
         match self {
             Self::Plain { rows, .. } => rows.iter().fold(0, |sum, rows| sum.saturating_add(rows.end - rows.start)),
-            Self::Laz(reader) => reader.left(),
+            Self::Laz(reader) => reader.remaining(),
         }
     }
 }
@@ -351,7 +351,7 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
     let normals = find_extra_normals(&mut part, header, &source.format);
     let extra = if normals.is_some() { LazFields::AttributesAndExtraBytes } else { LazFields::Attributes };
     part.other_attributes.extend(las_records::other_attributes(header, &source.format));
-    part.records.extend(las_records::kept(header).map(las_records::in_words));
+    part.records.extend(las_records::kept_records(header).map(las_records::in_words));
     let (announced, present) = (header.points, source.points_in_file());
     if announced > present {
         part.note(format!("the header announces {announced} points, but the file holds only {present}"));
@@ -372,7 +372,7 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
     let batches = match wanted {
         Some(wanted) => {
             let (batches, outside, note) = source.batches_within(extra, &wanted, rows)?;
-            passed_over.outside(outside);
+            passed_over.count_outside(outside);
             part.report.notes.extend(note);
             batches
         }
@@ -443,7 +443,7 @@ impl LasPoints<'_> {
         let Some(selection) = &self.selection else {
             return Ok(Some(SomePoints { coordinates, attributes, rows: (first_row..self.next_row).collect() }));
         };
-        let kept = selection.kept(&coordinates, &attributes, &mut self.passed_over)?;
+        let kept = selection.select(&coordinates, &attributes, &mut self.passed_over)?;
         Ok(Some(SomePoints {
             coordinates: coordinates.select(&kept),
             attributes: attributes.select(&kept),

@@ -3,8 +3,8 @@
 use ::las::PointData;
 use ::las::point::Format;
 
+use super::file_part::{Coordinates, narrow};
 use super::las_extra::{ExtraField, ExtraNormals};
-use super::part::{Coordinates, narrow};
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 
 /// ASPRS class of overlap points in point formats 0 to 5, which have no flag for it.

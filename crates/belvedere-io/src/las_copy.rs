@@ -7,6 +7,7 @@ use ::las::point::Format;
 use ::las::{Builder, PointData, PointDataBuilder, Transform, Vector, Vlr};
 use rayon::prelude::*;
 
+use super::file_part::{Coordinates, FilePart};
 use super::las::{Batches, LasFile};
 use super::las_columns::LasColumns;
 use super::las_extra::{ExtraDescription, descriptions};
@@ -15,7 +16,6 @@ use super::las_records;
 use super::las_results::result_columns;
 use super::las_system::find_crs;
 use super::laz::LazFields;
-use super::part::{Coordinates, FilePart};
 use super::source::Source;
 use crate::columns::Column;
 use belvedere_data::cloud::{Attributes, to_local};
@@ -145,7 +145,7 @@ impl<'a> RecordCopy<'a> {
     /// Extra bytes that all files describe in the same way, except those whose name one of `columns` has.
     fn choose_extra(&mut self, columns: &[Column<'_>]) {
         let described: Vec<Vec<ExtraDescription>> =
-            self.files.iter().map(|file| described(&file.header, &file.format)).collect();
+            self.files.iter().map(|file| describe_extra_bytes(&file.header, &file.format)).collect();
         let Some(of_first) = described.first() else { return };
         let is_one = described.len() == 1;
         let mut at = base_length(&self.format);
@@ -182,7 +182,7 @@ impl<'a> RecordCopy<'a> {
     }
 
     /// Returns the fields of the files that the copies lack, in words.
-    pub(super) fn lost(self) -> Vec<String> {
+    pub(super) fn lost_fields(self) -> Vec<String> {
         self.lost
     }
 
@@ -213,10 +213,10 @@ impl<'a> RecordCopy<'a> {
         let mut lost = Vec::new();
         let is_in_all = |record: &&VariableRecord| self.files.iter().all(|file| file.header.records.contains(record));
         for file in &self.files {
-            let of_file = las_records::kept(&file.header).filter(|record| !is_in_all(record));
+            let of_file = las_records::kept_records(&file.header).filter(|record| !is_in_all(record));
             lost.extend(of_file.map(las_records::in_words));
         }
-        for record in las_records::kept(header).filter(is_in_all) {
+        for record in las_records::kept_records(header).filter(is_in_all) {
             let records = if record.is_extended { &mut builder.evlrs } else { &mut builder.vlrs };
             records.push(las_records::to_vlr(record));
         }
@@ -492,7 +492,7 @@ fn transforms_of(header: &LasHeader) -> Vector<Transform> {
 }
 
 /// The extra bytes of a file, those without a description among them; none where the descriptions do not fit.
-fn described(header: &LasHeader, format: &Format) -> Vec<ExtraDescription> {
+fn describe_extra_bytes(header: &LasHeader, format: &Format) -> Vec<ExtraDescription> {
     let mut found = descriptions(header, format);
     let room = usize::from(format.extra_bytes);
     let mut used: usize = found.iter().map(|extra| extra.size).sum();

@@ -2,8 +2,8 @@
 
 use ::las::point::Format;
 
+use super::file_part::FilePart;
 use super::las_header::LasHeader;
-use super::part::FilePart;
 use belvedere_data::contradiction::COLUMN_TWICE;
 
 /// Position and type of NormalX, NormalY and NormalZ in a record.

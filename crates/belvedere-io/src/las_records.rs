@@ -35,7 +35,7 @@ pub(super) fn is_projection(record: &VariableRecord) -> bool {
 
 /// Returns the records that a copy of all points keeps. Records of the compression, of extra bytes and results are made
 /// anew. Records of waveforms, of the hierarchy of COPC, and of reference systems are dropped.
-pub(super) fn kept(header: &LasHeader) -> impl Iterator<Item = &VariableRecord> {
+pub(super) fn kept_records(header: &LasHeader) -> impl Iterator<Item = &VariableRecord> {
     let is_made_anew = |record: &VariableRecord| {
         let key = (record.user.as_str(), record.id);
         key == ("laszip encoded", 22204) || key == (SPECIFICATION, 4) || key == RESULTS

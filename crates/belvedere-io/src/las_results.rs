@@ -2,12 +2,12 @@
 
 use ::las::point::Format;
 
+use super::file_part::narrow;
 use super::las::LasFile;
 use super::las_extra::{ExtraField, described};
 use super::las_header::LasHeader;
 use super::las_records;
 use super::laz::LazFields;
-use super::part::narrow;
 use super::source::Source;
 use belvedere_data::{Error, Result};
 

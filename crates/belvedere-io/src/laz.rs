@@ -103,7 +103,7 @@ impl<'a> LazReader<'a> {
     }
 
     /// Points of the chunks that are still to come.
-    pub(super) fn left(&self) -> u64 {
+    pub(super) fn remaining(&self) -> u64 {
         self.chunks.as_slice().iter().fold(0, |sum, chunk| sum.saturating_add(chunk.entry.point_count))
     }
 

@@ -3,7 +3,7 @@
 use std::io::{BufRead, Read};
 use std::path::Path;
 
-use super::part::FilePart;
+use super::file_part::FilePart;
 use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, contradict_twice, roles_of};
 use super::source::Input;
@@ -235,7 +235,7 @@ fn ascii_row(line: &str, header: &PcdHeader) -> Option<Row> {
         for _ in 0..field.count {
             let value: f64 = words.next()?.parse().ok()?;
             if field.is_packed_color() {
-                let bits = if field.kind == 'F' { super::part::narrow(value).to_bits() } else { to_bits(value) };
+                let bits = if field.kind == 'F' { super::file_part::narrow(value).to_bits() } else { to_bits(value) };
                 let [blue, green, red, _] = bits.to_le_bytes();
                 put_color(&mut row, [red, green, blue]);
             } else if let (Some(role), 1) = (field.role, field.count) {

@@ -3,7 +3,7 @@
 use std::io::{BufRead, Read};
 use std::path::Path;
 
-use super::part::FilePart;
+use super::file_part::FilePart;
 use super::read_options::Reading;
 use super::rows::{POSITION, Role, Row, Rows};
 use super::scan_pose::fault_of_rotation;

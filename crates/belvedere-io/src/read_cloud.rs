@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 #[cfg(feature = "e57")]
 use super::e57;
-use super::part::FilePart;
+use super::file_part::FilePart;
 #[cfg(feature = "ply")]
 use super::ply;
 use super::read_options::{ReadOptions, Reading, UpAxis};

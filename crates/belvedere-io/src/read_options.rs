@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use std::path::Path;
 
-use super::part::{Coordinates, FilePart};
+use super::file_part::{Coordinates, FilePart};
 
 /// Interval between checks for cancellation of readers that go point by point: a few milliseconds of points.
 const POINTS_PER_CHECK: u64 = 1 << 14;
@@ -325,7 +325,7 @@ pub(super) struct PassedOver {
 impl PassedOver {
     /// Counts points that need not even be looked at, because their piece of the file lies outside.
     #[cfg(feature = "las")]
-    pub(super) fn outside(&mut self, count: u64) {
+    pub(super) fn count_outside(&mut self, count: u64) {
         self.outside = self.outside.saturating_add(usize::try_from(count).unwrap_or(usize::MAX));
     }
 
@@ -416,7 +416,7 @@ impl Selection {
     ///
     /// # Errors
     /// [`Error::MissingAttribute`] where classes, lines or dates are requested but the points have none.
-    pub(super) fn kept(
+    pub(super) fn select(
         &self,
         coordinates: &Coordinates,
         attributes: &Attributes,
@@ -469,7 +469,7 @@ mod tests {
         let selection = Reading { options, forced: None, control: &control }.selection(&Crs::default());
         let coordinates = Coordinates::Real(vec![[0.0; 3]; 3]);
         let Some(selection) = selection else { return Ok(vec![0, 1, 2]) };
-        selection.kept(&coordinates, &attributes, &mut PassedOver::default())
+        selection.select(&coordinates, &attributes, &mut PassedOver::default())
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Points that come one by one with named numbers, as in text, PLY, PCD and E57 files.
 
-use super::part::{Coordinates, FilePart, narrow, to_u8, to_u16};
+use super::file_part::{Coordinates, FilePart, narrow, to_u8, to_u16};
 use super::read_options::RowNumbers;
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 use belvedere_data::contradiction::COLUMN_TWICE;
@@ -62,7 +62,7 @@ pub(super) const NORMAL: [Role; 3] = [Role::NormalX, Role::NormalY, Role::Normal
 const COLOR: [Role; 3] = [Role::Red, Role::Green, Role::Blue];
 
 /// The role of a column by its name in any of the formats, or `None` where the name says nothing.
-pub(super) fn role_of(name: &str) -> Option<Role> {
+fn role_of(name: &str) -> Option<Role> {
     // Called for every number of a PLY file, hence no allocation.
     let mut buffer = [0_u8; 24];
     let mut length = 0;

@@ -5,7 +5,6 @@ use std::borrow::Cow;
 use crate::columns::{Column, check_lengths};
 use crate::columns::{ExtraColumn, to_column};
 use crate::output::Output;
-use crate::rows::role_of;
 use crate::table::{TableCells, quoted, separator_of};
 use belvedere_data::{Error, Result};
 
@@ -43,12 +42,6 @@ impl TextRows {
     #[must_use]
     pub fn row_count(&self) -> usize {
         self.ends.len().checked_div(self.names.len()).unwrap_or(0)
-    }
-
-    /// Names of columns that no attribute of a cloud has, and that only tables can therefore carry.
-    #[must_use]
-    pub fn names_without_role(&self) -> Vec<&str> {
-        self.names.iter().map(String::as_str).filter(|name| role_of(name).is_none()).collect()
     }
 
     fn cell(&self, row: usize, column: usize) -> &str {

@@ -73,7 +73,7 @@ pub(crate) fn write(
             if let Some(bytes) = bytes {
                 output.write(|name, output| output.write_all(bytes.get_ref()).map_err(Error::io(name)))?;
             }
-            Ok(WriteReport { point_count: cloud.len(), left_out: copy.lost(), clamped_count: 0 })
+            Ok(WriteReport { point_count: cloud.len(), left_out: copy.lost_fields(), clamped_count: 0 })
         }
         // the files are not those any more that were read: what is known of their points is written
         Err(_) if has_changed => write_anew(output, cloud, extra, records),

@@ -4,7 +4,7 @@
 use std::io::BufRead;
 use std::path::Path;
 
-use super::part::FilePart;
+use super::file_part::FilePart;
 use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, contradict_twice, roles_of};
 use super::source::{Input, Source};

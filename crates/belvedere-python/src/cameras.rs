@@ -4,9 +4,9 @@ use crate::arrays::{to_1d, to_2d};
 use crate::errors::wrong;
 use crate::remarks::remarks_of;
 use crate::scene::{PyScene, unproven_as};
-use crate::sights::earth;
 use crate::sun::SiteKeywords;
 use crate::targets::{Grid, RequestedTargets, grid_of, ground_points};
+use crate::visibility::earth;
 use crate::work::run;
 use belvedere::Frame;
 use belvedere::apps::ask::{

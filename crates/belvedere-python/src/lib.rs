@@ -19,7 +19,6 @@ mod raster;
 mod remarks;
 mod scene;
 mod shadow;
-mod sights;
 mod simulate;
 mod sky;
 mod sun;
@@ -28,6 +27,7 @@ mod system;
 mod targets;
 mod trees;
 mod viewshed;
+mod visibility;
 mod windows;
 mod work;
 

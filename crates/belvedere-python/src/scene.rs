@@ -63,7 +63,7 @@ pub(crate) fn unproven_choice(text: &str) -> PyResult<Option<UnprovenAs>> {
 }
 
 /// The value of a library's type that has a name.
-fn named<T: Copy>(what: &'static str, name: &str, all: &[T], name_of: fn(T) -> &'static str) -> PyResult<T> {
+fn parse_name<T: Copy>(what: &'static str, name: &str, all: &[T], name_of: fn(T) -> &'static str) -> PyResult<T> {
     all.iter().copied().find(|&value| name_of(value) == name).ok_or_else(|| {
         let names: Vec<String> = all.iter().map(|&value| format!("'{}'", name_of(value))).collect();
         wrong(what, &format!("'{name}'"), &format!("use {}", names.join(", ")))
@@ -179,10 +179,10 @@ impl Choices {
         params.initial_radius = self.initial_radius.unwrap_or(params.initial_radius);
         params.max_radius = self.max_radius.unwrap_or(params.max_radius);
         if let Some(name) = self.trees.as_deref() {
-            params = params.with_trees(named("trees", name, &Trees::ALL, Trees::name)?);
+            params = params.with_trees(parse_name("trees", name, &Trees::ALL, Trees::name)?);
         }
         for name in &self.without {
-            params = params.without(named("without", name, &Rule::ALL, Rule::name)?);
+            params = params.without(parse_name("without", name, &Rule::ALL, Rule::name)?);
         }
         Ok(params)
     }

@@ -164,7 +164,7 @@ fn viewpoints(
             "blocked": counts.blocked,
             "unproven": counts.unproven,
             "tells_unproven": blockers.proof().is_some(),
-            "command": params.scene.seen(place, HowSure::default()),
+            "command": params.scene.seen_points(place, HowSure::default()),
             "answers": base64(&packed(&seen.answers, 2, |&answer| (answer as u8).min(Answer::OutsideView as u8))),
         }))
     };

@@ -67,7 +67,7 @@ impl ResultFile {
         let local = |&place: &[f64; 3]| to_local(frame.local_from_file(place), [0.0; 3]);
         let positions = results.places.iter().map(local).collect();
         let results = ResultsFile::Points { positions, columns: results.columns };
-        Ok(Self { name: named(path), results, is_shown_first: points == PointsOf::Other })
+        Ok(Self { name: name_of(path), results, is_shown_first: points == PointsOf::Other })
     }
 
     /// A raster that lies on the map.
@@ -83,7 +83,7 @@ impl ResultFile {
         let size = [raster.values.width(), raster.values.height()];
         let all = (0..size[1]).flat_map(|row| (0..size[0]).map(move |column| [column, row]));
         check_places(path, all.map(|cell| center(place, cell, frame)).map(|[x, y]| [x, y, 0.0]), bounds)?;
-        Ok(Self { name: named(path), results: ResultsFile::Cells(raster), is_shown_first: true })
+        Ok(Self { name: name_of(path), results: ResultsFile::Cells(raster), is_shown_first: true })
     }
 
     /// Shapes in absolute metres.
@@ -103,7 +103,7 @@ impl ResultFile {
             FeatureShape::Polygon(rings) => rings.concat(),
         });
         check_places(path, corners.map(|corner| std::array::from_fn(|i| corner[i] - frame.origin[i])), bounds)?;
-        Ok(Self { name: named(path), results: ResultsFile::Shapes(shapes), is_shown_first: false })
+        Ok(Self { name: name_of(path), results: ResultsFile::Shapes(shapes), is_shown_first: false })
     }
 
     /// Describes it for the menu of the page.
@@ -155,7 +155,7 @@ fn center(place: &Georeference, cell: [usize; 2], frame: &Frame) -> [f64; 2] {
     [x, y]
 }
 
-fn named(path: &Path) -> String {
+fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 

@@ -33,7 +33,7 @@ impl SceneText {
     }
 
     /// Returns the command for the view of an eye over the points of the cloud.
-    pub(crate) fn seen(&self, eye: &[f64], how_sure: HowSure) -> String {
+    pub(crate) fn seen_points(&self, eye: &[f64], how_sure: HowSure) -> String {
         let sure = sure_in_words(how_sure);
         self.command_on_ground("viewshed", &format!("--observer {}{sure} -o seen.laz", typed(eye)))
     }

@@ -27,7 +27,7 @@ pub fn summarise_parts(
     let answers = &measures[..measures.iter().position(says_how_sure).unwrap_or(measures.len())];
     let title = match question {
         Question::Shadow(about) => {
-            let suns = about.suns.over(&about.place, whereabouts, &mut aside)?;
+            let suns = about.suns.resolve(&about.place, whereabouts, &mut aside)?;
             shadow::summarise(&suns, answers, &places, context);
             about.how_sure.summarise_measures(measures, ["lit", "in shadow"], context);
             listed = &answers[..answers.len().min(MAX_LISTED_SUNS)];

@@ -1,15 +1,14 @@
 //! Irradiance: the energy that sun and sky send to places, and to the planes of roofs.
 
 use super::how_sure::{check_interval, check_interval_scene};
-use super::light::{Light, OnTargets};
 use super::scene::Whereabouts;
 use super::sections::{LinesSection, MeasuresSection, PlacesReport, RadiationSection, RoofsSection};
 use super::sun::SunPlace;
+use super::sun_and_sky::{Light, OnTargets};
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::irradiance::{
-    CLEAR_SKY_YEAR, ClearSky, IrradianceParams, PARTS, PeriodReport, RadiationSource, RoofIrradiation, RoofsReport,
-    SeasonRadiation, Surroundings, clock_contradiction, look_count, period_seasons, roof_irradiation,
-    season_irradiation,
+    ClearSky, IrradianceParams, PeriodReport, RadiationSource, RoofIrradiation, RoofsReport, SeasonRadiation,
+    Surroundings, clock_contradiction, look_count, period_seasons, roof_irradiation, season_irradiation,
 };
 use crate::roof_planes::{GROUND_CELL, RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
 use crate::rows::Obstacles;
@@ -136,18 +135,6 @@ pub struct RoofsResults {
 }
 
 impl Radiation {
-    /// Rows of weather in their usual number of parts.
-    #[must_use]
-    pub fn of_weather(file: String, weather: Weather) -> Self {
-        Self::Weather { file, weather: Some(Arc::new(weather)), parts: PARTS }
-    }
-
-    /// A clear sky in its usual year.
-    #[must_use]
-    pub fn of_clear_sky(clear_sky: ClearSky) -> Self {
-        Self::ClearSky { clear_sky, year: CLEAR_SKY_YEAR }
-    }
-
     fn source(&self) -> Result<RadiationSource<'_>> {
         match self {
             Self::Weather { weather: Some(weather), parts, .. } => {
@@ -333,7 +320,7 @@ impl Ask for IrradianceQuestion {
                 let directions: Vec<[f64; 3]> =
                     seasons.iter().flat_map(|season| season.radiation.directions()).collect();
                 let light =
-                    Light::on(places, &directions, (&self.trees, UnprovenAs::Visible), scene, context, control)?;
+                    Light::resolve(places, &directions, (&self.trees, UnprovenAs::Visible), scene, context, control)?;
                 let looks = light.targets.len() * look_count(&light.obstacles(), &seasons);
                 let energies = control.stage("testing sun and sky", looks, || {
                     season_irradiation(light.obstacles(), &light.targets, &seasons, intervals, control)

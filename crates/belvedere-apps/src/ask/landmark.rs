@@ -205,7 +205,7 @@ impl LandmarkQuestion {
     }
 
     /// The observers that were given.
-    fn given(
+    fn given_observers(
         &self,
         standing: &[Standing],
         (blockers, ground): (&Arc<MedialScene>, &Ground),
@@ -274,7 +274,7 @@ impl Ask for LandmarkQuestion {
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         let ground = &known.ground;
         let Lookers { places, eyes, inside } = match &self.observers {
-            Some(standing) => self.given(standing, (&blockers, ground), scene, context, control)?,
+            Some(standing) => self.given_observers(standing, (&blockers, ground), scene, context, control)?,
             None => self.in_cells((&blockers, ground), scene, context, control)?,
         };
         let params = self.params();

@@ -106,7 +106,7 @@ mod tests {
 
     /// Returns the contradiction for a building of 12 by 12 m and 10 m, with its base at a height above the lowest
     /// ground below it.
-    fn said(slope: f64, west: f64, rise: f64) -> Option<(&'static str, f64)> {
+    fn contradiction(slope: f64, west: f64, rise: f64) -> Option<(&'static str, f64)> {
         let base = slope * west + rise;
         let own = [[west, 15.0, base], [west + 12.0, 27.0, base + 10.0]];
         let tops = places(slope).into_iter().filter(|p| is_around(&own, [p[0], p[1]], AROUND)).collect();
@@ -119,18 +119,18 @@ mod tests {
         for slope in [0.0, 0.05, 0.15] {
             // on the ground, dug in, and on a cellar
             for rise in [0.0, 0.5, -1.0, -3.0] {
-                assert_eq!(said(slope, 15.0, rise), None, "{slope} {rise}");
+                assert_eq!(contradiction(slope, 15.0, rise), None, "{slope} {rise}");
             }
-            assert_eq!(said(slope, 15.0, 6.0).map(|found| found.0), Some("mesh-floats"), "{slope}");
-            assert_eq!(said(slope, 15.0, -8.0).map(|found| found.0), Some("mesh-sinks"), "{slope}");
+            assert_eq!(contradiction(slope, 15.0, 6.0).map(|found| found.0), Some("mesh-floats"), "{slope}");
+            assert_eq!(contradiction(slope, 15.0, -8.0).map(|found| found.0), Some("mesh-sinks"), "{slope}");
         }
-        assert_eq!(said(0.0, 15.0, 3.0), Some(("mesh-floats", 3.0)));
-        assert_eq!(said(0.0, 15.0, -12.0), Some(("mesh-sinks", 12.0)));
+        assert_eq!(contradiction(0.0, 15.0, 3.0), Some(("mesh-floats", 3.0)));
+        assert_eq!(contradiction(0.0, 15.0, -12.0), Some(("mesh-sinks", 12.0)));
     }
 
     #[test]
     fn storeys_on_a_roof_float_over_the_street_and_stand_on_the_roof() {
-        assert_eq!(said(0.0, 39.0, 9.0), None);
-        assert_eq!(said(0.0, 39.0, 14.0).map(|found| found.0), Some("mesh-floats"));
+        assert_eq!(contradiction(0.0, 39.0, 9.0), None);
+        assert_eq!(contradiction(0.0, 39.0, 14.0).map(|found| found.0), Some("mesh-floats"));
     }
 }

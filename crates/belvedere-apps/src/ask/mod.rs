@@ -25,7 +25,6 @@ mod in_parts;
 mod irradiance;
 mod isovist;
 mod landmark;
-mod light;
 mod line_of_sight;
 mod mesh_levels;
 pub mod north;
@@ -41,6 +40,7 @@ mod shadow;
 mod shared;
 mod sky_view;
 pub mod sun;
+mod sun_and_sky;
 mod sun_hours;
 mod sun_position;
 mod survey;
@@ -68,7 +68,6 @@ pub use in_parts::summarise_parts;
 pub use irradiance::{IrradianceQuestion, IrradianceResults, Radiation, Roofs, RoofsResults, remark_on_radiation};
 pub use isovist::{IsovistColumn, IsovistsQuestion, IsovistsResults};
 pub use landmark::{LandmarkQuestion, LandmarkResults, LandmarkSection, LandmarkShape};
-pub use light::OnTargets;
 pub use line_of_sight::{LinesOfSightQuestion, ProfileRows, SightColumns, SightsResults};
 pub use mesh_levels::remarks_on_model;
 pub use north::North;
@@ -83,7 +82,8 @@ pub use shadow::{ShadowQuestion, ShadowResults, UNPROVEN};
 pub use shared::SharedObject;
 pub use sky_view::{SkyParts, SkyViewQuestion};
 pub use sun::{Days, NamedSun, SunPlace, SunRange, Suns, check_sun, remark_on_sun};
-pub use sun_hours::{PreparedSun, SunHoursQuestion, rules};
+pub use sun_and_sky::OnTargets;
+pub use sun_hours::{SunHoursQuestion, rules};
 pub use sun_position::{SunPositionQuestion, SunStands};
 pub use survey::remarks_on_survey;
 pub use survey_plan::{PlannedStation, SurveyPlanQuestion, SurveyPlanResults};
@@ -327,10 +327,6 @@ fn remark_on_shift(shift: &GroundShift, frame: &Frame) -> Remark {
         ShiftEvidence::Strips { shifted, other } => {
             format!("(point source {shifted}) {lie} those of point source {other} where the two meet")
         }
-        ShiftEvidence::OtherReturns if rise < 0.0 => {
-            format!("{lie} a layer of other returns that continues the ground around")
-        }
-        ShiftEvidence::OtherReturns => format!("{lie} the lowest other returns at the same places"),
     };
     let text = format!(
         "{point_count} points of class 2 {which}, between {west}, {south} and {east}, {north}: heights of the ground \

@@ -280,7 +280,7 @@ impl Scene {
                 Some(kept) => kept,
                 None => control.stage("computing ground", 0, || GroundBySquares::new(cloud, &params, control))?,
             };
-            let (ground, report) = made.by_squares.insert(by_squares).on(grid, control)?;
+            let (ground, report) = made.by_squares.insert(by_squares).make(grid, control)?;
             return Ok(Arc::new(KnownGround { ground, report }));
         }
         let store = self.ground_store.as_deref();

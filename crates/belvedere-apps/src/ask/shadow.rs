@@ -1,9 +1,9 @@
 //! Shadow: what of one or more suns reaches places.
 
 use super::how_sure::HowSure;
-use super::light::{Light, OnTargets};
 use super::sections::{MeasuresSection, PlacesReport};
 use super::sun::{MAX_LISTED_SUNS, NamedSun, SunPlace, Suns};
+use super::sun_and_sky::{Light, OnTargets};
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::shadow::{
     Edges, LIT, ShadowSun, half_or_more, lit_probabilities, scene_shadow, sun_directions, unproven_light,
@@ -118,14 +118,14 @@ impl Ask for ShadowQuestion {
         control: &Control<'_>,
     ) -> Result<Answers<ShadowResults>> {
         self.how_sure.check_scene(scene)?;
-        let suns = self.suns.over(&self.place, &scene.whereabouts(), context)?;
+        let suns = self.suns.resolve(&self.place, &scene.whereabouts(), context)?;
         let kinds: Vec<ShadowSun> = suns.iter().map(|sun| sun.sun).collect();
         let directions: Vec<[f64; 3]> = kinds.iter().flat_map(|sun| sun_directions(sun.to_sun, self.edges)).collect();
         let unproven = self.proof(suns.len())?;
         if self.unproven.is_some_and(|unproven| unproven != UnprovenAs::Visible) {
             scene.check_proof()?;
         }
-        let light = Light::on(places, &directions, (&self.trees, unproven), scene, context, control)?;
+        let light = Light::resolve(places, &directions, (&self.trees, unproven), scene, context, control)?;
         let mut lit = control.stage("testing sun", light.steps(), || {
             scene_shadow(light.obstacles(), &light.targets, &kinds, self.edges, control)
         })?;

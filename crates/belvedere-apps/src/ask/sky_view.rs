@@ -1,9 +1,9 @@
 //! Sky view: how much of the sky places see.
 
 use super::how_sure::{check_interval, check_interval_scene};
-use super::light::{Light, OnTargets};
 use super::scene::Whereabouts;
 use super::sections::{MeasuresSection, PlacesReport};
+use super::sun_and_sky::{Light, OnTargets};
 use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
 use crate::sky_view::{SKY_DIRECTIONS, SkyDirections, scene_sky_view};
 use crate::sum_errors::Intervals;
@@ -74,7 +74,8 @@ impl Ask for SkyViewQuestion {
     ) -> Result<Answers<OnTargets>> {
         check_interval_scene(self.interval, scene, control)?;
         let sky = self.sky.directions()?;
-        let light = Light::on(places, &sky.directions, (&self.trees, UnprovenAs::Visible), scene, context, control)?;
+        let light =
+            Light::resolve(places, &sky.directions, (&self.trees, UnprovenAs::Visible), scene, context, control)?;
         let seen = control.stage("testing sky", light.steps(), || {
             scene_sky_view(light.obstacles(), &light.targets, &sky, Intervals::wanted(self.interval), control)
         })?;

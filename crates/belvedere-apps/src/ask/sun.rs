@@ -204,7 +204,7 @@ impl SunPlace {
             } if given.is_none() => unknown(format!("unknown ({} at {value})", frame.crs.describe())),
             other => Err(other),
         })?;
-        match self.beside(frame, bounds) {
+        match self.distance_from_crs(frame, bounds) {
             Some(beside) if beside.distance > CONTRADICTION_DISTANCE => {
                 let expected = "near the scene, or left out; where the reference system is wrong, give the right one with its override";
                 refused(Parameter::Location, beside.to_string(), expected)
@@ -214,7 +214,7 @@ impl SunPlace {
     }
 
     /// Returns the distance between the given location and that of the reference system.
-    fn beside(&self, frame: &Frame, bounds: &Bounds) -> Option<LocationBeside> {
+    fn distance_from_crs(&self, frame: &Frame, bounds: &Bounds) -> Option<LocationBeside> {
         let given = self.location?;
         let (by_crs, _) = Site::of_scene(frame, bounds, None, None).ok()?;
         let by_crs = [by_crs.latitude, by_crs.longitude];
@@ -239,7 +239,8 @@ impl SunPlace {
         elsewhere: Option<[f64; 2]>,
     ) -> Result<Site> {
         let found = self.site_of(whereabouts.frame, &whereabouts.bounds, elsewhere)?;
-        let beside = self.beside(whereabouts.frame, &whereabouts.bounds).filter(|beside| beside.distance > NEAR);
+        let beside =
+            self.distance_from_crs(whereabouts.frame, &whereabouts.bounds).filter(|beside| beside.distance > NEAR);
         context.add(beside.map(|beside| {
             let text = format!("the location is {beside}");
             Remark::warning("location-far-away", text).with("distance_km", rounded(beside.distance / 1000.0, 1))
@@ -403,7 +404,7 @@ impl Suns {
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for times and days that cannot be, and a scene that lies nowhere on earth.
-    pub fn over(
+    pub fn resolve(
         &self,
         place: &SunPlace,
         whereabouts: &Whereabouts<'_>,

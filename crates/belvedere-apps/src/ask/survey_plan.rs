@@ -199,7 +199,7 @@ impl SurveyPlanQuestion {
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<Vec<[[f64; 3]; 2]>> {
-        let suns = suns.over(&self.place, &scene.whereabouts(), context)?;
+        let suns = suns.resolve(&self.place, &scene.whereabouts(), context)?;
         let towards: Vec<[f64; 3]> =
             suns.iter().map(|sun| sun.sun.to_sun).filter(|to_sun| to_sun[2] > LOWEST_SUN).collect();
         let targets = places.targets(scene, context, control)?;

@@ -1,10 +1,10 @@
 //! Viewshed: what observers see of cells, of points and of far terrain, or from where a target is seen.
 
 mod limits;
-mod sights;
+mod seen_targets;
 
 pub use limits::{StandingObserver, ViewLimits};
-pub use sights::{FarSeen, SeenSection};
+pub use seen_targets::{FarSeen, SeenSection};
 
 use super::how_sure::HowSure;
 use super::north::North;
@@ -24,8 +24,8 @@ use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::report::rounded;
 use belvedere_data::{ElevationGrid, Error, Frame, Parameter, Result};
+use seen_targets::{Sights, Things};
 use serde::{Deserialize, Serialize};
-use sights::{Sights, Things};
 use std::sync::Arc;
 
 /// Maximum number of eyes below the ground that are named one by one.

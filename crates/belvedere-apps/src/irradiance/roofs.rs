@@ -38,7 +38,7 @@ impl RoofIrradiation {
     #[must_use]
     pub fn expected(&self) -> [f64; 3] {
         let error = self.class.map(|class| SumError::of(SumKind::Plane, class));
-        error.map_or([f64::NAN; 3], |error| error.around(self.mean.total(), self.mean.unshaded))
+        error.map_or([f64::NAN; 3], |error| error.interval(self.mean.total(), self.mean.unshaded))
     }
 
     /// Area of the cells of `plane` that count, m².

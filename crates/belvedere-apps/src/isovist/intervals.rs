@@ -78,7 +78,10 @@ pub fn isovist_intervals(
         Ok((sector, RayPart::new(range, &ends, |range| weight * range.powi(3) / 3.0)))
     });
     let space: Vec<(usize, RayPart)> = space.collect::<Result<_>>()?;
-    Ok(Some(IsovistIntervals { plan_area: around(seen.plan.area, &plan), volume: around(seen.volume, &space) }))
+    Ok(Some(IsovistIntervals {
+        plan_area: interval_of_sum(seen.plan.area, &plan),
+        volume: interval_of_sum(seen.volume, &space),
+    }))
 }
 
 /// Returns the ranges at which sight may end, with their probabilities, from the probabilities that places at rising
@@ -117,7 +120,7 @@ impl RayPart {
 }
 
 /// The interval around a sum, from what rays add to it, each with its sector.
-fn around(sum: f64, parts: &[(usize, RayPart)]) -> [f64; 2] {
+fn interval_of_sum(sum: f64, parts: &[(usize, RayPart)]) -> [f64; 2] {
     let mut sectors = vec![0.0; parts.iter().map(|(sector, _)| sector + 1).max().unwrap_or(0)];
     parts.iter().for_each(|(sector, part)| sectors[*sector] += part.deviation);
     let mean = sum + parts.iter().map(|(_, part)| part.more).sum::<f64>();
@@ -133,7 +136,7 @@ mod tests {
     fn errors_of_a_sector_are_added_up_and_those_of_sectors_are_independent() {
         let part = |more, deviation| RayPart { more, deviation };
         let parts = [(0, part(1.0, 2.0)), (0, part(-0.5, 1.0)), (3, part(0.5, 4.0))];
-        let [low, high] = around(40.0, &parts);
+        let [low, high] = interval_of_sum(40.0, &parts);
         assert!((low - (41.0 - 5.0 * DEVIATIONS)).abs() < 1e-12 && (high - (41.0 + 5.0 * DEVIATIONS)).abs() < 1e-12);
     }
 

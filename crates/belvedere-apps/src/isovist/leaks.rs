@@ -181,7 +181,7 @@ mod tests {
 
     /// Simulates the isovist of an eye in a room of 6 by 4 by 3 m, whose surface has no points where `is_gap` of a
     /// place on it.
-    fn seen(is_gap: impl Fn([f64; 3]) -> bool + Sync, max_range: f64) -> Isovist {
+    fn isovist_of_room(is_gap: impl Fn([f64; 3]) -> bool + Sync, max_range: f64) -> Isovist {
         let eye = [4.5, 3.0, 1.2];
         let range = |direction: [f64; 3]| {
             let to_side = |axis: usize| {
@@ -207,24 +207,24 @@ mod tests {
     fn what_leaves_between_points_is_no_part_of_a_room() {
         // the far corner of the room, 5.7 m away, is nearer than half of the greatest range
         for reach in [15.0, 100.0] {
-            let whole = seen(|_| false, reach);
+            let whole = isovist_of_room(|_| false, reach);
             assert!(is_right(&whole) && whole.unbounded == 0.0, "{} {}", whole.volume, whole.plan.area);
             // a slit of 15 cm where the ceiling meets the walls, and one at a corner
-            let slit = seen(|[x, y, z]| z > 2.85 && z < 2.999 || x < 0.1 && y < 0.1, reach);
+            let slit = isovist_of_room(|[x, y, z]| z > 2.85 && z < 2.999 || x < 0.1 && y < 0.1, reach);
             assert!(is_right(&slit) && slit.unbounded > 0.005, "{} {}", slit.volume, slit.plan.area);
             // a hole below a tripod, and one of a finger
-            let hole = seen(|[x, y, z]| z < 1e-9 && (x - 2.0).hypot(y - 1.5) < 0.8, reach);
+            let hole = isovist_of_room(|[x, y, z]| z < 1e-9 && (x - 2.0).hypot(y - 1.5) < 0.8, reach);
             assert!(is_right(&hole) && hole.unbounded > 0.001, "{}", hole.volume);
-            let pinhole = seen(|[x, y, z]| x < 1e-9 && (y - 2.0).hypot(z - 1.2) < 0.03, reach);
+            let pinhole = isovist_of_room(|[x, y, z]| x < 1e-9 && (y - 2.0).hypot(z - 1.2) < 0.03, reach);
             assert!(is_right(&pinhole), "{} {}", pinhole.volume, pinhole.plan.area);
         }
     }
 
     #[test]
     fn a_wall_that_is_missing_stays_open() {
-        let open = seen(|[x, _, _]| x < 1e-9, 100.0);
+        let open = isovist_of_room(|[x, _, _]| x < 1e-9, 100.0);
         assert!(open.volume > 10_000.0 && open.unbounded == 0.0, "{}", open.volume);
-        let no_ceiling = seen(|[_, _, z]| z > 2.99, 100.0);
+        let no_ceiling = isovist_of_room(|[_, _, z]| z > 2.99, 100.0);
         assert!(no_ceiling.volume > 100_000.0 && no_ceiling.unbounded == 0.0, "{}", no_ceiling.volume);
     }
 }

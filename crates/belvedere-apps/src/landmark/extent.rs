@@ -15,7 +15,7 @@ pub(super) struct SkyBox {
 
 impl SkyBox {
     /// The box around both, but for azimuths, which stay this one's.
-    pub(super) fn around(&self, other: &Self) -> Self {
+    pub(super) fn union(&self, other: &Self) -> Self {
         let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
         Self {
             azimuths: self.azimuths,

@@ -203,7 +203,7 @@ fn measured(
         view.solid_angle += solid_angle(corners);
         let sky = sky_box(corners, sub(piece.place.map(f64::from), eye));
         arcs.add(sky.azimuths);
-        seen = Some(seen.map_or(sky, |seen| seen.around(&sky)));
+        seen = Some(seen.map_or(sky, |seen| seen.union(&sky)));
     }
     if let Some(seen) = seen {
         let (covered, span) = arcs.measure();

@@ -122,38 +122,6 @@ impl SunSchedule {
         Ok(schedule)
     }
 
-    /// The schedule of `days` with `directions` that are there already, (D, 3) unit vectors: each sun is stood for by
-    /// the next of them.
-    ///
-    /// # Errors
-    /// [`Error::InvalidParameter`] where there is no day, for an angle that is not above 0 to 5°, and for a sun that
-    /// stands farther than `angle`, radians, from all directions.
-    pub fn among(days: &[SunDay], directions: &[[f64; 3]], angle: f64) -> Result<Self> {
-        // the checks of a schedule that shares suns are those here
-        let mut schedule = Self::new(days, Binning::Exact)?;
-        let angle = checked(angle)?;
-        schedule.directions = directions.to_vec();
-        let [mut squares, mut weights] = [0.0, 0.0];
-        for (day, light) in days.iter().zip(&mut schedule.days) {
-            for (step, light) in day.steps.iter().zip(&mut light.steps) {
-                let next = directions.iter().enumerate().map(|(i, d)| (dot(*d, step.direction), i));
-                let next = next.reduce(|best, other| if other.0 > best.0 { other } else { best });
-                let Some((number, error)) = next.map(|(_, i)| (i, between(directions[i], step.direction))) else {
-                    return Err(too_far(day.date, f64::INFINITY));
-                };
-                if error > angle {
-                    return Err(too_far(day.date, error));
-                }
-                light.direction = row(number);
-                schedule.greatest_error = schedule.greatest_error.max(error);
-                squares += (step.end - step.start) * error * error;
-                weights += step.end - step.start;
-            }
-        }
-        schedule.rms_error = if weights > 0.0 { f64::sqrt(squares / weights) } else { 0.0 };
-        Ok(schedule)
-    }
-
     /// Azimuth clockwise from grid north, 0 to 2π, and elevation of a direction, radians; NaN for one that is not
     /// there.
     #[must_use]
@@ -215,7 +183,7 @@ impl SunSchedule {
             while let Some(first) = left.first() {
                 let sum = left.iter().fold([0.0; 3], |sum, m| [0, 1, 2].map(|i| sum[i] + m.hours * m.direction[i]));
                 let mut direction = unit(sum).unwrap_or(first.direction);
-                if !left.iter().any(|member| between(member.direction, direction) <= angle) {
+                if !left.iter().any(|member| angle_between(member.direction, direction) <= angle) {
                     direction = first.direction;
                 }
                 let number = row(self.directions.len());
@@ -224,7 +192,7 @@ impl SunSchedule {
                 places.push((strip, turn, step));
                 turn += 1;
                 left.retain(|member| {
-                    let error = between(member.direction, direction);
+                    let error = angle_between(member.direction, direction);
                     if error <= angle {
                         self.days[member.day].steps[member.step].direction = number;
                         self.greatest_error = self.greatest_error.max(error);
@@ -276,16 +244,8 @@ fn checked(angle: f64) -> Result<f64> {
     Err(Error::InvalidParameter { parameter: Parameter::SunTolerance, value, expected: "above 0 to 5 degrees" })
 }
 
-fn too_far(date: Date, error: f64) -> Error {
-    Error::InvalidParameter {
-        parameter: Parameter::SunTolerance,
-        value: format!("{:.2} degrees on {date}", error.to_degrees()),
-        expected: "within the given angle: choose days of the saved matrix, or a larger angle",
-    }
-}
-
 /// Angle between unit vectors, exact for small ones, radians.
-fn between(a: [f64; 3], b: [f64; 3]) -> f64 {
+fn angle_between(a: [f64; 3], b: [f64; 3]) -> f64 {
     let apart = belvedere_data::vector::sub(a, b);
     2.0 * (0.5 * dot(apart, apart).sqrt()).min(1.0).asin()
 }

@@ -84,7 +84,7 @@ impl CrownSum {
         let mut light = LightBefore::default();
         for (runs, factor) in days {
             light.set(lines, *factor);
-            let hours = runs.iter().map(|run| f64::from(run.hours) * light.between(run.first, run.end)).sum();
+            let hours = runs.iter().map(|run| f64::from(run.hours) * light.sum_between(run.first, run.end)).sum();
             sum.total += hours;
             sum.min = sum.min.min(hours);
             sum.days += u32::from(hours >= sufficient);
@@ -115,7 +115,7 @@ impl LightBefore {
         }));
     }
 
-    fn between(&self, first: u32, end: u32) -> f64 {
+    fn sum_between(&self, first: u32, end: u32) -> f64 {
         let before = |number: u32| self.sums.get(number as usize).copied().unwrap_or_default();
         before(end) - before(first)
     }

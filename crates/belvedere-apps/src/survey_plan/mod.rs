@@ -131,7 +131,7 @@ impl OpenLine {
     }
 
     /// Returns the length of it that is proven through at most `most` levels of unseen space.
-    fn proven(&self, levels: &[u8], most: usize) -> f64 {
+    fn proven_length(&self, levels: &[u8], most: usize) -> f64 {
         let is_proven = |place: usize| usize::from(levels[place]) <= most;
         self.parts.iter().filter(|(place, _)| is_proven(*place)).map(|(_, length)| length).sum()
     }
@@ -167,7 +167,7 @@ impl OpenSpace {
 
     /// The lowest level at which a line is settled where places are proven at these levels.
     fn settled_level(&self, line: &OpenLine, levels: &[u8]) -> Option<usize> {
-        (line.level..LEVELS.len()).find(|&most| line.length - line.proven(levels, most) <= self.tolerance)
+        (line.level..LEVELS.len()).find(|&most| line.length - line.proven_length(levels, most) <= self.tolerance)
     }
 
     /// The best level of each place for several stations together.
@@ -187,14 +187,14 @@ impl OpenSpace {
                 gain.settled += 1;
                 gain.expected += CHANCES[level];
             }
-            gain.proven += line.proven(levels, LEVELS.len() - 1);
+            gain.proven += line.proven_length(levels, LEVELS.len() - 1);
         }
         gain
     }
 
     /// Returns the targets that a station covers: a target for each place and level, then one for each line and level.
     /// A target proven through little unseen space is proven at higher levels as well.
-    fn covered(&self, proven: &ProvenPlaces) -> Vec<usize> {
+    fn covered_targets(&self, proven: &ProvenPlaces) -> Vec<usize> {
         let from = |number: usize, level: usize| (level..LEVELS.len()).map(move |level| number * LEVELS.len() + level);
         let levels = self.levels(std::iter::once(proven));
         let settled = |(row, line): (usize, &OpenLine)| {
@@ -259,7 +259,7 @@ pub fn plan_survey(
         Ok((0..).zip(levels).filter(|(_, level)| *level != NOT_PROVEN).collect())
     };
     let proven: Vec<ProvenPlaces> = candidates.par_iter().map(proven_by).collect::<Result<_>>()?;
-    let covered: Vec<Vec<usize>> = proven.par_iter().map(|proven| open.covered(proven)).collect();
+    let covered: Vec<Vec<usize>> = proven.par_iter().map(|proven| open.covered_targets(proven)).collect();
     let weights = open.weights();
     let table = CoverageTable::of_lists(weights.len(), &covered)?;
     // exchanges find what a search would, and the bound says how much could be missing

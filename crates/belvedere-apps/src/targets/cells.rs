@@ -55,25 +55,13 @@ impl Targets {
     /// # Errors
     /// Those of [`MapGrid::covering`] and [`Ground::of_cloud`].
     pub fn ground_cells(cloud: &PointCloud, cell: f64) -> Result<Self> {
-        Self::cells(cloud, cell, &CellParams::default())
-    }
-
-    /// Cells of `cell` metres on top of what stands on the ground of `cloud`.
-    ///
-    /// # Errors
-    /// Those of [`Targets::ground_cells`].
-    pub fn surface_cells(cloud: &PointCloud, cell: f64) -> Result<Self> {
-        Self::cells(cloud, cell, &CellParams::default().with_level(CellLevel::Surface))
-    }
-
-    fn cells(cloud: &PointCloud, cell: f64, params: &CellParams) -> Result<Self> {
         let bounds =
             cloud.bounds().ok_or_else(|| Error::NoPoints { what: "cells need a cloud with points".to_owned() })?;
         let (low, high) = bounds.on_map();
         let [x, y, _] = cloud.frame.origin;
         let grid = MapGrid::covering(low, high, cell, [x, y])?;
         let (ground, _) = Ground::of_cloud(cloud, grid, &GroundParams::default(), &Control::none())?;
-        Ok(Self::of_cells(cloud, ground, params, &Control::none())?.0)
+        Ok(Self::of_cells(cloud, ground, &CellParams::default(), &Control::none())?.0)
     }
 
     /// The cells of `ground`, whose heights come from `cloud`, in the frame of that cloud. Ground under a roof or

@@ -3,7 +3,7 @@
 //!
 //! | targets | made by |
 //! |---|---|
-//! | cells on ground or obstacles | [`Targets::ground_cells`], [`Targets::surface_cells`], [`Targets::of_cells`] |
+//! | cells on ground or obstacles | [`Targets::ground_cells`], [`Targets::of_cells`] |
 //! | points of a cloud or of a file | [`Targets::of_points`], [`Targets::of_places`] |
 //! | faces of a mesh, in pieces | [`Targets::of_mesh`] |
 //! | places along routes | [`Targets::along_routes`] |
@@ -180,7 +180,7 @@ impl Targets {
     #[must_use]
     pub fn group_means(&self, values: &[f32]) -> Vec<f64> {
         let mean = |group: &Range<usize>| {
-            let known = || self.known(group, values);
+            let known = || self.known_values(group, values);
             known().map(|(value, weight)| value * weight).sum::<f64>() / known().map(|(_, weight)| weight).sum::<f64>()
         };
         self.groups.iter().map(mean).collect()
@@ -200,11 +200,11 @@ impl Targets {
 
     fn group_extremes(&self, values: &[f32], pick: fn(f64, f64) -> f64) -> Vec<f64> {
         let of_group =
-            |group: &Range<usize>| self.known(group, values).map(|(v, _)| v).reduce(pick).unwrap_or(f64::NAN);
+            |group: &Range<usize>| self.known_values(group, values).map(|(v, _)| v).reduce(pick).unwrap_or(f64::NAN);
         self.groups.iter().map(of_group).collect()
     }
 
-    fn known<'a>(&'a self, group: &Range<usize>, values: &'a [f32]) -> impl Iterator<Item = (f64, f64)> + 'a {
+    fn known_values<'a>(&'a self, group: &Range<usize>, values: &'a [f32]) -> impl Iterator<Item = (f64, f64)> + 'a {
         let value = move |row: usize| Some((f64::from(*values.get(row)?), self.weight(row)));
         group.clone().filter_map(value).filter(|(value, _)| value.is_finite())
     }

@@ -1,7 +1,7 @@
 //! `belvedere comfort`.
 
 use super::check_output;
-use super::shapes::{TypedAre, shapes, wrong_shape};
+use super::map_shapes::{TypedAre, shapes, wrong_shape};
 use super::sky_view::sky_parts;
 use super::windows::{FaceChoice, WindowColumn, WindowFile, coordinates};
 use crate::arguments::{ComfortArguments, CornersArgument, Global, Usage};

@@ -2,7 +2,7 @@
 
 use super::check_output;
 use super::heights::write_heights;
-use super::shapes::{NamedShape, TypedAre, shapes, wrong_shape};
+use super::map_shapes::{NamedShape, TypedAre, shapes, wrong_shape};
 use crate::arguments::{CornersArgument, EnvelopeArguments, Global, Usage};
 use crate::pipeline::{self, KeepPoints, LoadedScene, is_file, mesh_in};
 use crate::run::CommandContext;

@@ -44,7 +44,7 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     let mesh = mesh_of(path, &scene, &mut run)?;
     let views = arguments.view.views(&scene, &mut run.summary)?;
     let giving_way = GivingWay { shell: arguments.shell, unproven: arguments.unproven };
-    let (blockers, unproven) = sights::proving_blockers(&scene, profile, &giving_way, &mut run)?;
+    let (blockers, unproven) = view_obstacles::proving_blockers(&scene, profile, &giving_way, &mut run)?;
     if let Some(view) = views.first().filter(|view| view.is_central()) {
         run.summary.remarks(ask::remark_on_inside(&blockers, view.frame.eye, "eye"));
     }

@@ -1,6 +1,6 @@
 //! Windows: from files to places.
 
-use super::landmark::what::objects_of;
+use super::landmark::landmark_shape::objects_of;
 use crate::arguments::Usage;
 use crate::pipeline::mesh_in;
 use crate::run::CommandContext;

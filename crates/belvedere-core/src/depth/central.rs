@@ -212,7 +212,7 @@ impl<S: CentralSurface> SplatSurface for Central<S> {
         splat.ball
     }
 
-    fn near(splat: &CentralSplat) -> f32 {
+    fn nearest_depth(splat: &CentralSplat) -> f32 {
         splat.near
     }
 

@@ -46,7 +46,7 @@ pub(super) trait SplatSurface: Sync {
     /// Row of the ball.
     fn ball(splat: &Self::Splat) -> u32;
     /// Returns a lower bound of the depth of the ball at any pixel.
-    fn near(splat: &Self::Splat) -> f32;
+    fn nearest_depth(splat: &Self::Splat) -> f32;
     /// Returns the range of columns and of rows that pixel centres on the ball may have, in pixels.
     fn extent(&self, splat: &Self::Splat) -> [[f32; 2]; 2];
     /// The tile whose upper left pixel stands at a column and a row.

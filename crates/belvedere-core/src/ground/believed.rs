@@ -106,7 +106,7 @@ fn cell_of(points: &[[f32; 3]]) -> f32 {
 }
 
 /// Row and column of a point in cells of a side, metres.
-pub(super) fn place(point: &[f32; 3], cell: f32) -> [i32; 2] {
+fn place(point: &[f32; 3], cell: f32) -> [i32; 2] {
     #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
     let at = |v: f32| (v / cell).floor() as i32;
     [at(point[1]), at(point[0])]

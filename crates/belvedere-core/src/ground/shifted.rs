@@ -1,13 +1,11 @@
-//! Detects areas of class-2 points that are offset by 0.7 m or more from other evidence: their own levels, the strips
-//! of the survey, and other returns.
+//! Detects areas of class-2 points that are offset by 0.7 m or more from other points of class 2: at the same places, or
+//! in the next strip.
 //!
 //! A step alone is no evidence: quays, terraces and pits have one. No terrain lies at two heights in the same places
-//! over an area, or steps where one strip ends and the next begins. Neither does it lie above most other returns, or
-//! below a layer of them that continues the ground on all sides. Areas are squares of a few cells, so that a wall,
+//! over an area, or steps where one strip ends and the next begins. Areas are squares of a few cells, so that a wall,
 //! which has two heights along a line, is none.
 
 use super::believed::{Placed, placed};
-use super::{GROUND, WITHHELD};
 use belvedere_data::control::Control;
 use belvedere_data::{PointCloud, Result};
 use rayon::prelude::*;
@@ -16,13 +14,10 @@ use std::collections::BTreeMap;
 
 /// Minimum offset of the ground, metres: more than kerbs, stairs and steep slopes do within a cell.
 const MIN_SHIFT: f32 = 0.7;
-/// Minimum gap between two levels of a cell, and minimum depth below the ground of a return that contradicts it,
-/// metres: beside noise and slopes.
+/// Minimum gap between two levels of a cell, metres: beside noise and slopes.
 const MIN_GAP: f32 = 0.5;
 /// Maximum difference between the quartiles of a shift, as a share of it: a strip is off by the same everywhere.
 const MAX_SPREAD: f32 = 0.4;
-/// The same of a layer of other returns: crowns and crops are rougher.
-const MAX_LAYER_SPREAD: f32 = 0.3;
 /// Minimum and maximum side of cells, metres.
 const CELLS: [f32; 2] = [1.0, 8.0];
 /// Ground points that a cell should have.
@@ -40,20 +35,8 @@ const MIN_TWO_LEVELS: f32 = 0.6;
 const MAX_LEAN: f32 = 0.25;
 /// Search radius for the ground around squares with two levels, squares.
 const AROUND: i32 = 2;
-/// Minimum share of the cells of a square with a return below its ground.
-const MIN_BELOW: f32 = 0.5;
-/// Search radius for the ground around, and radius within which it counts at any height, squares.
-const SEARCH: [i32; 2] = [8, 6];
-/// Directions that need ground, of eight, and the least share of them whose ground continues a layer of other returns.
-const MIN_AROUND: usize = 5;
-const MIN_CONTINUED: f32 = 0.75;
-/// Maximum height difference between this ground and the layer, metres.
-const MAX_FROM_LAYER: f32 = 0.35;
 /// Places where two strips must meet.
 const MIN_MEETINGS: usize = 15;
-/// Classes that are no evidence: noise, and water and what lies in it, which is below the ground.
-const NO_EVIDENCE: [u8; 7] = [7, 9, 18, 40, 41, 42, 45];
-
 /// Ground points that contradict other points.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GroundShift {
@@ -81,8 +64,6 @@ pub enum ShiftEvidence {
         /// Source of the others.
         other: u16,
     },
-    /// Returns of other classes at the same places.
-    OtherReturns,
 }
 
 /// A cell with ground points.
@@ -97,7 +78,6 @@ struct Cell {
 /// Some cells together.
 #[derive(Clone, Debug, Default)]
 struct Square {
-    point_count: usize,
     /// Lowest ground point of each cell.
     heights: Vec<f32>,
     /// Cells with points enough for two levels.
@@ -107,8 +87,6 @@ struct Square {
     steps: Vec<f32>,
     level_counts: [usize; 2],
     lean: [f32; 2],
-    /// Height of the lowest other return above the lowest ground point, of cells with both.
-    gaps: Vec<f32>,
 }
 
 impl Square {
@@ -136,17 +114,10 @@ pub(super) fn shift_of(
     let (side, placed) = placed_in_cells(points);
     control.check()?;
     let cells = cells_of(&placed);
-    let lowest = lowest_others(cloud, &cells, side);
-    control.check()?;
-    let squares = squares_of(&cells, &placed, points, &lowest);
+    let squares = squares_of(&cells, &placed, points);
     let strips = cloud.attributes.point_source_id.as_deref().unwrap_or_default();
     let strip = |point: &Placed| rows.get(point.number as usize).and_then(|&row| strips.get(row as usize).copied());
-    let found = [
-        two_levels(&squares, side),
-        against_others(&squares, side, above_others),
-        against_others(&squares, side, below_others),
-        strips_apart(&cells, &placed, side, &strip),
-    ];
+    let found = [two_levels(&squares, side), strips_apart(&cells, &placed, side, &strip)];
     Ok(found.into_iter().flatten().max_by_key(|shift| shift.point_count))
 }
 
@@ -187,38 +158,17 @@ fn find(cells: &[Cell], at: [i32; 2]) -> Option<usize> {
     cells.binary_search_by_key(&at, |cell| cell.at).ok()
 }
 
-/// For each cell the lowest height of the points that are no ground; infinite where there are none.
-fn lowest_others(cloud: &PointCloud, cells: &[Cell], side: f32) -> Vec<f32> {
-    let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
-    let flags = cloud.attributes.flags.as_deref().unwrap_or_default();
-    let is_evidence = |row: usize| {
-        classes.get(row).is_some_and(|class| *class != GROUND && !NO_EVIDENCE.contains(class))
-            && flags.get(row).is_none_or(|flags| flags & WITHHELD == 0)
-    };
-    let of = |(row, point): (usize, &[f32; 3])| {
-        let cell = is_evidence(row).then(|| find(cells, super::believed::place(point, side))).flatten()?;
-        Some((cell, point[2]))
-    };
-    let found: Vec<(usize, f32)> = cloud.positions.par_iter().enumerate().filter_map(of).collect();
-    let mut lowest = vec![f32::INFINITY; cells.len()];
-    for (cell, height) in found {
-        lowest[cell] = lowest[cell].min(height);
-    }
-    lowest
-}
-
-fn squares_of(cells: &[Cell], placed: &[Placed], points: &[[f32; 3]], lowest: &[f32]) -> Squares {
+fn squares_of(cells: &[Cell], placed: &[Placed], points: &[[f32; 3]]) -> Squares {
     let mut squares = Squares::new();
     let middle = |level: &[Placed]| {
         let sum =
             |axis: usize| level.iter().filter_map(|own| Some(points.get(own.number as usize)?[axis])).sum::<f32>();
         [sum(0), sum(1)].map(|sum| sum / level.len() as f32)
     };
-    for (cell, other) in cells.iter().zip(lowest) {
+    for cell in cells {
         let square = squares.entry(cell.at.map(|v| v.div_euclid(SQUARE))).or_default();
         let heights: Vec<f32> = cell.points(placed).iter().map(|point| point.height).collect();
         let Some(ground) = heights.first() else { continue };
-        square.point_count += heights.len();
         square.heights.push(*ground);
         if heights.len() >= POINTS_OF_CELL {
             square.measured += 1;
@@ -230,9 +180,6 @@ fn squares_of(cells: &[Cell], placed: &[Placed], points: &[[f32; 3]], lowest: &[
                 let (from, to) = (middle(lower), middle(upper));
                 (0..2).for_each(|axis| square.lean[axis] += to[axis] - from[axis]);
             }
-        }
-        if other.is_finite() {
-            square.gaps.push(other - ground);
         }
     }
     squares
@@ -257,10 +204,10 @@ fn quartiles(values: &[f32]) -> Option<[f32; 3]> {
     Some([last / 4, last / 2, last - last / 4].map(|at| values[at]))
 }
 
-/// The median of values that are much the same, and far from 0.
-fn common(values: &[f32], max_spread: f32) -> Option<f32> {
+/// Returns the median of values that are nearly equal, and far from 0.
+fn common(values: &[f32]) -> Option<f32> {
     let [low, median, high] = quartiles(values)?;
-    (median.abs() >= MIN_SHIFT && high - low <= max_spread * median.abs()).then_some(median)
+    (median.abs() >= MIN_SHIFT && high - low <= MAX_SPREAD * median.abs()).then_some(median)
 }
 
 /// Ground at two heights in the same places.
@@ -273,7 +220,7 @@ fn two_levels(squares: &Squares, side: f32) -> Option<GroundShift> {
         if !is_measured || square.lean[0].hypot(square.lean[1]) > MAX_LEAN * side * count {
             continue;
         }
-        if let Some(step) = common(&square.steps, MAX_SPREAD) {
+        if let Some(step) = common(&square.steps) {
             found.insert(*at, step);
             (0..2).for_each(|level| level_counts[level] += square.level_counts[level]);
         }
@@ -283,10 +230,11 @@ fn two_levels(squares: &Squares, side: f32) -> Option<GroundShift> {
         Some(level) if level > 2.0 / 3.0 => 0,
         _ => usize::from(level_counts[1] < level_counts[0]),
     };
-    let mut of_area = FoundSquares::default();
-    found.into_iter().for_each(|(at, step)| of_area.add(at, step));
-    let sign = if off == 1 { 1.0 } else { -1.0 };
-    of_area.shift(side, level_counts[off], sign, ShiftEvidence::SecondLevel)
+    let corners = found.keys().fold(None, |corners, at| Some(widened(corners, *at)));
+    let [low, high] = on_map(corners.filter(|_| found.len() >= MIN_SQUARES)?, side * SQUARE as f32);
+    let [_, step, _] = quartiles(&found.into_values().collect::<Vec<f32>>())?;
+    let rise = if off == 1 { step } else { -step };
+    Some(GroundShift { point_count: level_counts[off], rise, low, high, against: ShiftEvidence::SecondLevel })
 }
 
 /// Returns the mean level of the ground around squares with two levels, in units of their height difference: 0 for the
@@ -308,83 +256,6 @@ fn level_around(squares: &Squares, steps: &BTreeMap<[i32; 2], f32>) -> Option<f3
         }
     }
     (count > 0.0).then(|| sum / count)
-}
-
-/// Ground that lies above, or below, what other returns show.
-fn against_others(
-    squares: &Squares,
-    side: f32,
-    rises: impl Fn(&Squares) -> Vec<([i32; 2], f32)>,
-) -> Option<GroundShift> {
-    let mut found = FoundSquares::default();
-    let mut point_count = 0;
-    for (at, rise) in rises(squares) {
-        found.add(at, rise);
-        point_count += squares.get(&at).map_or(0, |square| square.point_count);
-    }
-    found.shift(side, point_count, 1.0, ShiftEvidence::OtherReturns)
-}
-
-/// Squares whose ground lies above other returns, and how far.
-fn above_others(squares: &Squares) -> Vec<([i32; 2], f32)> {
-    let rise = |square: &Square| {
-        let below: Vec<f32> = square.gaps.iter().copied().filter(|gap| *gap < -MIN_GAP).collect();
-        let is_above = square.gaps.len() >= MIN_CELLS && below.len() as f32 >= MIN_BELOW * square.gaps.len() as f32;
-        let [_, median, _] = quartiles(&below).filter(|_| is_above)?;
-        (-median >= MIN_SHIFT).then_some(-median)
-    };
-    squares.iter().filter_map(|(at, square)| Some((*at, rise(square)?))).collect()
-}
-
-/// Squares whose ground lies below a layer of other returns that continues the ground around, and how far, as numbers
-/// below 0.
-fn below_others(squares: &Squares) -> Vec<([i32; 2], f32)> {
-    let layer = |square: &Square| {
-        let gap = common(&square.gaps, MAX_LAYER_SPREAD).filter(|gap| *gap > 0.0);
-        gap.filter(|_| square.gaps.len() >= MIN_CELLS)
-    };
-    let layers: BTreeMap<[i32; 2], f32> =
-        squares.iter().filter_map(|(at, square)| Some((*at, layer(square)?))).collect();
-    let height = |at: [i32; 2]| squares.get(&at).and_then(Square::height);
-    let is_continued = |at: [i32; 2], gap: f32| {
-        let Some(own) = height(at) else { return false };
-        let directions = (-1..=1).flat_map(|down| (-1..=1).map(move |right| [down, right]));
-        let around: Vec<f32> = directions
-            .filter(|direction| *direction != [0, 0])
-            .filter_map(|direction| {
-                (1..=SEARCH[0]).find_map(|step| {
-                    let beside = [0, 1].map(|axis| at[axis].saturating_add(step * direction[axis]));
-                    let rise = height(beside).filter(|_| !layers.contains_key(&beside))? - own;
-                    (rise.abs() >= 0.6 * gap || step >= SEARCH[1]).then_some(rise)
-                })
-            })
-            .collect();
-        let room = MAX_FROM_LAYER.max(MAX_LAYER_SPREAD * gap);
-        let continued = around.iter().filter(|rise| (*rise - gap).abs() <= room).count();
-        around.len() >= MIN_AROUND && continued as f32 >= MIN_CONTINUED * around.len() as f32
-    };
-    layers.iter().filter(|(at, gap)| is_continued(**at, **gap)).map(|(at, gap)| (*at, -gap)).collect()
-}
-
-/// Squares that say the same.
-#[derive(Default)]
-struct FoundSquares {
-    rises: Vec<f32>,
-    corners: Option<[[i32; 2]; 2]>,
-}
-
-impl FoundSquares {
-    fn add(&mut self, at: [i32; 2], rise: f32) {
-        self.rises.push(rise);
-        self.corners = Some(widened(self.corners, at));
-    }
-
-    fn shift(self, side: f32, point_count: usize, sign: f32, against: ShiftEvidence) -> Option<GroundShift> {
-        let [low, high] = self.corners.filter(|_| self.rises.len() >= MIN_SQUARES)?;
-        let [_, rise, _] = quartiles(&self.rises)?;
-        let [low, high] = on_map([low, high], side * SQUARE as f32);
-        Some(GroundShift { point_count, rise: sign * rise, low, high, against })
-    }
 }
 
 /// The rows and columns of a box, widened by one more place.
@@ -446,7 +317,7 @@ fn strips_apart(
     placed.iter().filter_map(strip).for_each(|strip| *counts.entry(strip).or_default() += 1);
     let count = |strip: u16| counts.get(&strip).copied().unwrap_or(0);
     let shift = |([first, second], meeting): ([u16; 2], Meeting)| {
-        let rise = common(&meeting.rises, MAX_SPREAD).filter(|_| meeting.rises.len() >= MIN_MEETINGS)?;
+        let rise = common(&meeting.rises).filter(|_| meeting.rises.len() >= MIN_MEETINGS)?;
         let (shifted, other, rise) =
             if count(first) < count(second) { (first, second, -rise) } else { (second, first, rise) };
         let [low, high] = on_map(meeting.corners?, side);
@@ -544,31 +415,6 @@ mod tests {
             assert_eq!(shift.against, ShiftEvidence::Strips { shifted: 7, other: 4 });
             assert!((shift.rise - rise).abs() < 0.1, "{shift:?}");
             assert!(shift.low[0] > 20.0 && shift.high[0] < 30.0, "{shift:?}");
-        }
-    }
-
-    /// Ground of two strips with low plants on a third of it, none higher than 0.4 m, and a house.
-    fn with_plants() -> Vec<Return> {
-        let plant = |(place, class, strip): Return| {
-            let is_plant = (13.0 * place[0] + 7.0 * place[1]).fract() < 0.3;
-            let height = if is_plant { 0.4 * (11.0 * place[1]).fract() } else { 0.0 };
-            ([place[0], place[1], place[2] + height], if is_plant { 1 } else { class }, strip)
-        };
-        let mut returns: Vec<Return> = strips(8.0, |x, _| 0.02 * x).into_iter().map(plant).collect();
-        let is_house = |place: [f32; 3]| (50.0..58.0).contains(&place[0]) && (5.0..15.0).contains(&place[1]);
-        returns.iter_mut().filter(|one| is_house(one.0)).for_each(|one| (one.0[2], one.1) = (7.0, 6));
-        returns
-    }
-
-    #[test]
-    fn an_area_that_other_returns_contradict_is_found() {
-        assert_eq!(found(&with_plants()), None);
-        for rise in [-3.0_f32, -1.5, 1.5, 3.0] {
-            let shift = found(&shifted(with_plants(), rise, |one| is_in_area(one.0))).unwrap();
-            assert_eq!(shift.against, ShiftEvidence::OtherReturns, "{rise}");
-            // plants stand on the ground
-            assert!((shift.rise - rise).abs() < 0.4, "{rise}: {shift:?}");
-            assert!(shift.low.iter().all(|low| *low > 10.0) && shift.high.iter().all(|high| *high < 50.0), "{shift:?}");
         }
     }
 

@@ -21,7 +21,7 @@ pub(super) struct Chain {
 impl Chain {
     /// The fills from `top`, local metres, which the first touches from below, down to the height `bottom`, which no
     /// centre is at or below.
-    pub(super) fn below(self, top: [f32; 3], bottom: f32) -> impl Iterator<Item = Fill> {
+    pub(super) fn fills_below(self, top: [f32; 3], bottom: f32) -> impl Iterator<Item = Fill> {
         let Self { row, radius, spacing } = self;
         let centers = (0_u8..).map(move |step| [top[0], top[1], top[2] - radius - spacing * f32::from(step)]);
         let fill = move |center| Fill {

@@ -119,7 +119,7 @@ impl<'a> DataVoids<'a> {
                 let top = balls.centers[row][2] + balls.radii[row];
                 let is_below =
                     |middle| matches!(floors.get(&middle), Some(Some(floor)) if floor + self.params.min_height < top);
-                if about(cell).any(is_below) {
+                if cell_and_neighbors(cell).any(is_below) {
                     radii[row] = radii[row].min(touching(positions[row], normals[row], cell));
                 }
             }
@@ -217,7 +217,7 @@ fn area((row, column): Cell) -> Cell {
 }
 
 /// A cell and those beside it.
-fn about((row, column): Cell) -> impl Iterator<Item = Cell> {
+fn cell_and_neighbors((row, column): Cell) -> impl Iterator<Item = Cell> {
     (row - 1..=row + 1).flat_map(move |row| (column - 1..=column + 1).map(move |column| (row, column)))
 }
 
@@ -256,7 +256,7 @@ mod tests {
     }
 
     /// Returns the remaining radius of a ball of [`RADIUS`] at point `row`, for scanners towards `way`.
-    fn cut(oriented: &OrientedCloud, row: usize, way: [f32; 3]) -> f32 {
+    fn remaining_radius(oriented: &OrientedCloud, row: usize, way: [f32; 3]) -> f32 {
         let positions = oriented.positions();
         let scanner: Vec<[f32; 3]> =
             positions.iter().map(|p| std::array::from_fn(|axis| p[axis] + 400.0 * way[axis])).collect();
@@ -279,26 +279,26 @@ mod tests {
     #[test]
     fn a_ball_reaches_no_farther_over_water_than_the_middle_of_a_cell() {
         // the middles of the nearest cells lie 0.5 m east and 0.5 m to both sides: |d|² / 2 d·m with d = (0.5, 0.5)
-        assert!((cut(&survey(canal), 0, WEST) - 0.5).abs() < 1e-6);
+        assert!((remaining_radius(&survey(canal), 0, WEST) - 0.5).abs() < 1e-6);
     }
 
     #[test]
     fn what_lies_in_a_shadow_is_no_void() {
         let towered = |x: f32, y: f32| if (-4.0..-1.0).contains(&x) { Some(30.0) } else { canal(x, y) };
-        assert_eq!(cut(&survey(towered), 0, WEST), RADIUS);
+        assert_eq!(remaining_radius(&survey(towered), 0, WEST), RADIUS);
         // a scanner on the other side looks below it
-        assert!(cut(&survey(towered), 0, [0.5, 0.0, 1.0]) < 1.0);
+        assert!(remaining_radius(&survey(towered), 0, [0.5, 0.0, 1.0]) < 1.0);
     }
 
     #[test]
     fn assumed_pulses_tell_of_no_void() {
-        assert_eq!(cut(&survey(canal), 0, STRAIGHT_UP), RADIUS);
+        assert_eq!(remaining_radius(&survey(canal), 0, STRAIGHT_UP), RADIUS);
     }
 
     #[test]
     fn a_few_empty_cells_are_no_void() {
         let puddle = |x: f32, y: f32| (!(0.0..2.0).contains(&x) || y.abs() > 3.0).then_some(0.0);
-        assert_eq!(cut(&survey(puddle), 0, WEST), RADIUS);
+        assert_eq!(remaining_radius(&survey(puddle), 0, WEST), RADIUS);
     }
 
     #[test]
@@ -306,14 +306,14 @@ mod tests {
         // one point of each square metre
         let is_kept = |v: f32| (v + 9.9).rem_euclid(1.0) < 0.1;
         let sparse = |x: f32, y: f32| canal(x, y).filter(|_| is_kept(x) && is_kept(y));
-        assert_eq!(cut(&survey(sparse), 0, WEST), RADIUS);
+        assert_eq!(remaining_radius(&survey(sparse), 0, WEST), RADIUS);
     }
 
     #[test]
     fn balls_below_the_lowest_point_around_a_void_stay() {
         let oriented = survey(canal);
         let quay = (1..oriented.len()).find(|&row| (-0.5..0.0).contains(&oriented.positions()[row][0])).unwrap();
-        assert_eq!(cut(&oriented, quay, WEST), RADIUS);
+        assert_eq!(remaining_radius(&oriented, quay, WEST), RADIUS);
     }
 
     #[test]

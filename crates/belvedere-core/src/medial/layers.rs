@@ -138,7 +138,7 @@ impl Layers {
     }
 
     /// Calls `visit` with the solid voxels of this and the eight cells about that lie at about the height of `voxel`.
-    pub(super) fn around(&self, voxel: usize, mut visit: impl FnMut(usize)) {
+    pub(super) fn visit_around(&self, voxel: usize, mut visit: impl FnMut(usize)) {
         square(self.cell_of(voxel)).for_each(|cell| self.same_height(cell, voxel).for_each(&mut visit));
     }
 

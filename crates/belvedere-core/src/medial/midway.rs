@@ -21,15 +21,18 @@ pub(super) fn one_in_each_cell(positions: &[[f32; 3]], mut rows: Vec<usize>, sid
 /// neighbours. Each pair is returned for one of its points only, whatever their order.
 pub(super) fn neighbors_after(p: [f32; 3], near: &[[f32; 3]], least: f32, share: f32) -> impl Iterator<Item = usize> {
     near.iter().enumerate().filter_map(move |(number, &q)| {
-        let (middle, gap) = ([(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0, 0.0], apart(p, q));
-        let has_third =
-            || near.iter().enumerate().any(|(third, &r)| third != number && apart(r, middle) < share * gap / 2.0);
+        let (middle, gap) = ([(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0, 0.0], distance_in_plan(p, q));
+        let has_third = || {
+            near.iter()
+                .enumerate()
+                .any(|(third, &r)| third != number && distance_in_plan(r, middle) < share * gap / 2.0)
+        };
         (gap > least && by_axes(p, q).is_lt() && !has_third()).then_some(number)
     })
 }
 
 /// Distance of two places, seen from above.
-pub(super) fn apart(a: [f32; 3], b: [f32; 3]) -> f32 {
+pub(super) fn distance_in_plan(a: [f32; 3], b: [f32; 3]) -> f32 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 

@@ -60,7 +60,7 @@ impl MarkingRule for ReliefParams {
         let points = self.points(survey, balls, control)?;
         let chain = |&(row, level): &(usize, f32)| {
             let chain = Chain { row, radius: self.radius_spacings * survey.spacing[row], spacing: self.spacing };
-            chain.below(survey.positions()[row], level)
+            chain.fills_below(survey.positions()[row], level)
         };
         let fills = points.iter().flat_map(chain).collect();
         Ok(Marks { fills, counts: vec![("points_on_thin_relief", points.len())], ..Marks::default() })

@@ -30,7 +30,7 @@ impl<'a> RoofTops<'a> {
     /// `up`. A ball is cut where it rises above every point over its whole width. The top of the building is known only
     /// if the highest of these points lies on a roof; other balls are unchanged.
     pub(super) fn radius(&self, (center, radius): ([f32; 3], f32), z: f32, up: f32, params: &RoofEdgeParams) -> f32 {
-        let top = if up < 1.0 { self.over(center, radius, params.penetration) } else { None };
+        let top = if up < 1.0 { self.roof_height(center, radius, params.penetration) } else { None };
         let Some(top) = top else { return radius };
         // the ball of radius r at this point ends r (1 - up) above it
         let left = (top + params.penetration - z) / (1.0 - up);
@@ -39,7 +39,7 @@ impl<'a> RoofTops<'a> {
 
     /// Returns the height of the roof over a ball: that of the highest point over its whole width. `None` if the ball
     /// does not rise above that, or if that point is more than `tolerance` metres above every roof.
-    fn over(&self, center: [f32; 3], radius: f32, tolerance: f32) -> Option<f32> {
+    fn roof_height(&self, center: [f32; 3], radius: f32, tolerance: f32) -> Option<f32> {
         let is_below = |highest: f32| highest >= center[2] + radius - tolerance;
         // most balls lie below the points about their middle
         if self.near.get(cell(center)).is_some_and(is_below) {

@@ -7,7 +7,7 @@ use super::cells::cell;
 use super::chains::Chain;
 use super::marking_rule::{MarkingRule, Phase};
 use super::marks::{Cap, Fill, Marks};
-use super::midway::{apart, neighbors_after, one_in_each_cell};
+use super::midway::{distance_in_plan, neighbors_after, one_in_each_cell};
 use super::survey::Survey;
 use crate::neighbors::{NeighborIndex, Tangent};
 use belvedere_data::Result;
@@ -159,15 +159,15 @@ impl SlenderParams {
     fn fills_at(&self, place: &Place, near: &[Place]) -> Vec<Fill> {
         let p = place.position;
         let beside: Vec<_> = near.iter().map(|other| other.position).collect();
-        let close_by = beside.iter().filter(|q| apart(p, **q) < TOP_REACH_M);
+        let close_by = beside.iter().filter(|q| distance_in_plan(p, **q) < TOP_REACH_M);
         let top = close_by.fold(p[2], |top, q| top.max(q[2]));
         let ground = p[2] - place.height;
         let chain = Chain { row: place.row, radius: self.standing_spacings * place.spacing, spacing: self.spacing };
-        let mut fills: Vec<_> = chain.below([p[0], p[1], top], ground).collect();
+        let mut fills: Vec<_> = chain.fills_below([p[0], p[1], top], ground).collect();
         for number in neighbors_after(p, &beside, self.spacing, 1.0) {
             let q = beside[number];
             let middle = [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0, p[2].max(q[2])];
-            fills.extend(chain.below(middle, ground.min(q[2] - near[number].height)));
+            fills.extend(chain.fills_below(middle, ground.min(q[2] - near[number].height)));
         }
         fills
     }

@@ -322,7 +322,7 @@ fn surfaces_in_blocks(
         let count = surface.iter().filter(|&&voxel| proven[voxel]).count();
         if count as f64 >= f64::from(min_proof) * (surface.len() as f64).sqrt() {
             for &voxel in &surface {
-                layers.around(voxel, |other| thin[other] |= block(other) == block(first));
+                layers.visit_around(voxel, |other| thin[other] |= block(other) == block(first));
             }
         }
     }

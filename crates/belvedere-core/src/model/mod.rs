@@ -310,11 +310,6 @@ impl SceneModel {
         self.normals.as_deref()
     }
 
-    /// The normals of [`SceneModel::normals`], taken out of the model.
-    pub fn take_normals(&mut self) -> Option<Vec<[f32; 3]>> {
-        self.normals.take()
-    }
-
     /// Returns true if pulses cut the balls.
     #[must_use]
     pub fn is_carved(&self) -> bool {

@@ -198,7 +198,7 @@ impl ReferenceMesh {
 
     /// Calls `visit` for every face within `reach` of `position`, with its distance.
     fn each_within<'a>(&'a self, position: [f64; 3], reach: f64, mut visit: impl FnMut(&'a MeshFace, f64)) {
-        self.index.near(position.map(|v| v - reach), position.map(|v| v + reach), |row| {
+        self.index.visit_near(position.map(|v| v - reach), position.map(|v| v + reach), |row| {
             let Some(face) = self.faces.get(row) else { return };
             let distance = face.distance_to(position);
             if distance <= reach {

@@ -38,7 +38,7 @@ impl HighestPointGrid {
     pub(super) fn downhill(&self, position: [f32; 3]) -> Option<[f64; 2]> {
         let (x, y) = (f64::from(position[0]), f64::from(position[1]));
         let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-        for (_, z) in self.around(x, y) {
+        for (_, z) in self.cells_around(x, y) {
             low = low.min(z);
             high = high.max(z);
         }
@@ -48,7 +48,7 @@ impl HighestPointGrid {
         let middle = low + (high - low) / 2.0;
         // sum of x, sum of y and number of cells: low half, high half
         let mut halves = [[0.0; 3]; 2];
-        for ((row, column), z) in self.around(x, y) {
+        for ((row, column), z) in self.cells_around(x, y) {
             let half = &mut halves[usize::from(z > middle)];
             half[0] += (column as f64 + 0.5) * CELL_M - x;
             half[1] += (row as f64 + 0.5) * CELL_M - y;
@@ -60,7 +60,7 @@ impl HighestPointGrid {
         (length > 1e-6 && length.is_finite()).then(|| [dx / length, dy / length])
     }
 
-    fn around(&self, x: f64, y: f64) -> impl Iterator<Item = ((i32, i32), f32)> + '_ {
+    fn cells_around(&self, x: f64, y: f64) -> impl Iterator<Item = ((i32, i32), f32)> + '_ {
         let (left, right) = (cell(x - REACH_M), cell(x + REACH_M));
         (cell(y - REACH_M)..=cell(y + REACH_M)).flat_map(move |row| {
             let start = self.cells.partition_point(|entry| entry.0 < (row, left));

@@ -353,7 +353,7 @@ impl Block {
     }
 
     /// Gives out planes, edges, ridges and walls as far as they lie in the block.
-    pub(super) fn give_out(
+    pub(super) fn append_to(
         &self,
         roofs: &Roofs,
         ridges: &[RidgeLine],

@@ -226,7 +226,7 @@ fn samples(block: &Block, roofs: &Roofs, ridges: &[RidgeLine], plane: usize) -> 
         if on as usize == plane {
             return;
         }
-        let above = roof.plane.above(found.p);
+        let above = roof.plane.distance_above(found.p);
         let at = [found.p[0], found.p[1]];
         if above > 0.0 {
             if found.may_be_building() && above < ABOVE && above > 3.0 * roofs.noise && near.holds(at) {
@@ -293,7 +293,7 @@ fn lines(
 ) -> Vec<EdgeLine> {
     let mut seeds: Vec<(f64, usize, PlanLine)> = Vec::new();
     for row in 0..middles.len() {
-        if let Some((line, rms)) = about(middles, row, AROUND_SPACINGS * spacing) {
+        if let Some((line, rms)) = line_through_middles(middles, row, AROUND_SPACINGS * spacing) {
             seeds.push((rms, row, line));
         }
     }
@@ -391,7 +391,7 @@ fn own_share(outline: &Outline, line: &PlanLine, reach: f64) -> f64 {
 }
 
 /// The line through the middles about one, with the roof to its left.
-fn about(middles: &[Middle], row: usize, reach: f64) -> Option<(PlanLine, f64)> {
+fn line_through_middles(middles: &[Middle], row: usize, reach: f64) -> Option<(PlanLine, f64)> {
     let Middle { p, out, .. } = middles[row];
     let first = middles.partition_point(|middle| middle.p[0] < p[0] - reach);
     let near: Vec<[f64; 2]> = middles[first..]

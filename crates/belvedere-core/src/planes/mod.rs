@@ -263,17 +263,17 @@ fn of_block(block: &Block, params: &PlaneParams, control: &Control<'_>) -> Resul
     let walls = walls::find(block, &roofs, &outlines, &params.walls);
     let leaves = patches::roofs(block, &roofs, &ridges, &outlines);
     let mut found = BuildingSurfaces::default();
-    patches::give_out(block, &roofs, &leaves, &walls, &params.walls, &mut found);
-    sheets::give_out(block, &roofs, &outlines, &walls, &mut found);
+    patches::append_to(block, &roofs, &leaves, &walls, &params.walls, &mut found);
+    sheets::append_to(block, &roofs, &outlines, &walls, &mut found);
     found.regions = regions::of_block(block, &roofs, &outlines, &walls, &leaves);
-    block.give_out(&roofs, &ridges, &outlines, &walls, &mut found);
+    block.append_to(&roofs, &ridges, &outlines, &walls, &mut found);
     // canopies and decks that have the class of buildings, or none, are closed as roofs already
     let mut are_slabs = slabs::find(block, &roofs, &params.slabs);
     for (plane, is_slab) in are_slabs.iter_mut().enumerate().filter(|(_, is_slab)| **is_slab) {
         let own: Vec<&walls::WallLine> = walls.iter().filter(|wall| wall.plane == plane).collect();
         *is_slab = own.is_empty() || !sheets::is_walled(&outlines[plane], &own);
     }
-    slabs::give_out(block, (&roofs, &are_slabs), &leaves, Sheets::Underside, &params.slabs, &mut found);
+    slabs::append_to(block, (&roofs, &are_slabs), &leaves, Sheets::Underside, &params.slabs, &mut found);
     let others = roof_planes::find(block, Candidates::Slabs, params, control)?;
     let are_slabs = slabs::find(block, &others, &params.slabs);
     let outline_of = |plane: usize| match are_slabs[plane] {
@@ -282,6 +282,6 @@ fn of_block(block: &Block, params: &PlaneParams, control: &Control<'_>) -> Resul
     };
     let outlines: Vec<edges::Outline> = (0..others.planes.len()).map(outline_of).collect();
     let leaves = patches::roofs(block, &others, &[], &outlines);
-    slabs::give_out(block, (&others, &are_slabs), &leaves, Sheets::Both, &params.slabs, &mut found);
+    slabs::append_to(block, (&others, &are_slabs), &leaves, Sheets::Both, &params.slabs, &mut found);
     Ok(found)
 }

@@ -328,7 +328,7 @@ fn merged(rows: Vec<(usize, Vec<[usize; 2]>)>) -> Vec<[[usize; 2]; 2]> {
 }
 
 /// Gives out the triangles of roofs, walls and sheets within the block.
-pub(super) fn give_out(
+pub(super) fn append_to(
     block: &Block,
     roofs: &Roofs,
     leaves: &[Leaf],
@@ -401,6 +401,6 @@ fn close_wall(block: &Block, roofs: &Roofs, wall: &WallLine, reach: f64, found: 
         let [[t0, z0], [t1, z1]] =
             rectangle.map(|[column, row]| [(from + column as f64 * WALL_CELL).min(to), low + row as f64 * WALL_CELL]);
         let sheet = Sheet { line: &wall.line, ranges: [t0, t1], heights: [z0, z1], kind: PatchKind::Wall };
-        sheet.give_out(block, |p| top.height(p), |_| z0, found);
+        sheet.append_to(block, |p| top.height(p), |_| z0, found);
     }
 }

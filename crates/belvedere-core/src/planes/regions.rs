@@ -85,12 +85,12 @@ impl SurfaceRegions {
     /// The regions that the ball of a point does not reach into, for a point as measured, local metres.
     #[cfg(test)]
     pub(super) fn of_point(&self, p: [f32; 3]) -> Vec<Region> {
-        self.that(p, |_, _| true)
+        self.regions_that(p, |_, _| true)
     }
 
     /// The regions of a point before those of its surfaces that `counts`, given the surface and the corner of its
     /// block, is true for.
-    fn that(&self, p: [f32; 3], counts: impl Fn(&Surface, [f64; 3]) -> bool) -> Vec<Region> {
+    fn regions_that(&self, p: [f32; 3], counts: impl Fn(&Surface, [f64; 3]) -> bool) -> Vec<Region> {
         let number = block_of(p, self.origin);
         let Ok(place) = self.blocks.binary_search_by_key(&number, |block| block.number) else { return Vec::new() };
         self.blocks[place].regions(p.map(f64::from), counts)
@@ -111,8 +111,9 @@ impl SurfaceRegions {
         let mut most = whole;
         let Some(inward) = unit(sub(c, p)) else { return radius };
         let touch: [f64; 3] = std::array::from_fn(|i| c[i] - most * inward[i]);
-        let reaches_out = |surface: &Surface, corner: [f64; 3]| surface.before(sub(c, corner)) + whole > MARGIN;
-        for region in self.that(point, reaches_out) {
+        let reaches_out =
+            |surface: &Surface, corner: [f64; 3]| surface.distance_before(sub(c, corner)) + whole > MARGIN;
+        for region in self.regions_that(point, reaches_out) {
             let fits = region.half_spaces.iter().map(|&(normal, offset)| {
                 let (apart, away) = (dot(normal, touch) - offset, 1.0 - dot(normal, inward));
                 if apart <= 0.0 { 0.0 } else { apart / away.max(1e-9) }
@@ -190,10 +191,10 @@ impl BlockRegions {
 
 impl Surface {
     /// Returns the distance of a place before the surface, metres.
-    fn before(&self, p: [f64; 3]) -> f64 {
+    fn distance_before(&self, p: [f64; 3]) -> f64 {
         match self {
             Self::Upright { line, .. } => line.of([p[0], p[1]])[1],
-            Self::Roof { plane, .. } => plane.above(p),
+            Self::Roof { plane, .. } => plane.distance_above(p),
         }
     }
 
@@ -215,11 +216,11 @@ impl Surface {
             Self::Upright { line, top, above, foot, eaves } => {
                 let [t, d] = line.of([p[0], p[1]]);
                 let [from, to] = [line.ends[0] - BEYOND, line.ends[1] + BEYOND];
-                let is_of_eaves = *eaves > MIN_EAVES && d <= eaves + EAVES_DEPTH && top.above(p).abs() < 0.3;
+                let is_of_eaves = *eaves > MIN_EAVES && d <= eaves + EAVES_DEPTH && top.distance_above(p).abs() < 0.3;
                 if !(from..=to).contains(&t)
                     || d < -BEHIND
                     || (d > BEFORE && !is_of_eaves)
-                    || top.above(p) > above.max(ABOVE)
+                    || top.distance_above(p) > above.max(ABOVE)
                     || p[2] < foot - ABOVE
                 {
                     return None;
@@ -239,7 +240,7 @@ impl Surface {
                 })
             }
             Self::Roof { polygon, plane } => {
-                let above = plane.above(p);
+                let above = plane.distance_above(p);
                 if !(-BEHIND..=BEFORE).contains(&above) {
                     return None;
                 }

@@ -149,7 +149,7 @@ impl Roofs {
         }
         for (plane, mut rows) in planes.iter().zip(rows) {
             let max = 3.0 * plane.noise.max(self.noise);
-            rows.retain(|&row| plane.above(self.points[row as usize]).abs() <= max);
+            rows.retain(|&row| plane.distance_above(self.points[row as usize]).abs() <= max);
             let mut sums = Sums::default();
             rows.iter().for_each(|&row| sums.add(self.points[row as usize]));
             let Some(plane) = sums.plane() else { continue };
@@ -226,7 +226,7 @@ impl Patchwork {
     }
 
     /// Neighbours of a point.
-    fn near(&self, row: usize) -> impl Iterator<Item = usize> + '_ {
+    fn neighbors_of(&self, row: usize) -> impl Iterator<Item = usize> + '_ {
         self.neighbors[row].iter().take_while(|&&near| near != NONE).map(|&near| near as usize)
     }
 
@@ -275,14 +275,15 @@ impl Patchwork {
         let reach = 2.5 * self.noise + 0.02;
         while let Some(&row) = rows.get(next) {
             next += 1;
-            for near in self.near(row) {
+            for near in self.neighbors_of(row) {
                 if plane_of[near] != NONE || !self.is_flat(near) {
                     continue;
                 }
                 let (from, at) = (self.points[row], sub(self.points[near], base));
                 let step = sub(self.points[near], from);
                 let is_near = step.iter().map(|v| v * v).sum::<f64>() < MAX_STEP * MAX_STEP;
-                if is_near && plane.cosine(&self.local[near]).abs() > SAME_WAY && plane.above(at).abs() < reach {
+                if is_near && plane.cosine(&self.local[near]).abs() > SAME_WAY && plane.distance_above(at).abs() < reach
+                {
                     plane_of[near] = number;
                     rows.push(near);
                     sums.add(at);
@@ -303,9 +304,9 @@ impl Patchwork {
         let reach = 2.5 * self.noise + 0.01;
         let chosen = |row: usize| {
             let own = plane_of[row];
-            let far = |plane: u32| planes[plane as usize].above(self.points[row]).abs();
+            let far = |plane: u32| planes[plane as usize].distance_above(self.points[row]).abs();
             let mut best = if own == NONE { (reach, NONE) } else { (far(own), own) };
-            for near in self.near(row) {
+            for near in self.neighbors_of(row) {
                 let other = plane_of[near];
                 let is_new = other != NONE && other != best.1 && planes[other as usize].normal[2] >= MIN_UP;
                 if is_new && far(other) < best.0 {
@@ -337,7 +338,7 @@ impl Patchwork {
         let mut sums = self.sums(plane_of, planes.len());
         let mut pairs: BTreeMap<(u32, u32), usize> = BTreeMap::new();
         for row in 0..self.points.len() {
-            for near in self.near(row) {
+            for near in self.neighbors_of(row) {
                 let (a, b) = (plane_of[row], plane_of[near]);
                 if a != b && a != NONE && b != NONE {
                     *pairs.entry((a.min(b), a.max(b))).or_default() += 1;

@@ -63,7 +63,7 @@ pub(super) struct Sheet<'a> {
 
 impl Sheet<'_> {
     /// Adds it as far as it lies below and above two heights, linear in plan, and in the block.
-    pub(super) fn give_out(
+    pub(super) fn append_to(
         &self,
         block: &Block,
         below: impl Fn([f64; 2]) -> f64,
@@ -75,7 +75,7 @@ impl Sheet<'_> {
             return;
         }
         let mut polygon = vec![[t0, z0], [t1, z0], [t1, z1], [t0, z1]];
-        polygon = clip(&polygon, |[t, z]| z - below(line.at(t, 0.0)));
+        polygon = clip(&polygon, |[t, z]| z - find_lower_roof(line.at(t, 0.0)));
         polygon = clip(&polygon, |[t, z]| above(line.at(t, 0.0)) - z);
         for axis in 0..2 {
             polygon = clip(&polygon, |[t, _]| -line.at(t, 0.0)[axis]);
@@ -94,7 +94,7 @@ impl Sheet<'_> {
 }
 
 /// Gives out the sheets of all roofs.
-pub(super) fn give_out(
+pub(super) fn append_to(
     block: &Block,
     roofs: &Roofs,
     outlines: &[Outline],
@@ -110,7 +110,7 @@ pub(super) fn give_out(
                 let eaves = own.iter().find(|wall| wall.edge == number).map_or(0.0, |wall| wall.eaves);
                 let line = PlanLine { point: edge.line.at(0.0, -WITHIN.max(eaves + CLEAR)), ..edge.line };
                 let line = PlanLine { ends: [line.ends[0] + WITHIN, line.ends[1] - WITHIN], ..line };
-                within(block, roofs, plane, &line, edge.drop, found);
+                add_inner_sheet(block, roofs, plane, &line, edge.drop, found);
             }
         }
         steps(block, roofs, plane, outline, found);
@@ -207,12 +207,12 @@ fn upstand(block: &Block, roofs: &Roofs, plane: usize, edge: &EdgeLine, found: &
         let ends = line.end_points().map(|p| roof.height(p));
         let heights = [ends[0].min(ends[1]), ends[0].max(ends[1]) + rise];
         let sheet = Sheet { line, ranges: line.ends, heights, kind: PatchKind::Parapet };
-        sheet.give_out(block, |p| roof.height(p) + rise, |p| roof.height(p), found);
+        sheet.append_to(block, |p| roof.height(p) + rise, |p| roof.height(p), found);
     }
 }
 
 /// The plane that most pulses end on which pass an edge close to it.
-fn below(roofs: &Roofs, plane: usize, outline: &Outline, line: &PlanLine) -> Option<usize> {
+fn find_lower_roof(roofs: &Roofs, plane: usize, outline: &Outline, line: &PlanLine) -> Option<usize> {
     let reach = STEP_SPACINGS * roofs.planes[plane].spacing;
     let mut on: Vec<u32> = Vec::new();
     for passed in &outline.passed {
@@ -232,7 +232,7 @@ fn steps(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, found: &
         .edges
         .iter()
         .filter(|edge| edge.is_sure && (STEP[0]..=MAX_BOX_STEP).contains(&edge.drop))
-        .filter_map(|edge| Some((edge, below(roofs, plane, outline, &edge.line)?)))
+        .filter_map(|edge| Some((edge, find_lower_roof(roofs, plane, outline, &edge.line)?)))
         .collect();
     let all: f64 = outline.edges.iter().filter(|edge| edge.is_sure).map(|edge| edge.line.length()).sum();
     for &(edge, lower) in &steps {
@@ -244,12 +244,19 @@ fn steps(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, found: &
         let ends = line.end_points().map(|p| [below.height(p), roof.height(p)]);
         let heights = [ends[0][0].min(ends[1][0]), ends[0][1].max(ends[1][1])];
         let sheet = Sheet { line, ranges: line.ends, heights, kind: PatchKind::Step };
-        sheet.give_out(block, |p| roof.height(p), |p| below.height(p), found);
+        sheet.append_to(block, |p| roof.height(p), |p| below.height(p), found);
     }
 }
 
 /// Adds the pieces of an upright sheet within an edge that no pulse runs through.
-fn within(block: &Block, roofs: &Roofs, plane: usize, line: &PlanLine, drop: f64, found: &mut BuildingSurfaces) {
+fn add_inner_sheet(
+    block: &Block,
+    roofs: &Roofs,
+    plane: usize,
+    line: &PlanLine,
+    drop: f64,
+    found: &mut BuildingSurfaces,
+) {
     if line.length() < 1.0 {
         return;
     }
@@ -287,7 +294,7 @@ fn within(block: &Block, roofs: &Roofs, plane: usize, line: &PlanLine, drop: f64
                 let ranges = [from, piece].map(|piece| line.ends[0] + piece as f64 * step);
                 let heights = [bottom, heights[0].max(heights[1])];
                 let sheet = Sheet { line, ranges, heights, kind: PatchKind::Inside };
-                sheet.give_out(block, |p| top.height(p), |_| bottom, found);
+                sheet.append_to(block, |p| top.height(p), |_| bottom, found);
                 first = None;
             }
             _ => {}
@@ -401,7 +408,7 @@ fn boxes(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, found: &
             let ends = [from, to].map(|p| roof.plane.height(p));
             let heights = [ends[0].min(ends[1]), top];
             let sheet = Sheet { line: &line, ranges: line.ends, heights, kind: PatchKind::Box };
-            sheet.give_out(block, |_| top, |p| roof.plane.height(p), found);
+            sheet.append_to(block, |_| top, |p| roof.plane.height(p), found);
         }
     }
 }

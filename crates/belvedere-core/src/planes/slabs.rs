@@ -90,7 +90,7 @@ impl PlanIndex {
     }
 
     /// Points of the cell of a place and the eight about it.
-    fn near(&self, p: [f64; 3]) -> impl Iterator<Item = &[f64; 3]> {
+    fn points_near(&self, p: [f64; 3]) -> impl Iterator<Item = &[f64; 3]> {
         let [x, y] = cell([p[0], p[1]], self.side);
         let about = (y - 1..=y + 1).flat_map(move |y| (x - 1..=x + 1).map(move |x| [x, y]));
         about.filter_map(|cell| self.cells.get(&cell)).flatten()
@@ -120,14 +120,14 @@ fn is_slab(block: &Block, roofs: &Roofs, number: usize, params: &SlabParams) -> 
     let [low, high] = bounds(of_rows());
     let mut walls = Vec::new();
     block.each_in([low[0] - open, low[1] - open], [high[0] + open, high[1] + open], |_, found| {
-        if found.is_solid() && roof.plane.above(found.p) < -params.thickness - BELOW {
+        if found.is_solid() && roof.plane.distance_above(found.p) < -params.thickness - BELOW {
             walls.push(found.p);
         }
     });
     let walls = PlanIndex::new(walls.into_iter(), open);
     let proves = |place: [f64; 3]| {
         let beside = |p: &&[f64; 3]| (0..3).map(|i| (p[i] - place[i]).powi(2)).sum::<f64>() <= open * open;
-        walls.near(place).filter(beside).count() <= params.max_below && is_within(&own, place, around, params)
+        walls.points_near(place).filter(beside).count() <= params.max_below && is_within(&own, place, around, params)
     };
     let mut proven: BTreeSet<[i64; 2]> = BTreeSet::new();
     let shift = block.max_shift(high[2]);
@@ -157,7 +157,7 @@ fn each_below(plane: &Plane, pulse: &Return, depths: [f64; 2], mut visit: impl F
     let [x, y] = pulse.lean;
     // how much nearer to the plane for each metre up
     let nearer = plane.normal[0] * x + plane.normal[1] * y + plane.normal[2];
-    let depth = -plane.above(pulse.p);
+    let depth = -plane.distance_above(pulse.p);
     if !pulse.is_first || !(nearer > 0.2) || depth < depths[0] {
         return;
     }
@@ -174,7 +174,8 @@ fn each_below(plane: &Plane, pulse: &Return, depths: [f64; 2], mut visit: impl F
 /// Returns true if points of a slab lie all around a place below it. Sparse points do not reach its edge. Each end of
 /// the gap may lie one mean angle between them farther, as long as the whole is hardly more than half a turn.
 fn is_within(own: &PlanIndex, place: [f64; 3], around: f64, params: &SlabParams) -> bool {
-    let near = own.near(place).map(|p| [p[0] - place[0], p[1] - place[1]]).filter(|[x, y]| x.hypot(*y) <= around);
+    let near =
+        own.points_near(place).map(|p| [p[0] - place[0], p[1] - place[1]]).filter(|[x, y]| x.hypot(*y) <= around);
     let mut angles: Vec<f64> = near.map(|[x, y]| y.atan2(x)).collect();
     angles.sort_unstable_by(f64::total_cmp);
     let (Some(&first), Some(&last)) = (angles.first(), angles.last()) else { return false };
@@ -194,7 +195,7 @@ pub(super) enum Sheets {
 }
 
 /// Gives out the sheets of slabs within the block, and the returns that lie on them.
-pub(super) fn give_out(
+pub(super) fn append_to(
     block: &Block,
     (roofs, are_slabs): (&Roofs, &[bool]),
     leaves: &[Leaf],
@@ -226,7 +227,7 @@ pub(super) fn give_out(
         let reach = roof.spacing;
         block.each_in([0, 1].map(|i| low[i] - reach), [0, 1].map(|i| high[i] + reach), |row, at| {
             let place = [at.p[0], at.p[1]];
-            let above = roof.plane.above(at.p);
+            let above = roof.plane.distance_above(at.p);
             let is_near = || {
                 let heights = -params.thickness - BELOW..=ABOVE.max(3.0 * roofs.noise);
                 at.is_solid() && heights.contains(&above) && own.iter().any(|leaf| leaf.holds(place))

@@ -58,7 +58,7 @@ pub(super) fn find(block: &Block, roofs: &Roofs, outlines: &[Outline], params: &
     for (plane, outline) in outlines.iter().enumerate() {
         let min_points = params.points_at(params.min_points, roofs.planes[plane].spacing);
         let edges = outline.edges.iter().enumerate().filter(|(_, edge)| edge.may_have_wall);
-        let found = edges.filter_map(|(number, edge)| below(block, roofs, [plane, number], edge, min_points));
+        let found = edges.filter_map(|(number, edge)| find_wall(block, roofs, [plane, number], edge, min_points));
         let min_closed = params.points_at(params.min_closed_points, roofs.planes[plane].spacing);
         let is_closed = |wall: &WallLine| wall.share >= params.min_share && wall.points.len() >= min_closed;
         walls.extend(found.map(|wall| WallLine { is_closed: is_closed(&wall), ..wall }));
@@ -94,7 +94,7 @@ fn meet(walls: &mut [WallLine]) {
 }
 
 /// The wall below an edge, given its plane and its number among those of the plane.
-fn below(
+fn find_wall(
     block: &Block,
     roofs: &Roofs,
     [plane, number]: [usize; 2],
@@ -110,7 +110,7 @@ fn below(
     // along the edge, to its right, height; and the row of the return
     let mut near: Vec<([f64; 3], usize)> = Vec::new();
     block.each_in(low, high, |row, found| {
-        if !found.may_be_building() || roofs.plane_of_return[row] != NONE || top.above(found.p) > -BELOW {
+        if !found.may_be_building() || roofs.plane_of_return[row] != NONE || top.distance_above(found.p) > -BELOW {
             return;
         }
         let [t, d] = edge.of([found.p[0], found.p[1]]);

@@ -113,7 +113,7 @@ impl FreeSegments {
         let rows = || (0..cloud.len()).filter(is_first);
         let returns: Vec<[f32; 3]> = rows().map(|row| cloud.positions[row]).collect();
         let scanner: Vec<[f32; 3]> = rows().map(|row| scanner[row]).collect();
-        Self::below(&returns, &scanner, highest, params, control)
+        Self::build_below(&returns, &scanner, highest, params, control)
     }
 
     /// Free segments from `first_returns`, (N, 3) local metres, towards `scanner`, (N, 3) local metres, NaN where
@@ -127,10 +127,10 @@ impl FreeSegments {
         params: &FreeSegmentParams,
         control: &Control<'_>,
     ) -> Result<(Self, FreeSegmentReport)> {
-        Self::below(first_returns, scanner, None, params, control)
+        Self::build_below(first_returns, scanner, None, params, control)
     }
 
-    fn below(
+    fn build_below(
         first_returns: &[[f32; 3]],
         scanner: &[[f32; 3]],
         highest: Option<f32>,

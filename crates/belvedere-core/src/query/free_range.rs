@@ -1,6 +1,6 @@
 //! Range of free sight from an eye along a direction.
 
-use super::medial_scene::nearer;
+use super::medial_scene::nearest_blocker;
 use super::triangles::LineEnds;
 use super::{Blocker, MedialScene};
 use crate::ray_index::Ray;
@@ -21,7 +21,7 @@ impl MedialScene {
         });
         let ball = ball.and_then(|(number, range)| Some((self.blocker_of_ball(number)?, range)));
         let ends = LineEnds { target: eye, viewer: None };
-        nearer(ball, self.triangles().and_then(|triangles| triangles.nearest(&ray, &ends)))
+        nearest_blocker(ball, self.triangles().and_then(|triangles| triangles.nearest(&ray, &ends)))
     }
 
     /// Returns the first obstacle before a place on a surface, such as a window, along the unit vector `direction`, and
@@ -45,6 +45,6 @@ impl MedialScene {
         let ball = ball.and_then(|(number, range)| Some((self.blocker_of_ball(number)?, range)));
         let line = Ray { ranges: [0.0, f64::INFINITY], ..ray };
         let ends = LineEnds { target: place, viewer: None };
-        nearer(ball, self.triangles().and_then(|triangles| triangles.nearest(&line, &ends)))
+        nearest_blocker(ball, self.triangles().and_then(|triangles| triangles.nearest(&line, &ends)))
     }
 }

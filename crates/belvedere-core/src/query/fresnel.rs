@@ -83,7 +83,7 @@ impl Link {
     }
 
     /// Returns the distance of a place along the straightened link, and its distance from the link, metres.
-    fn beside(&self, place: [f64; 3]) -> [f64; 2] {
+    fn position_along(&self, place: [f64; 3]) -> [f64; 2] {
         let [x, y, z] = sub(place, self.start);
         let raised = [x, y, z + self.sag(dot([x, y, z], self.axis))];
         let along = dot(raised, self.axis);
@@ -105,7 +105,7 @@ impl Link {
 
     /// The share of the zone that a ball of `radius` metres leaves free, if it is less than `max`.
     fn share_beside(&self, center: [f64; 3], radius: f64, max: f64) -> f64 {
-        let [along, beside] = self.beside(center);
+        let [along, beside] = self.position_along(center);
         let [from, to] = [(along - radius).max(0.0), (along + radius).min(self.length)];
         if from >= to || beside - radius >= max * self.radius((self.length / 2.0).clamp(from, to)) {
             return f64::INFINITY;
@@ -122,7 +122,7 @@ impl Link {
         // it leaves at least what the sphere around it leaves; the sag raises its corners by less than this beside its
         // middle
         let around = reach * (1.0 + 4.0 * self.sag(self.length / 2.0) / self.length);
-        if self.beside(middle)[1] - around >= max * self.radius(self.length / 2.0) {
+        if self.position_along(middle)[1] - around >= max * self.radius(self.length / 2.0) {
             return f64::INFINITY;
         }
         let beside_ends = self.between_ends(corners);
@@ -135,7 +135,7 @@ impl Link {
             min(0.0, 1.0, |across| {
                 let [from, to] = [pair[0], pair[1]].map(|corner| between(a, corner, across));
                 min(0.0, 1.0, |t| {
-                    let [along, beside] = self.beside(between(from, to, t));
+                    let [along, beside] = self.position_along(between(from, to, t));
                     self.share(along, beside)
                 })
             })
@@ -148,7 +148,7 @@ impl Link {
         let mut part = corners.to_vec();
         for beyond in [|_: &Self, along: f64| -along, |link: &Self, along: f64| along - link.length] {
             let whole = std::mem::take(&mut part);
-            let depths: Vec<f64> = whole.iter().map(|&corner| beyond(self, self.beside(corner)[0])).collect();
+            let depths: Vec<f64> = whole.iter().map(|&corner| beyond(self, self.position_along(corner)[0])).collect();
             for i in 0..whole.len() {
                 let next = (i + 1) % whole.len();
                 if depths[i] <= 0.0 {
@@ -214,7 +214,7 @@ impl MedialScene {
         let Some(link) = Link::new(ends, wave, earth) else { return f64::NAN };
         let mut clearance = max;
         for [low, high] in link.boxes(max) {
-            self.tree().index().near(low, high, |number| {
+            self.tree().index().visit_near(low, high, |number| {
                 let Ball { center, radius } = self.ball(number);
                 let center = center.map(f64::from);
                 let distances = ends.map(|end| length(sub(center, end)));
@@ -228,7 +228,7 @@ impl MedialScene {
         }
         if let Some(triangles) = self.triangles() {
             let ends = LineEnds { target: ends[0], viewer: Some(ends[1]) };
-            for corners in triangles.near(link.boxes(max), &ends) {
+            for corners in triangles.triangles_near(link.boxes(max), &ends) {
                 if clearance > 0.0 {
                     clearance = clearance.min(link.share_before(corners, clearance));
                 }

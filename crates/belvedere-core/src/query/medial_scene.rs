@@ -5,7 +5,7 @@ use super::ball_tree::BallTree;
 use super::certified::{LineEnd, LineInView, line_in_view, viewer_of};
 use super::cpu::Cpu;
 use super::far_terrain::FarTerrain;
-use super::freed_space::{FreedSpace, outside};
+use super::freed_space::{FreedSpace, pieces_outside};
 use super::lazy::Lazy;
 use super::triangles::{BlockingTriangles, LineEnds};
 use super::{Answer, Blocker, Coverage, Proof, Sight, Viewer, Visibility};
@@ -170,7 +170,7 @@ impl MedialScene {
         range: f64,
     ) -> impl Iterator<Item = ([f64; 3], f64)> {
         let ray = Ray { origin: target, direction: towards, ranges: [0.0, range] };
-        outside(&self.freed, &ray).into_iter().map(move |[from, to]| (ray.at(from), to - from))
+        pieces_outside(&self.freed, &ray).into_iter().map(move |[from, to]| (ray.at(from), to - from))
     }
 
     /// Over which space the cloud lies, where that is known.
@@ -393,7 +393,7 @@ impl MedialScene {
         let ball = ball.and_then(|(number, front)| Some((self.blocker_of_ball(number)?, front)));
         let ends = LineEnds { target, viewer: range.is_finite().then(|| ray.at(range)) };
         let line = Ray { ranges: [0.0, range], ..ray };
-        nearer(ball, self.triangles().and_then(|triangles| triangles.nearest(&line, &ends)))
+        nearest_blocker(ball, self.triangles().and_then(|triangles| triangles.nearest(&line, &ends)))
     }
 
     /// Returns true if anything but balls blocks a line of sight: a triangle, or far terrain.
@@ -426,7 +426,10 @@ impl MedialScene {
 }
 
 /// The nearer of a ball and a triangle, each with its range; the ball where both are equally near.
-pub(super) fn nearer(ball: Option<(Blocker, f64)>, triangle: Option<(Blocker, f64)>) -> Option<(Blocker, f64)> {
+pub(super) fn nearest_blocker(
+    ball: Option<(Blocker, f64)>,
+    triangle: Option<(Blocker, f64)>,
+) -> Option<(Blocker, f64)> {
     match (ball, triangle) {
         (Some(ball), Some(triangle)) if triangle.1 < ball.1 => Some(triangle),
         (None, triangle) => triangle,

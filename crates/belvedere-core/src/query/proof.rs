@@ -155,7 +155,7 @@ impl Proof {
     /// Its index, to be kept; `None` as long as it is not made.
     pub(crate) fn to_parts(&self) -> Option<ProofParts> {
         if !self.index.is_made() {
-            return self.kept().clone();
+            return self.lock_kept().clone();
         }
         let index = self.index.get(|control| self.make_index(control))?;
         let seen_space = index.seen_space.to_words().unwrap_or_default();
@@ -163,7 +163,7 @@ impl Proof {
         Some(ProofParts { order, boxes, seen_space })
     }
 
-    fn kept(&self) -> MutexGuard<'_, Option<ProofParts>> {
+    fn lock_kept(&self) -> MutexGuard<'_, Option<ProofParts>> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -190,7 +190,7 @@ impl Proof {
     }
 
     fn make_index(&self, control: &Control<'_>) -> Result<ProofIndex> {
-        let kept = self.kept().take();
+        let kept = self.lock_kept().take();
         let free_segments = match (&self.pulses, &kept) {
             (ProofSource::Indexed(free_segments), _) => Arc::clone(free_segments),
             (ProofSource::Columns(columns), kept) => {

@@ -1,8 +1,8 @@
 //! Lines of sight between pairs of points: what blocks them first, and all that lies on them.
 
 use super::ball_tree::PROBE;
-use super::freed_space::outside;
-use super::medial_scene::nearer;
+use super::freed_space::pieces_outside;
+use super::medial_scene::nearest_blocker;
 use super::triangles::LineEnds;
 use super::{Answer, EarthParams, MedialScene};
 use crate::blocking::{Chord, Sheet};
@@ -174,7 +174,7 @@ impl MedialScene {
         let mut found = Vec::new();
         let Some(proof) = &self.proof else { return found };
         for LinePiece { ray, .. } in self.pieces(observer, target, earth) {
-            for [from, to] in outside(&self.freed, &ray) {
+            for [from, to] in pieces_outside(&self.freed, &ray) {
                 let pieces = proof.unproven_pieces(ray.at(from), ray.direction, to - from);
                 found.extend(pieces.into_iter().map(|piece| piece.map(|at| ray.at(from + at))));
             }
@@ -390,7 +390,7 @@ impl MedialScene {
             true => triangles.nearest(&piece.ray, &ends),
             false => triangles.farthest(&piece.ray, &ends).map(|(blocker, range)| (blocker, reach - range)),
         });
-        nearer(ball, triangle)
+        nearest_blocker(ball, triangle)
     }
 
     /// The piece of a chord that a ball blocks, as [`BlockRule::blocked_piece`](super::BlockRule::blocked_piece) gives

@@ -90,7 +90,7 @@ impl MedialScene {
                 control.check()?;
                 let mut skyline = vec![EMPTY; count];
                 for (i, &ball) in balls.iter().enumerate() {
-                    let Some((offset, radius)) = self.before(eye, ball, earth) else { continue };
+                    let Some((offset, radius)) = self.offset_and_radius(eye, ball, earth) else { continue };
                     let blocker = self.blocker_of_ball(chunk * CHUNK + i);
                     each_azimuth(offset, radius, [first, step], count, |azimuth| {
                         if let Some((elevation, range)) = top(offset, radius, directions[azimuth]) {
@@ -102,7 +102,7 @@ impl MedialScene {
             })
             .try_reduce(|| vec![EMPTY; count], |a, b| Ok(a.into_iter().zip(b).map(|(a, b)| a.or(b)).collect()));
         let mut skyline = of_balls?;
-        for (corners, blocker) in self.triangles().into_iter().flat_map(|triangles| triangles.before(eye)) {
+        for (corners, blocker) in self.triangles().into_iter().flat_map(|triangles| triangles.triangles_before(eye)) {
             control.check()?;
             let corners = corners.map(|corner| self.offset(eye, corner, earth));
             let middle = std::array::from_fn(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 3.0);
@@ -136,7 +136,7 @@ impl MedialScene {
 
     /// Returns the vector from the eye to the centre of a ball, and its reduced radius; `None` if it holds the eye even
     /// so.
-    fn before(&self, eye: [f64; 3], ball: Ball, earth: &EarthParams) -> Option<([f64; 3], f64)> {
+    fn offset_and_radius(&self, eye: [f64; 3], ball: Ball, earth: &EarthParams) -> Option<([f64; 3], f64)> {
         let (mut offset, radius) = self.tree().rule().seen_from(ball, eye)?;
         if earth.bends(eye, ball.center.map(f64::from)) {
             offset[2] -= earth.fall(offset[0].hypot(offset[1]));

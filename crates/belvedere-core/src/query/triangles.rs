@@ -273,7 +273,7 @@ impl BlockingTriangles {
 
     /// The triangles between `ends` whose boxes may meet one of `boxes`, given by their lowest and highest corner,
     /// local metres; each once.
-    pub(super) fn near(
+    pub(super) fn triangles_near(
         &self,
         boxes: impl Iterator<Item = [[f64; 3]; 2]>,
         ends: &LineEnds,
@@ -299,7 +299,7 @@ impl BlockingTriangles {
     }
 
     /// The triangles that do not give way to `eye`, and what they are part of.
-    pub(super) fn before(&self, eye: [f64; 3]) -> impl Iterator<Item = (Corners, Blocker)> + '_ {
+    pub(super) fn triangles_before(&self, eye: [f64; 3]) -> impl Iterator<Item = (Corners, Blocker)> + '_ {
         let seen = move |(_, face): &(&Corners, &Face)| !face.sheet.gives_way_to(eye);
         let faces = self.tree.triangles().iter().zip(self.faces.iter()).filter(seen);
         faces.map(|(corners, face)| (*corners, face.blocker))

@@ -88,7 +88,7 @@ impl CrsProjection {
 
     /// Coordinates of a longitude and latitude in degrees; on failure the reason.
     pub(super) fn forward(&self, longitude: f64, latitude: f64) -> Result<(f64, f64), String> {
-        self.near(longitude, latitude)?.forward(longitude, latitude)
+        self.projecting_near(longitude, latitude)?.forward(longitude, latitude)
     }
 
     /// Longitude and latitude in degrees of coordinates; on failure the reason.
@@ -97,10 +97,10 @@ impl CrsProjection {
             return near.as_ref().map_err(Clone::clone)?.back(x, y);
         }
         let (longitude, latitude) = self.of_area.back(x, y)?;
-        self.near(longitude, latitude)?.back(x, y)
+        self.projecting_near(longitude, latitude)?.back(x, y)
     }
 
-    fn near(&self, longitude: f64, latitude: f64) -> Result<&Projecting, String> {
+    fn projecting_near(&self, longitude: f64, latitude: f64) -> Result<&Projecting, String> {
         let choose = || {
             if self.of_area.is_without_step() {
                 return Ok(self.of_area.clone());

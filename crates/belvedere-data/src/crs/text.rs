@@ -30,7 +30,7 @@ fn codes(crs: &Crs) -> impl Iterator<Item = String> {
 }
 
 /// Looks up the code or else the text of a system that was made by hand.
-fn looked_up(crs: &Crs) -> Option<Crs> {
+fn look_up(crs: &Crs) -> Option<Crs> {
     codes(crs).chain(crs.wkt.clone()).find_map(|text| Crs::parse(&text).ok())
 }
 
@@ -46,7 +46,7 @@ pub fn wkt_line(crs: &Crs) -> Option<String> {
 
 /// GeoTIFF keys for the system and its unit, or `None` where nothing is known of it but that it is in metres.
 pub fn geo_keys(crs: &Crs, key_use: KeyUse) -> Option<GeoKeys> {
-    let known = looked_up(crs).unwrap_or_else(|| crs.clone());
+    let known = look_up(crs).unwrap_or_else(|| crs.clone());
     let key = |code: Option<u32>| code.and_then(|code| u16::try_from(code).ok());
     let code = key(known.horizontal_epsg().or(crs.epsg));
     let wkt = wkt_line(crs);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::{Map, Value, json};
 
 use super::FileBall;
-use crate::part::narrow;
+use crate::file_part::narrow;
 use belvedere_data::balls::MedialBalls;
 use belvedere_data::cloud::{centre_rounded, to_local};
 use belvedere_data::crs::{Crs, CrsKind};

@@ -49,7 +49,7 @@ pub(super) fn answer(question: &SeenRequest, context: &RequestContext<'_>) -> Re
         "tells_unproven": blockers.proof().is_some(),
         "certainty": probabilities.as_deref().map(|values| how_sure.section(values, is_unproven)).transpose()?,
         "remarks": how_sure.is_wanted().then(|| remark_from_ground(&blockers)).flatten().as_slice(),
-        "command": context.text.seen(&question.place, how_sure),
+        "command": context.text.seen_points(&question.place, how_sure),
     });
     let mut body = points.in_order(|row| seen.answers[row] as u8);
     body.extend(probabilities.map(|values| points.in_order(|row| byte_of(values[row]))).unwrap_or_default());

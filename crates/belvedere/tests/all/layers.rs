@@ -30,7 +30,7 @@ const RESEARCH: [(&str, &[&str]); 5] = [
 
 /// Level of each module of `belvedere-core`: a module imports from lower levels, or from its own folder.
 const LEVELS: [(&str, u8); 18] = [
-    ("eight", 0),
+    ("f32x8", 0),
     ("instructions", 0),
     ("neighbors", 1),
     ("ray_index", 1),

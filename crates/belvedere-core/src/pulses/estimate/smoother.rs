@@ -37,17 +37,17 @@ pub(super) fn smoothed(
         }
         let (start, end) = (result[first].clone(), result[last].clone());
         for i in (0..first).filter(near) {
-            result[i] = nearer(result[i].take(), start.as_ref(), times[i], acceleration_sd);
+            result[i] = more_certain(result[i].take(), start.as_ref(), times[i], acceleration_sd);
         }
         for i in (last + 1..times.len()).filter(near) {
-            result[i] = nearer(result[i].take(), end.as_ref(), times[i], acceleration_sd);
+            result[i] = more_certain(result[i].take(), end.as_ref(), times[i], acceleration_sd);
         }
     }
     result
 }
 
 /// Returns the state with the smaller position uncertainty: `there`, or `from` predicted to `time`.
-fn nearer(
+fn more_certain(
     there: Option<ScannerState>,
     from: Option<&ScannerState>,
     time: f64,

@@ -3,7 +3,7 @@
 use super::blockers::LANES;
 use super::lanes::{BeamScalar, ConvexSpace, HalfLine, Kernels, LaneBits, LaneColumns, PLANES};
 use crate::blocking::Ball;
-use crate::eight::Eight;
+use crate::f32x8::Eight;
 use crate::ray_index::PartSides;
 
 pub(super) struct BeamSimd128;

@@ -300,7 +300,7 @@ impl TerrainHeights {
         top: &mut Top,
         visit: &mut impl FnMut([f32; 4], [usize; 2], [f64; 2], &mut Top) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let spans = lines.over(self.size(), spans);
+        let spans = lines.spans_over(self.size(), spans);
         if spans[0] > spans[1] {
             return ControlFlow::Continue(());
         }
@@ -368,7 +368,7 @@ impl HeightLevel {
 impl MapLines {
     /// The part of `spans` in which any of the lines is over the first `size` patches; empty where the first is above
     /// the second.
-    fn over(&self, size: [usize; 2], mut spans: [f64; 2]) -> [f64; 2] {
+    fn spans_over(&self, size: [usize; 2], mut spans: [f64; 2]) -> [f64; 2] {
         for (axis, count) in size.into_iter().enumerate() {
             let one = -self.start[axis] * self.inverse[axis];
             let other = (count as f64 - self.start[axis]) * self.inverse[axis];

@@ -25,7 +25,7 @@ pub(super) fn hide_behind_triangles(
     let blocks = words.par_chunks_mut(width * BLOCK).zip(targets.par_chunks(BLOCK));
     blocks.try_for_each(|(rows, targets)| {
         control.check()?;
-        let around = around(targets);
+        let around = bounding_box(targets);
         let meets = |(_, direction): &(usize, &[f64; 3])| may_meet(around, **direction, triangles.bounds());
         let met: Vec<(usize, [f64; 3])> =
             directions.iter().enumerate().filter(meets).map(|(column, direction)| (column, *direction)).collect();
@@ -75,7 +75,7 @@ impl Packet<'_> {
 }
 
 /// Lowest and highest corner of a box around targets.
-fn around(targets: &[[f32; 3]]) -> [[f64; 3]; 2] {
+fn bounding_box(targets: &[[f32; 3]]) -> [[f64; 3]; 2] {
     let bound = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {
         std::array::from_fn(|axis| targets.iter().map(|target| f64::from(target[axis])).fold(start, pick))
     };

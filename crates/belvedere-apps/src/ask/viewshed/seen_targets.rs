@@ -122,7 +122,7 @@ impl Sights<'_> {
             viewshed(blockers, observers, &targets.positions, &params, control)
         })?;
         let things = Things::cells(cell);
-        let counts = self.counted(&seen.answers, &targets.positions, &things, context, control)?;
+        let counts = self.count(&seen.answers, &targets.positions, &things, context, control)?;
         context.report.cells = Some(counts);
         self.remark_on_blind(&seen, &targets.positions, context);
         Ok(seen)
@@ -157,7 +157,7 @@ impl Sights<'_> {
         let seen = control
             .stage("testing points", observers.len(), || viewshed(blockers, observers, positions, &params, control))?;
         let things = Things { where_to: "", name: "points", area: None };
-        let section = self.counted(&seen.answers, positions, &things, context, control)?;
+        let section = self.count(&seen.answers, positions, &things, context, control)?;
         let (outside, count) = (section.outside_cloud, seen.answers.len());
         context.add(remark_on_outside(outside, count, "points"));
         context.report.cloud_points = Some(section);
@@ -239,7 +239,7 @@ impl Sights<'_> {
     }
 
     /// Counts the visible `targets`, with those that lie inside an obstacle.
-    fn counted(
+    fn count(
         &self,
         answers: &[Answer],
         targets: &[[f32; 3]],

@@ -212,7 +212,7 @@ impl FilePart {
     pub(super) fn keep_selected(&mut self, reading: &Reading<'_>) -> Result<()> {
         let Some(selection) = reading.selection(&self.crs) else { return Ok(()) };
         let mut passed_over = PassedOver::default();
-        let kept = selection.kept(&self.coordinates, &self.attributes, &mut passed_over)?;
+        let kept = selection.select(&self.coordinates, &self.attributes, &mut passed_over)?;
         self.keep(&kept);
         passed_over.report(self);
         Ok(())

@@ -35,7 +35,7 @@ pub struct OnTargets {
 impl Light {
     /// Resolves targets and obstacles for light from `directions`. Pulses are loaded unless unproven answers count as
     /// visible.
-    pub(super) fn on(
+    pub(super) fn resolve(
         places: &Places,
         directions: &[[f64; 3]],
         (trees, unproven): (&ThroughTrees, UnprovenAs),
