@@ -16,7 +16,6 @@ mod depth_maps;
 mod determinism;
 #[cfg(feature = "gpu")]
 mod devices;
-mod doc_comments;
 mod envelopes;
 mod far_terrain;
 mod given_rows;
@@ -35,6 +34,7 @@ mod masbcpp_folder;
 mod odd_clouds;
 mod odd_places;
 mod other_programs;
+mod plain_english;
 mod plans;
 mod protected_views;
 mod queries;

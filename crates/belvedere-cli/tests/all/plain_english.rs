@@ -1,4 +1,5 @@
-//! Doc comments of all crates: shares of those that open with a clause, and of long sentences.
+//! Doc comments of all crates: shares of those that open with a clause, and of long sentences. Length of changes in the
+//! changelog.
 
 use std::fmt::Write;
 use std::fs;
@@ -14,6 +15,9 @@ const MAX_CLAUSES: f64 = 0.05;
 const LONG: usize = 31;
 /// Maximum share of long sentences: formulas and lists of keywords need some.
 const MAX_LONG: f64 = 0.03;
+
+/// Maximum number of words of a change in the changelog.
+const MAX_CHANGE: usize = 15;
 
 /// Counts of the doc comments of some files, with the places of the offenders.
 #[derive(Default)]
@@ -139,4 +143,16 @@ fn clauses_and_long_sentences_are_found_and_code_is_not() {
     assert_eq!((count.comments, count.sentences), (4, 6));
     assert_eq!(count.clauses, ["x.rs:1: Whether it is so.", "x.rs:9: Those of two."]);
     assert_eq!(count.long.len(), 1);
+}
+
+#[test]
+fn changes_are_lines_of_few_words() {
+    let changelog = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../CHANGELOG.md")).unwrap();
+    let changes: Vec<&str> = changelog.lines().filter_map(|line| line.strip_prefix("- ")).collect();
+    assert!(changes.len() > 100, "{}", changes.len());
+    let long: Vec<&&str> = changes.iter().filter(|change| words(change) > MAX_CHANGE).collect();
+    assert!(long.is_empty(), "{long:#?}");
+    // a change goes on in no second line
+    let others = changelog.lines().filter(|line| line.starts_with(' '));
+    assert_eq!(others.collect::<Vec<_>>(), [""; 0]);
 }
