@@ -92,7 +92,8 @@ impl LasColumns {
             flags,
             intensity,
             color,
-            ..
+            gps_time_kind: _,
+            scanner_index: _,
         } = &mut self.attributes;
         let (positions, extra_normals, unread) = (&mut self.positions, self.extra_normals, &mut self.unread);
         rayon::scope(|scope| {
