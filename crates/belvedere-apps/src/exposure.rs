@@ -5,7 +5,7 @@ use crate::rows::{check_normals, fold_rows, normals_of};
 use crate::sky_view::{SkyDirections, SkyView, sky_view};
 use crate::sun::SunSchedule;
 use crate::sun_hours::{SunHours, SunHoursParams, sun_hours};
-use crate::targets::{Measure, Targets, weighted_mean};
+use crate::targets::{Measure, TARGET_LIFT, Targets, weighted_mean};
 use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, dot, unit};
@@ -19,8 +19,6 @@ use std::f64::consts::PI;
 pub const WALKER_HEIGHT: f64 = 1.1;
 /// Metres between places along a route: a few steps.
 pub const ROUTE_STEP: f64 = 2.0;
-/// Distance of the targets of a window in front of it, metres: twice the noise of usual airborne surveys.
-pub const WINDOW_LIFT: f64 = 0.1;
 /// Number of targets along each side of a window that has a size.
 const WINDOW_SIDE: u32 = 3;
 /// Targets handed to a thread at once.
@@ -45,7 +43,7 @@ pub fn window_places(center: [f64; 3], normal: [f64; 3], size: Option<[f64; 2]>)
         return invalid(Parameter::Window, format!("at {center:?} looking to {normal:?}"), "finite, with a direction");
     };
     let Some(size) = size else {
-        return Ok(vec![[0, 1, 2].map(|i| center[i] + WINDOW_LIFT * normal[i])]);
+        return Ok(vec![[0, 1, 2].map(|i| center[i] + TARGET_LIFT * normal[i])]);
     };
     if !size.iter().all(|v| (0.0..=1000.0).contains(v)) {
         return invalid(Parameter::Window, format!("of size {size:?} m"), "of size 0 to 1000 m");
@@ -58,7 +56,7 @@ pub fn window_places(center: [f64; 3], normal: [f64; 3], size: Option<[f64; 2]>)
     for row in 0..WINDOW_SIDE {
         for column in 0..WINDOW_SIDE {
             let (across, above) = (offset(column) * size[0], offset(row) * size[1]);
-            places.push([0, 1, 2].map(|i| center[i] + across * right[i] + above * up[i] + WINDOW_LIFT * normal[i]));
+            places.push([0, 1, 2].map(|i| center[i] + across * right[i] + above * up[i] + TARGET_LIFT * normal[i]));
         }
     }
     Ok(places)

@@ -6,8 +6,8 @@ use super::scene::Scene;
 use super::sections::{LinesSection, PairsSection};
 use super::{Answers, Ask, Context, GridCells, Places, Remark, remark_on_inside};
 use crate::profile::{SightProfile, sight_profile};
-use crate::targets::Measure;
-use crate::viewshed::{OBSERVER_HEIGHT, TARGET_HEIGHT};
+use crate::targets::{Measure, TARGET_LIFT};
+use crate::viewshed::OBSERVER_HEIGHT;
 use belvedere_core::ground::GroundPoints;
 use belvedere_core::query::{
     Answer, Blocker, EarthParams, LineOfSight, MedialScene, Obstruction, RadioWave, UnprovenAs,
@@ -138,7 +138,7 @@ impl LinesOfSightQuestion {
         if pairs.iter().flatten().all(|end| !end[2].is_nan()) {
             return Ok(pairs);
         }
-        let usual = [self.observer_height.unwrap_or(OBSERVER_HEIGHT), self.target_height.unwrap_or(TARGET_HEIGHT)];
+        let usual = [self.observer_height.unwrap_or(OBSERVER_HEIGHT), self.target_height.unwrap_or(TARGET_LIFT)];
         let standing = |(end, usual): (&Standing, f64)| Standing { height: end.height.or(Some(usual)), ..*end };
         let standing: Vec<Standing> = given.iter().flat_map(|ends| ends.iter().zip(usual)).map(standing).collect();
         let ends = stand(&standing, (OBSERVER_HEIGHT, self.ground), scene, context, control)?;

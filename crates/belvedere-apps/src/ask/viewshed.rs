@@ -13,10 +13,10 @@ use super::scene::KnownGround;
 use super::sections::LinesSection;
 use super::{Answers, Ask, Context, GridCells, Places, Remark, Scene};
 use crate::eyes::{EyesReport, fault_of_target};
-use crate::targets::{Measure, Targets, set_on_ground, set_on_terrain};
+use crate::targets::{Measure, TARGET_LIFT, Targets, set_on_ground, set_on_terrain};
 use crate::viewshed::{
-    OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, Viewshed as Seen, ViewshedParams, answers_of_bands,
-    box_within_reach, cell_for, far_targets, terrain_within_reach, tested_height,
+    OBSERVER_HEIGHT, Observer, SightLimits, Viewshed as Seen, ViewshedParams, answers_of_bands, box_within_reach,
+    cell_for, far_targets, terrain_within_reach, tested_height,
 };
 use belvedere_core::ground::{Ground, GroundPoints, MapGrid};
 use belvedere_core::query::{Answer, EarthParams, MedialScene, UnprovenAs};
@@ -150,7 +150,7 @@ impl ViewshedQuestion {
     /// Height above the ground of the given places, and of what stands in cells, metres.
     fn heights(&self) -> [f64; 2] {
         let [observer, target] =
-            [self.observer_height.unwrap_or(OBSERVER_HEIGHT), self.target_height.unwrap_or(TARGET_HEIGHT)];
+            [self.observer_height.unwrap_or(OBSERVER_HEIGHT), self.target_height.unwrap_or(TARGET_LIFT)];
         if self.reverse { [target, observer] } else { [observer, target] }
     }
 

@@ -14,7 +14,7 @@ use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::view::to_sun;
 use belvedere_data::{Error, Parameter, Result};
-use leaks::{ClosedSurface, RangeGrid};
+use leaks::{ClosedRoomParams, ClosedSurface, RangeGrid};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -195,7 +195,8 @@ pub fn isovist_of(
     let blocked: f64 = (ranges.iter().enumerate())
         .map(|(at, range)| range.map_or(0.0, |range| weight(at / width) * range.powi(3) / 3.0))
         .sum();
-    let surface = ClosedSurface::of(&RangeGrid { ranges: &ranges, width, weights: &weights, reach });
+    let grid = RangeGrid { ranges: &ranges, width, weights: &weights, reach };
+    let surface = ClosedSurface::of(&grid, &ClosedRoomParams::default());
     let (ranges, unbounded) = match &surface {
         Some(surface) => (surface.ranges.clone(), surface.gap_share),
         None => (ranges, 0.0),

@@ -14,8 +14,6 @@ use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
-/// Default height of targets above the ground for results about the sun and the sky, metres.
-pub const SKY_TARGET_HEIGHT: f64 = 0.1;
 /// Number of directions of [`SkyDirections::even`] unless said otherwise: errors of half a percent at most streets.
 pub const SKY_DIRECTIONS: usize = 577;
 

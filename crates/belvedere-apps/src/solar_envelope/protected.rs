@@ -1,6 +1,6 @@
 //! Objects that shadows must stay off: lines with a fence, faces of facades, points.
 
-use crate::sky_view::SKY_TARGET_HEIGHT;
+use crate::targets::TARGET_LIFT;
 use belvedere_core::ground::Ground;
 use belvedere_core::query::SurfacePieces;
 use belvedere_data::{Error, Parameter, Result};
@@ -26,7 +26,7 @@ impl ProtectedPiece {
     /// A point.
     #[must_use]
     pub fn point(place: [f64; 3], source: u32) -> Self {
-        let sample = single([place[0], place[1], place[2] + SKY_TARGET_HEIGHT]);
+        let sample = single([place[0], place[1], place[2] + TARGET_LIFT]);
         Self { corners: vec![place], normal: None, sample, source }
     }
 }
@@ -75,7 +75,7 @@ pub fn protected_line(
                 (Some(from), Some(to)) => {
                     let mut middle = [0, 1, 2].map(|i| f64::midpoint(from[i], to[i]));
                     // off the ground, as other targets of the sun
-                    middle[2] += SKY_TARGET_HEIGHT;
+                    middle[2] += TARGET_LIFT;
                     let corners = vec![from, to];
                     pieces.push(ProtectedPiece { corners, normal: None, sample: single(middle), source });
                 }

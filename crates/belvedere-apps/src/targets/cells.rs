@@ -1,7 +1,6 @@
 //! Cells of a grid on the ground, or on top of what stands on it.
 
-use super::{TargetLayout, Targets};
-use crate::sky_view::SKY_TARGET_HEIGHT;
+use super::{TARGET_LIFT, TargetLayout, Targets};
 use crate::viewshed::cell_targets;
 use belvedere_core::ground::{Ground, GroundParams, MapGrid, SurfaceParams, hidden_ground, top_surface};
 use belvedere_core::query::BlockingTriangles;
@@ -37,7 +36,7 @@ belvedere_data::setters!(CellParams {
 
 impl Default for CellParams {
     fn default() -> Self {
-        Self { level: CellLevel::Ground, height: SKY_TARGET_HEIGHT }
+        Self { level: CellLevel::Ground, height: TARGET_LIFT }
     }
 }
 

@@ -9,7 +9,6 @@ pub use far::{far_targets, far_viewshed, terrain_within_reach};
 pub use observers::{Observer, SightLimits, places_along};
 pub use probabilities::{SeenProbabilities, add_known, seen_probabilities};
 
-use crate::sky_view::SKY_TARGET_HEIGHT;
 use crate::targets::Measure;
 use belvedere_core::ground::Ground;
 use belvedere_core::query::target_tree::TargetTree;
@@ -76,9 +75,6 @@ pub struct Viewshed {
 
 /// Default height of an observer's eye above the ground, metres: a person's.
 pub const OBSERVER_HEIGHT: f64 = 1.7;
-/// Default height of targets above the ground or a surface, metres: that of all questions. A point of a roof or the
-/// ground lies up to a few centimetres below the balls around it.
-pub const TARGET_HEIGHT: f64 = SKY_TARGET_HEIGHT;
 /// Height above the ground at which targets on it are tested, metres. The height of the ground is accurate to a few
 /// centimetres, and balls bulge by as much between its points. Over tens of metres a line of sight at the ground itself
 /// would run in and out of them. On simulated towns 0.05 halves the false-blocked cells (6.9 to 3.7 %); 0.1 gains no
