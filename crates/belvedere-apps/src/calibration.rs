@@ -1,5 +1,4 @@
-//! What probabilities of being visible are worth: how far from the truth, how well calibrated, how few errors are left
-//! among the most certain.
+//! Quality of probabilities of being visible: error, calibration, and errors among the most certain.
 
 /// Probabilities are counted by tenths.
 const TENTHS: usize = 10;

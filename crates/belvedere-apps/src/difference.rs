@@ -1,4 +1,4 @@
-//! What changes between two results on the same cells: before and after a plan.
+//! Difference between two results on the same cells: before and after a plan.
 
 use crate::viewshed::SEEN;
 use belvedere_data::contradiction::{DIFFERENT_QUANTITIES, DIFFERENT_SUNS, FoundContradiction};
@@ -9,7 +9,7 @@ use serde::Serialize;
 /// Changes up to this share of the largest one count as none: what rounding leaves of equal values.
 const ROUNDING: f64 = 1e-6;
 
-/// What parts the description of a raster from its subject.
+/// Separator between the description of a raster and its subject.
 const SUBJECT: &str = "; ";
 
 /// The description of a raster of one of several things alike, such as the shadow of one of several suns.
@@ -18,8 +18,8 @@ pub fn described(description: &str, subject: &str) -> String {
     if subject.is_empty() { description.to_owned() } else { format!("{description}{SUBJECT}{subject}") }
 }
 
-/// What the descriptions of two named rasters say against their difference: other quantities, or the same of other
-/// suns. `None` where one of them is not described.
+/// Returns the contradiction between the descriptions of two named rasters: other quantities, or the same of other
+/// suns. `None` if one of them is not described.
 #[must_use]
 pub fn contradiction_of(before: [&str; 2], after: [&str; 2]) -> Option<FoundContradiction> {
     let [[before, first], [after, second]] = [before, after];

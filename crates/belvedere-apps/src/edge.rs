@@ -1,10 +1,11 @@
-//! How much of a result depends on what stands beyond the cloud, of which nothing is known and which blocks nothing.
+//! Dependence of a result on objects beyond the cloud, which are unknown and block nothing.
 //!
-//! A line to the sun or the sky leaves the box around the cloud at some height. Above the highest point of the cloud
-//! nothing of its kind could block it any more; below, an object beyond the edge as high as that point could. A target
-//! is near the edge if more than [`EDGE_SHARE`] of the light comes from directions that leave the cloud so low. A
-//! direction counts by the sine of its elevation, as what it sends on level ground does, so that flat directions, which
-//! leave every cloud low, count little beside steep ones.
+//! A line to the sun or the sky leaves the box around the cloud at some height. Above the highest point of the cloud no
+//! object like those in it could block it. Below, an object beyond the edge as high as that point could. A target is
+//! near the edge if more than [`EDGE_SHARE`] of the light comes from directions that leave the cloud so low.
+//!
+//! A direction is weighted by the sine of its elevation, as its light on level ground is. Flat directions, which leave
+//! every cloud low, therefore count little beside steep ones.
 
 use belvedere_core::query::{Coverage, SkylinePoint};
 use belvedere_data::Result;
@@ -21,7 +22,7 @@ pub const EDGE_SHARE: f64 = 0.05;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 1024;
 
-/// How many targets are near the edge of the cloud.
+/// Number of targets near the edge of the cloud.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct EdgeReport {
     /// Targets that are near the edge.
@@ -40,9 +41,8 @@ impl EdgeReport {
     }
 }
 
-/// Whether each of `targets`, (M, 3) local metres, is near the edge of the cloud for lines of sight along `directions`,
-/// (D, 3) unit vectors; `None` for one that is not finite. Directions below the horizon do not count. Progress counts
-/// targets.
+/// Flags the `targets`, (M, 3) local metres, near the edge of the cloud for lines of sight along `directions`, (D, 3)
+/// unit vectors; `None` for one that is not finite. Directions below the horizon do not count. Progress counts targets.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -66,9 +66,9 @@ pub fn near_edge(
     Ok(chunks.collect::<Result<Vec<_>>>()?.concat())
 }
 
-/// Share of the azimuths of `skyline`, the first at `first` radians clockwise from grid north, at which an object
-/// beyond the edge, as high as the highest point of the cloud, would rise above the horizon that was found around
-/// `eye`, local metres; 0 for an empty skyline.
+/// Returns the share of the azimuths of `skyline` at which an object beyond the edge could rise above the horizon found
+/// around `eye`, local metres. The object is as high as the highest point of the cloud. The first azimuth is `first`
+/// radians clockwise from grid north. 0 for an empty skyline.
 #[must_use]
 pub fn horizon_share_near_edge(coverage: &Coverage, eye: [f64; 3], skyline: &[SkylinePoint], first: f64) -> f64 {
     let relief = relief_above(coverage, eye);
@@ -80,7 +80,7 @@ pub fn horizon_share_near_edge(coverage: &Coverage, eye: [f64; 3], skyline: &[Sk
     skyline.iter().enumerate().filter(is_near).count() as f64 / skyline.len().max(1) as f64
 }
 
-/// How far the highest point of the cloud is above `place`, metres, 0 or more.
+/// Returns the height of the highest point of the cloud above `place`, metres, 0 or more.
 fn relief_above(coverage: &Coverage, place: [f64; 3]) -> f64 {
     (f64::from(coverage.bounds().high[2]) - place[2]).max(0.0)
 }
@@ -106,7 +106,7 @@ struct Slopes {
     /// Sine of the elevation of each, and their sums up to each.
     weights: Vec<f64>,
     sums: Vec<f64>,
-    /// What may leave the cloud low without a target being near the edge.
+    /// Light that may leave the cloud low for a target that is not near the edge.
     allowed: f64,
 }
 

@@ -5,7 +5,7 @@ use crate::rows::{check_normals, fold_rows, normals_of};
 use crate::sky_view::{SkyDirections, SkyView, sky_view};
 use crate::sun::SunSchedule;
 use crate::sun_hours::{SunHours, SunHoursParams, sun_hours};
-use crate::targets::{Measure, Targets, weighted_mean};
+use crate::targets::{Measure, TARGET_LIFT, Targets, weighted_mean};
 use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, dot, unit};
@@ -19,23 +19,21 @@ use std::f64::consts::PI;
 pub const WALKER_HEIGHT: f64 = 1.1;
 /// Metres between places along a route: a few steps.
 pub const ROUTE_STEP: f64 = 2.0;
-/// Distance of the targets of a window in front of it, metres: twice the noise of usual airborne surveys.
-pub const WINDOW_LIFT: f64 = 0.1;
 /// Number of targets along each side of a window that has a size.
 const WINDOW_SIDE: u32 = 3;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 256;
 
-/// The outward unit normal of a plane that looks to `azimuth`, clockwise from grid north, and is tilted by `tilt` from
-/// level: 0 looks up, π/2 is upright, more looks down; radians.
+/// Returns the outward unit normal of a plane that faces `azimuth`, clockwise from grid north, tilted by `tilt` from
+/// level, radians. A tilt of 0 faces up, π/2 is upright, more faces down.
 #[must_use]
 pub fn plane_normal(azimuth: f64, tilt: f64) -> [f64; 3] {
     [tilt.sin() * azimuth.sin(), tilt.sin() * azimuth.cos(), tilt.cos()]
 }
 
-/// Places that represent a window around `center`, local metres, with the unit normal `normal`, a little in front of
-/// it: nine, in the middles of even parts of its width and height (`size`, metres), or its middle alone where it has
-/// none. Width runs level.
+/// Returns places that represent a window around `center`, local metres, a little in front of it along the unit normal
+/// `normal`. They are nine, in the middles of equal parts of its width and height (`size`, metres), or its middle alone
+/// if it has no size. The width is level.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a centre or normal that is not finite, or a size that is below zero or above 1000 m.
@@ -45,7 +43,7 @@ pub fn window_places(center: [f64; 3], normal: [f64; 3], size: Option<[f64; 2]>)
         return invalid(Parameter::Window, format!("at {center:?} looking to {normal:?}"), "finite, with a direction");
     };
     let Some(size) = size else {
-        return Ok(vec![[0, 1, 2].map(|i| center[i] + WINDOW_LIFT * normal[i])]);
+        return Ok(vec![[0, 1, 2].map(|i| center[i] + TARGET_LIFT * normal[i])]);
     };
     if !size.iter().all(|v| (0.0..=1000.0).contains(v)) {
         return invalid(Parameter::Window, format!("of size {size:?} m"), "of size 0 to 1000 m");
@@ -58,13 +56,13 @@ pub fn window_places(center: [f64; 3], normal: [f64; 3], size: Option<[f64; 2]>)
     for row in 0..WINDOW_SIDE {
         for column in 0..WINDOW_SIDE {
             let (across, above) = (offset(column) * size[0], offset(row) * size[1]);
-            places.push([0, 1, 2].map(|i| center[i] + across * right[i] + above * up[i] + WINDOW_LIFT * normal[i]));
+            places.push([0, 1, 2].map(|i| center[i] + across * right[i] + above * up[i] + TARGET_LIFT * normal[i]));
         }
     }
     Ok(places)
 }
 
-/// How the value of a whole route or window follows from those of its places.
+/// Aggregate of a route or window over its places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WholeIs {
     /// Their mean by weight.
@@ -75,7 +73,7 @@ pub enum WholeIs {
     Max,
 }
 
-/// Whether the share of each group in shade is kept for each sun.
+/// Choice to keep the share of each group in shade for each sun.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShadeAtEachSun {
@@ -86,7 +84,7 @@ pub enum ShadeAtEachSun {
     Kept,
 }
 
-/// What targets, in groups, get of sun and sky.
+/// Sun and sky at groups of targets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exposure {
     /// `sky_view_factor`, `sky_openness`, for targets with normals `sky_component`, then `sun_hours`, `sun_share`,
@@ -122,8 +120,8 @@ impl Exposure {
     }
 }
 
-/// What `targets`, routes or windows, get of `sky` and of the suns of `schedule` in `scene`. Progress counts targets,
-/// twice each.
+/// Computes the exposure of `targets`, routes or windows, to `sky` and to the suns of `schedule` in `scene`. Progress
+/// counts targets, twice each.
 ///
 /// # Errors
 /// Those of [`fold_rows`], [`sky_view`], [`sky_component`] and [`sun_hours`].
@@ -213,16 +211,16 @@ impl Shaded {
     }
 }
 
-/// The sky component of each target of `matrix`: the light that its plane (`normals`, (M, 3) unit vectors) gets
-/// straight from an overcast sky, as a share of what a free level plane gets, (M). For upright planes it is the
-/// vertical sky component; a free wall has 0.396, a free level plane 1. Light thrown back by the ground and by facades
-/// is not in it.
+/// Returns the sky component of each target of `matrix`, (M). This is the light that its plane (`normals`, (M, 3) unit
+/// vectors) gets straight from an overcast sky, as a share of that on a free level plane. For upright planes it is the
+/// vertical sky component; a free wall has 0.396, a free level plane 1. Light reflected by the ground and by facades is
+/// not included.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where matrix, sky and normals differ.
 ///
 /// # Source
-/// Moon & Spencer 1942 (the overcast sky of CIE S 011: luminance 1 + 2 sin of the elevation, a third at the horizon);
+/// Moon & Spencer 1942, the overcast sky of CIE S 011: luminance 1 + 2 sin of the elevation, a third at the horizon.
 /// Littlefair 2011, Site layout planning for daylight and sunlight, BRE 209, appendix C.
 pub fn sky_component(matrix: &VisibilityMatrix, sky: &SkyDirections, normals: &[[f32; 3]]) -> Result<Vec<f32>> {
     let sizes = [
@@ -268,8 +266,8 @@ pub fn route_lengths(places: &[[f64; 3]]) -> Vec<f64> {
     lengths
 }
 
-/// For each direction of `matrix`, the share of `weights`, (M), whose targets do not see it free: that of a route in
-/// shade at each sun, (D); NaN where the weights add up to nothing.
+/// Returns for each direction of `matrix` the share of `weights`, (M), whose targets do not see it free, (D). For suns
+/// it is the share of a route in shade. NaN if the weights add up to nothing.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] unless there is a weight for each target.

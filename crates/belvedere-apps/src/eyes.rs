@@ -1,4 +1,4 @@
-//! Who cannot look: eyes without ground below them, beside or below the cloud, or inside what stands there.
+//! Observers that cannot look: eyes without ground below them, beside or below the cloud, or inside an obstacle.
 
 use belvedere_core::ground::Ground;
 use belvedere_core::query::{Coverage, MedialScene};
@@ -8,8 +8,8 @@ use belvedere_data::report::rounded;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// How deep an eye may lie below the ground, metres: what points leave open. In an obstacle it may lie as deep as balls
-/// give way ([`MedialScene::is_inside_obstacle`]): an eye on a wall or a roof is a usual question.
+/// Maximum depth of an eye below the ground, metres: the accuracy of points. In an obstacle it may lie as deep as balls
+/// give way ([`MedialScene::is_inside_obstacle`]), since an eye on a wall or a roof is common.
 const TOLERANCE: f64 = 0.2;
 
 /// Why nobody can look from a place.
@@ -49,26 +49,26 @@ impl std::fmt::Display for EyeFault {
 pub struct SkippedEye {
     /// Its row among the eyes, from 0.
     pub row: usize,
-    /// Where it is, local metres; the height may be NaN.
+    /// Position, local metres; the height may be NaN.
     pub place: [f64; 3],
     /// Why it is skipped.
     pub fault: EyeFault,
 }
 
-/// How many eyes can look, and why others cannot.
+/// Number of eyes that can look, and reasons of the others.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct EyesReport {
     /// Eyes that were given.
     pub count: usize,
     /// Eyes that were skipped.
     pub skipped: usize,
-    /// Of these, without known ground below.
+    /// Number skipped without known ground below.
     pub skipped_without_ground: usize,
-    /// Of these, beside or below the cloud.
+    /// Number skipped beside or below the cloud.
     pub skipped_outside_cloud: usize,
-    /// Of these, below the ground.
+    /// Number skipped below the ground.
     pub skipped_below_ground: usize,
-    /// Of these, inside an obstacle.
+    /// Number skipped inside an obstacle.
     pub skipped_inside_obstacle: usize,
     /// The eyes skipped.
     #[serde(skip)]

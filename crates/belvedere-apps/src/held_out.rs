@@ -12,17 +12,17 @@ use belvedere_data::cloud::to_local;
 use belvedere_data::vector::{length, sub, unit};
 use belvedere_data::{Error, Parameter, PointCloud, Result};
 
-/// Which pulses are held out, and at which places visibility is queried.
+/// Selection of held-out pulses, and of places whose visibility is queried.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeldOutParams {
     /// Any number; another one holds out other pulses. Default 1.
     pub seed: u64,
     /// Share of the pulses held out, 0 to 1, both excluded. Default 0.1.
     pub share: f64,
-    /// How far before the first return the queried path begins, metres, above `clearance`. Default 30: above everything
-    /// except towers, whose own pulses are queried too.
+    /// Distance before the first return at which the queried path begins, metres, above `clearance`. Default 30: above
+    /// everything except towers, whose own pulses are queried too.
     pub path_length: f64,
-    /// How far before the first return the path ends, metres, 0 to 10. Default 0.3: some ten times the noise.
+    /// Distance before the first return at which the path ends, metres, 0 to 10. Default 0.3: some ten times the noise.
     pub clearance: f64,
     /// Distances behind the last return at which visibility is queried, metres, each 0 to 10. Default 0.3, 0.5 and 1.
     pub depths: Vec<f64>,
@@ -34,7 +34,7 @@ impl Default for HeldOutParams {
     }
 }
 
-/// What a pulse met.
+/// Surface that a pulse met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MetSurface {
     /// Ground or water, class 2 or 9.
@@ -52,7 +52,7 @@ pub struct HeldOutPairs {
     pub targets: Vec<[f32; 3]>,
     /// Local metres, (M, 3).
     pub eyes: Vec<[f32; 3]>,
-    /// What the pulse met at the return that the target lies at, (M).
+    /// Surface at the return of the target, (M).
     pub surfaces: Vec<MetSurface>,
 }
 
@@ -69,7 +69,7 @@ pub struct HeldOut {
     pub behind: Vec<(f64, HeldOutPairs)>,
 }
 
-/// How many answers of a kind were wrong.
+/// Number of wrong answers of a kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ErrorTally {
     /// Wrong answers.

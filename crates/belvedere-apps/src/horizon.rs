@@ -17,7 +17,7 @@ const HALVINGS: usize = 4;
 const LIKELY: f32 = 0.95;
 const UNLIKELY: f32 = 0.05;
 
-/// How horizons are made.
+/// Parameters of horizons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct HorizonParams {
@@ -26,7 +26,7 @@ pub struct HorizonParams {
     /// Angle that is added to azimuths from grid north to make those that come out, radians: 0, the default, for grid
     /// north, [`convergence`] for true north.
     pub turn: f64,
-    /// How lines of sight run over the earth.
+    /// Curvature of the earth on lines of sight.
     pub earth: EarthParams,
 }
 
@@ -111,8 +111,8 @@ pub fn horizon_intervals(
     eyes.iter().zip(skylines).map(of_eye).collect()
 }
 
-/// The first elevation from `from` on that `is_certain`, on the way to `limit`, which ends it: in steps that begin with
-/// `step`, above 0, and double, and then by halving the last of them.
+/// Returns the first elevation from `from` towards `limit`, which ends the search, that `is_certain`. The search
+/// doubles steps from `step`, above 0, and then bisects the last of them.
 fn first_certain(from: f64, step: f64, limit: f64, is_certain: impl Fn(f64) -> bool) -> f64 {
     if is_certain(from) {
         return from;

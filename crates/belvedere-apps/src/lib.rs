@@ -1,4 +1,4 @@
-//! What users ask of a scene: each application puts questions to [`belvedere_core::query`] and sums up the answers.
+//! Applications: each queries [`belvedere_core::query`] and summarises the answers.
 
 pub mod ask;
 pub mod calibration;

@@ -6,14 +6,14 @@ use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
-/// How far above and below the line and the ground balls are looked for, metres: higher than any building.
+/// Height above and below the line and the ground within which balls are searched, metres: more than any building.
 const REACH: f64 = 500.0;
 /// Rows between two looks at whether the work was cancelled: some milliseconds.
 const CHECKED: u32 = 256;
-/// Most rows of a profile.
+/// Maximum number of rows of a profile.
 const MAX_ROWS: f64 = 1e6;
 
-/// What a line of sight passes, one value for each of equally spaced places.
+/// Profile along a line of sight, one value for each of equally spaced places.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SightProfile {
     /// Distance on the map from the observer, metres.
@@ -24,7 +24,7 @@ pub struct SightProfile {
     pub line: Vec<f64>,
     /// The pieces of the vertical that lie in balls, (from, to), local metres, from below; none on far terrain.
     pub solid: Vec<Vec<[f64; 2]>>,
-    /// Whether the line lies in a ball, or below far terrain.
+    /// True where the line lies in a ball, or below far terrain.
     pub blocked: Vec<bool>,
     /// Distance on the map at which the line is blocked, metres.
     pub blocked_at: Option<f64>,

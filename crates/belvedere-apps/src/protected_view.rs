@@ -17,12 +17,12 @@ const BAND: usize = 16;
 /// bound the cells below it.
 const THINNEST: f64 = 1e-9;
 
-/// What is protected of the view from one place.
+/// Protected lines of the view from one place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct ViewpointReport {
     /// Pieces of the object whose lines of sight are free today; these are protected.
     pub lines_protected: usize,
-    /// Of these, lines that nothing blocks but that are not proven.
+    /// Number of protected lines that are not proven.
     pub lines_unproven: usize,
     /// Pieces that something hides, which are not protected.
     pub lines_blocked: usize,
@@ -30,12 +30,12 @@ pub struct ViewpointReport {
     pub lines_not_tested: usize,
 }
 
-/// How high one may build.
+/// Height limits that protect a view.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProtectedView {
-    /// Least height of the protected views over each cell, local metres; NaN where none passes.
+    /// Lowest height of the protected views over each cell, local metres; NaN where none passes.
     pub limits: Raster<f32>,
-    /// What is protected from each viewpoint.
+    /// Report for each viewpoint.
     pub viewpoints: Vec<ViewpointReport>,
 }
 
@@ -62,14 +62,14 @@ impl ProtectedView {
     }
 }
 
-/// How high one may build on each cell of `grid` without entering the view of `object` from any of `eyes`, local
-/// metres; an eye that is not finite looks at nothing.
+/// Computes the height limit of each cell of `grid` that protects the view of `object` from all `eyes`, local metres;
+/// an eye that is not finite looks at nothing.
 ///
-/// Each piece of the object that is seen today is protected as a whole: the pyramid from the eye over its three corners
-/// stays free. The limit of a cell is the lowest height of all pyramids over its whole square, in closed form, so that
-/// what is built below it on every cell enters none. What is hidden today is not protected. Lines that are not proven
-/// count as `params.unproven` says; those that are reported are protected. Lines of sight are straight: the curvature
-/// of the earth is not in the limits. Progress counts eyes.
+/// Each piece of the object that is visible today is protected as a whole: the pyramid from the eye over its three
+/// corners stays free. The limit of a cell is the lowest height of all pyramids over its whole square, in closed form.
+/// Buildings below it on every cell therefore enter none. Hidden pieces are not protected. Unproven lines count by
+/// `params.unproven`; those that are reported are protected. Lines of sight are straight: the curvature of the earth is
+/// not in the limits. Progress counts eyes.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a range that is not above zero, and [`Error::Cancelled`].
@@ -163,13 +163,13 @@ fn lower(limits: &mut [f64], grid: &MapGrid, faces: &[FaceCorners], control: &Co
 /// A face as a height over the map.
 struct Slope {
     shape: ConvexPolygon,
-    /// From south to north.
+    /// Slope from south to north.
     span: [f64; 2],
-    /// Where `height` is known, and how it changes to the east and to the north.
+    /// Place where `height` is known, and its slope to the east and to the north.
     start: [f64; 2],
     height: f64,
     change: [f64; 2],
-    /// Least and greatest height of the corners.
+    /// Minimum and maximum height of the corners.
     range: [f64; 2],
 }
 

@@ -1,4 +1,4 @@
-//! How far a figure may be off by chance: blocks of targets resampled.
+//! Sampling error of a figure, from resampled blocks of targets.
 
 use belvedere_data::random::uniform;
 use serde::Serialize;
@@ -9,7 +9,7 @@ const RESAMPLES: u64 = 400;
 /// A figure, and where it would lie for other targets of the same kind.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Interval {
-    /// Of all targets.
+    /// Figure of all targets.
     pub value: f64,
     /// 2.5 % of resampled figures lie below.
     pub low: f64,
@@ -17,7 +17,7 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// Which tile of the map each target lies in, numbered from 0, and how many tiles there are.
+/// Tile in plan of each target, numbered from 0, and the number of tiles.
 #[derive(Clone, Debug)]
 pub struct Tiles {
     /// Tile of each target, (M).
@@ -52,8 +52,8 @@ impl Tiles {
 /// The figure of `count` blocks, such as tiles, with its 95 % interval. `figure` gets how often each block counts, or
 /// `None` where each counts once. `None` where it has no value.
 ///
-/// Whole blocks are drawn with replacement, because errors come in patches: one wrong ball or one missing tree spoils
-/// all targets around it, and targets resampled one by one would look far more certain than they are.
+/// Whole blocks are drawn with replacement, because errors are clustered: one wrong ball or one missing tree affects
+/// all targets around it. Targets resampled one by one would look far more certain than they are.
 ///
 /// # Source
 /// Efron & Tibshirani 1993, chapter 13 (percentile intervals); blocks as in Künsch 1989.

@@ -18,7 +18,7 @@ pub const BLOCK_BITS: usize = 1 << 29;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 256;
 
-/// What light meets on its way to a target.
+/// Obstacles to the light on its way to a target.
 #[derive(Clone, Copy)]
 pub struct Obstacles<'a> {
     /// All that blocks.
@@ -43,15 +43,16 @@ impl Obstacles<'_> {
 
 /// Obstacles that do not fit into memory, and are looked at part by part.
 pub trait ObstacleParts: Sync {
-    /// What crowns let through, where they do; `None` where trees are opaque.
+    /// Returns the transmissivity of crowns; `None` if trees are opaque.
     fn crowns(&self) -> Option<CrownLight>;
 
     /// The medium of crowns, where [`CrownLight::Measured`] is wanted.
     fn medium(&self) -> Option<&Medium>;
 
-    /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees, and what each would
-    /// see without trees where these let a share of the light through: the bits that one scene of all parts would give.
-    /// Where crowns were measured the first is already without trees. Progress counts targets, once for each matrix.
+    /// Computes which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees. If trees let
+    /// a share of the light through, the second matrix has what each would see without them. The bits are those of one
+    /// scene of all parts. If crowns were measured, the first matrix is already without trees. Progress counts targets,
+    /// once for each matrix.
     ///
     /// # Errors
     /// Those of [`MedialScene::visibility_matrix`] and of reading the parts.
@@ -62,7 +63,7 @@ pub trait ObstacleParts: Sync {
         control: &Control<'_>,
     ) -> Result<(VisibilityMatrix, Option<VisibilityMatrix>)>;
 
-    /// Whether each of `targets`, (M, 3) local metres, lies inside an obstacle.
+    /// Flags the `targets`, (M, 3) local metres, that lie inside an obstacle.
     ///
     /// # Errors
     /// Those of reading the parts.
@@ -72,7 +73,7 @@ pub trait ObstacleParts: Sync {
 /// All that may stand between targets and the sky.
 #[derive(Clone, Copy)]
 pub enum SkyObstacles<'a> {
-    /// At once.
+    /// Scene in one piece.
     Whole(Obstacles<'a>),
     /// Part by part.
     InParts(&'a dyn ObstacleParts),
@@ -91,7 +92,7 @@ impl<'a> From<&'a MedialScene> for SkyObstacles<'a> {
 }
 
 impl<'a> SkyObstacles<'a> {
-    /// What crowns let through, where they do; `None` where trees are opaque.
+    /// Returns the transmissivity of crowns; `None` if trees are opaque.
     #[must_use]
     pub fn crowns(&self) -> Option<CrownLight> {
         match self {
@@ -113,7 +114,7 @@ impl<'a> SkyObstacles<'a> {
         }
     }
 
-    /// Whether each of `targets`, (M, 3) local metres, lies inside an obstacle.
+    /// Flags the `targets`, (M, 3) local metres, that lie inside an obstacle.
     ///
     /// # Errors
     /// Those of [`ObstacleParts::are_inside_obstacles`].
@@ -149,20 +150,21 @@ impl<'a> SkyObstacles<'a> {
 /// The rows of some targets.
 #[derive(Clone, Debug)]
 pub struct RowBlock<'a> {
-    /// Which of the targets these are.
+    /// Range of the targets of the block.
     pub rows: Range<usize>,
-    /// What each of them sees; row 0 is that of the first target of the block. Crowns block, unless they were measured.
+    /// Directions that each of them sees; row 0 is that of the first target of the block. Crowns block, unless they
+    /// were measured.
     pub matrix: VisibilityMatrix,
-    /// What crowns let through; `None` where they are opaque.
+    /// Transmissivity of crowns; `None` if they are opaque.
     pub crowns: Option<CrownRows<'a>>,
 }
 
-/// What crowns let through to the targets of a block.
+/// Light through crowns to the targets of a block.
 #[derive(Clone, Debug)]
 pub enum CrownRows<'a> {
     /// The same share of everything: what each target would see without trees.
     Share(VisibilityMatrix),
-    /// What pulses measured.
+    /// Extinction measured by pulses.
     Measured {
         /// The crowns.
         medium: &'a Medium,
@@ -173,10 +175,10 @@ pub enum CrownRows<'a> {
     },
 }
 
-/// What a line meets on its way.
+/// Obstruction of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LineLight {
-    /// Nothing.
+    /// No obstacle.
     Free,
     /// Something opaque.
     Blocked,
@@ -198,7 +200,7 @@ impl LineLight {
         }
     }
 
-    /// Whether the line counts as free where a yes or no is wanted: half or more passes the crowns that were measured,
+    /// Returns true if the line counts as free for a yes or no: half or more of the light passes the measured crowns,
     /// and nothing else is there.
     #[must_use]
     pub fn is_free(self) -> bool {
@@ -218,7 +220,7 @@ impl From<VisibilityMatrix> for RowBlock<'_> {
 }
 
 impl RowBlock<'_> {
-    /// What the line from a target of the block in the direction of a column meets.
+    /// Returns the obstruction of the line from a target of the block in the direction of a column.
     #[must_use]
     pub fn line(&self, row: usize, column: usize) -> LineLight {
         match (&self.crowns, self.matrix.is_free(row, column)) {
@@ -262,9 +264,9 @@ impl RowBlock<'_> {
     }
 }
 
-/// Asks which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees, and hands the rows to
-/// `fold`, block after block in the order of the targets. A target that is not finite sees nothing. Progress counts
-/// targets, twice each where trees let light through.
+/// Computes which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees. It passes the
+/// rows to `fold`, block after block in the order of the targets. A target that is not finite sees nothing. Progress
+/// counts targets, twice each if trees let light through.
 ///
 /// # Errors
 /// Those of [`MedialScene::visibility_matrix`], of [`ObstacleParts::look`] and of `fold`, and [`Error::Cancelled`].
@@ -279,7 +281,7 @@ pub fn fold_rows(
     fold_blocks(surroundings, targets, directions, (BLOCK_BITS / of_target).max(1), control, fold)
 }
 
-/// As [`fold_rows`], with blocks of `block` targets.
+/// Folds rows as [`fold_rows`], with blocks of `block` targets.
 ///
 /// # Errors
 /// Those of [`fold_rows`], and [`Error::InvalidParameter`] for blocks without a target.

@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 /// # Source
 /// Auwers 1891, as the almanacs have it.
 pub const SUN_RADIUS: f64 = 959.63 / 3600.0 * std::f64::consts::PI / 180.0;
-/// What a raster of light says of itself.
+/// Description of a raster of light.
 pub const LIT: &str = "share of the sun, 0 in shadow";
 /// Number of points that represent the disc of the sun: shares of light are multiples of 1/64.
 const DISC_POINTS: usize = 64;
@@ -25,7 +25,7 @@ const CHUNK: usize = 1024;
 /// Targets whose lines of sight are proven by a thread at once: a few milliseconds.
 const PROOF_CHUNK: usize = 512;
 
-/// What edges of shadows are like.
+/// Hard or soft shadow edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Edges {
@@ -144,8 +144,8 @@ pub fn unproven_light(
     Ok(Some(chunks.map(chunk).collect::<Result<Vec<_>>>()?.concat()))
 }
 
-/// How likely each target is lit by a sun with hard edges, 0 to 1, (M); NaN for one without a position. What is turned
-/// away from the sun is not lit for certain.
+/// Returns the probability that each target is lit by a sun with hard edges, 0 to 1, (M); NaN for one without a
+/// position. A target that is turned away from the sun is certainly not lit.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] for normals that are not as many as targets, and those of
@@ -193,10 +193,10 @@ pub fn sun_directions(to_sun: [f64; 3], edges: Edges) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// The share of a sun that each target of `block` gets, 0 to 1, (M), where `directions` represent the sun, the first of
-/// them being column `first` of the block, and crowns have a [`factor`](crate::tree_light::CrownLight::factor). What is
-/// below the horizon is not seen, nor is what stands behind a target that is turned away by its outward normal, (M, 3);
-/// `None` where targets have none.
+/// Returns the share of a sun that each target of `block` gets, 0 to 1, (M). `directions` represent the sun; the first
+/// of them is column `first` of the block. Crowns have a [`factor`](crate::tree_light::CrownLight::factor). Directions
+/// below the horizon give no light. Neither do those behind a target, by its outward normal, (M, 3); `None` if targets
+/// have none.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where the block has fewer columns, or normals are not as many as targets.

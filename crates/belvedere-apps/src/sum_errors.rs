@@ -1,10 +1,12 @@
-//! How far sums over directions may be from the truth: hours of sun, views of the sky.
+//! Errors of sums over directions: hours of sun, views of the sky.
 //!
-//! Errors of neighbouring directions are not independent: they come from the same edges. So the error of a sum is
-//! not added up from those of its directions. What counts is how much the sum would change if all outlines of what
-//! hides suns or sky were moved by a degree: the length of these outlines between directions that a target sees and
-//! those that it does not. For classes of that, the errors found in simulated towns with exact answers give the mean
-//! and the interval that holds 90 % of them (`research/`, program `confidence`; docs/methods/confidence.md).
+//! Errors of neighbouring directions are correlated, since they come from the same edges. The error of a sum is
+//! therefore not the sum of the errors of its directions. The relevant figure is the change of the sum if the outlines
+//! of all obstacles before suns or sky moved by a degree. It is the length of these outlines, between directions that a
+//! target sees and those that it does not.
+//!
+//! For classes of that figure, errors in simulated towns with exact answers give the mean and the interval that holds
+//! 90 % of them (`research/`, program `confidence`; docs/methods/confidence.md).
 //!
 //! # Source
 //! This project's own; prediction intervals by classes of a measure of difficulty (Vovk et al. 2005, chapter 4).
@@ -33,7 +35,7 @@ const ERRORS: &str = include_str!("sum_errors.csv");
 pub const INTERVAL_MEASURES: [(&str, &str); 3] =
     [("expected", "expected value"), ("low", "5 % are lower in truth"), ("high", "5 % are higher in truth")];
 
-/// Whether sums come with how far they may be from the truth.
+/// Choice to give intervals with sums.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Intervals {
     /// They do not.
@@ -44,13 +46,13 @@ pub enum Intervals {
 }
 
 impl Intervals {
-    /// With them if they are wanted.
+    /// Returns the choice for a flag.
     #[must_use]
     pub fn wanted(are_wanted: bool) -> Self {
         if are_wanted { Self::With } else { Self::Without }
     }
 
-    /// Which of `targets` among `obstacles` are inside one, where that is needed.
+    /// Flags the `targets` among `obstacles` that are inside one, if that is needed.
     pub(crate) fn are_inside(
         self,
         obstacles: SkyObstacles<'_>,
@@ -64,7 +66,7 @@ impl Intervals {
     }
 }
 
-/// What is summed up.
+/// Kind of sum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SumKind {
     /// Hours of sun.
@@ -83,7 +85,7 @@ impl SumKind {
         [(Self::Sun, "sun"), (Self::Sky, "sky"), (Self::Energy, "energy"), (Self::Plane, "plane")];
 }
 
-/// By how much the truth is more than the sum, as a share of the greatest possible sum.
+/// Truth less the sum, as a share of the maximum possible sum.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SumError {
     /// Mean.
@@ -93,7 +95,7 @@ pub struct SumError {
 }
 
 impl SumError {
-    /// That of sums of a kind and class.
+    /// Returns the error of sums of a kind and class.
     #[must_use]
     pub fn of(kind: SumKind, class: u8) -> Self {
         FOUND[kind as usize].get(usize::from(class)).copied().unwrap_or_default()
@@ -101,7 +103,7 @@ impl SumError {
 
     /// The expected value of a sum of at most `max`, and the ends of its interval.
     #[must_use]
-    pub fn around(&self, sum: f64, max: f64) -> [f64; 3] {
+    pub fn interval(&self, sum: f64, max: f64) -> [f64; 3] {
         let Self { mean, interval: [low, high] } = *self;
         [mean, low, high].map(|error| (sum + error * max).clamp(0.0, max.max(0.0)))
     }
@@ -136,7 +138,7 @@ pub struct Outlines {
     directions: Vec<[f64; 3]>,
     weights: Vec<f64>,
     neighbors: Vec<Vec<u32>>,
-    /// From a direction to its nearest neighbour, the median, degrees.
+    /// Median distance of a direction from its nearest neighbour, degrees.
     spacing: f64,
 }
 
@@ -216,8 +218,8 @@ pub fn class_of(is_inside_obstacle: bool, moved_share: f64) -> u8 {
     class
 }
 
-/// Measures of what `sums` of a kind may be in truth, of which each is `max` at most: the expected value and the ends
-/// of the interval that holds the truth in 90 % of cases. Each target has its class; `stem` begins their names.
+/// Returns measures of the true value of `sums` of a kind, each at most `max`: the expected value and the ends of the
+/// interval that holds the truth in 90 % of cases. Each target has its class; their names begin with `stem`.
 #[must_use]
 pub fn expected_measures(
     stem: &str,
@@ -228,7 +230,7 @@ pub fn expected_measures(
 ) -> Vec<Measure> {
     let of_row = |(row, (&sum, &class)): (usize, (&f32, &u8))| match sum.is_nan() {
         true => [f64::NAN; 3],
-        false => SumError::of(kind, class).around(f64::from(sum), max(row)),
+        false => SumError::of(kind, class).interval(f64::from(sum), max(row)),
     };
     let found: Vec<[f64; 3]> = sums.values.iter().zip(classes).enumerate().map(of_row).collect();
     let measure = |(number, (suffix, text)): (usize, &(&str, &'static str))| {

@@ -1,4 +1,4 @@
-//! How reliable answers on a survey are, measured with pulses that were kept out of the scene ([`crate::held_out`]).
+//! Reliability of answers on a survey, measured with pulses that were kept out of the scene ([`crate::held_out`]).
 
 use crate::calibration::Calibration;
 use crate::held_out::{ErrorTally, HeldOut, HeldOutPairs, HeldOutParams, MetSurface, split};
@@ -14,17 +14,17 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::borrow::Cow;
 
-/// How far behind last returns places lie, metres: several times the spacing of points of most surveys, and less than
-/// buildings are thick.
+/// Distance of places behind last returns, metres: several times the spacing of points of most surveys, and less than
+/// the thickness of buildings.
 const BEHIND_M: f64 = 1.0;
 /// Side of the tiles that are resampled, metres: about a house with what stands around it.
 const TILE_SIDE_M: f32 = 25.0;
-/// From which probability of what is more likely on an answer counts as certain.
+/// Minimum probability of the more likely answer that counts as certain.
 const CERTAIN_FROM: f64 = 0.9;
-/// From how many cases on the share found in a tenth of probability is compared with what was expected.
+/// Minimum number of cases for which the share found in a tenth of probability is compared with the expected one.
 const MIN_CASES: usize = 200;
 
-/// Which pulses are kept out.
+/// Selection of the pulses that are kept out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReliabilityParams {
     /// Share of the pulses kept out, 0 to 1, both excluded. Default 0.1: with more of them the scene is made of a
@@ -40,7 +40,7 @@ impl Default for ReliabilityParams {
     }
 }
 
-/// How reliable answers on a survey are. Percentages have 95 % intervals.
+/// Reliability of answers on a survey. Percentages have 95 % intervals.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SurveyReliability {
     /// Share of the pulses that were kept out.
@@ -61,7 +61,7 @@ pub struct SurveyReliability {
     pub probabilities_inside_obstacles: Option<ProbabilityReliability>,
 }
 
-/// How reliable answers of one kind are.
+/// Reliability of answers of one kind.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlacesReliability {
     /// Wrong answers; `None` without any answer.
@@ -96,12 +96,12 @@ pub struct FoundAnswers {
     pub none: usize,
 }
 
-/// What probabilities are worth on a survey.
+/// Quality of probabilities on a survey.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbabilityReliability {
     /// Lines of sight.
     pub cases: usize,
-    /// From which probability of what is more likely on an answer counts as certain.
+    /// Minimum probability of the more likely answer that counts as certain.
     pub certain_from: f64,
     /// Answers that are certain.
     pub certain_percent: f64,
@@ -151,9 +151,10 @@ impl ReliabilityParams {
 /// returns where not.
 ///
 /// # Errors
-/// [`Error::MissingAttribute`] where it is not known which returns share a pulse, or where the scanner was; those of
-/// [`SceneModel::build`], among them [`Error::LengthMismatch`] where `model` gives the scanner of each point;
-/// [`Error::InvalidParameter`] for a share that is not between 0 and 1; [`Error::Cancelled`].
+/// - [`Error::MissingAttribute`] if the groups of returns of a pulse or the scanner position are not known.
+/// - Errors of [`SceneModel::build`], among them [`Error::LengthMismatch`] if `model` gives the scanner of each point.
+/// - [`Error::InvalidParameter`] for a share that is not between 0 and 1.
+/// - [`Error::Cancelled`].
 pub fn survey_reliability(
     cloud: &PointCloud,
     model: &ModelParams,
@@ -238,7 +239,7 @@ struct KnownCases {
     ends: Vec<Ends>,
 }
 
-/// Where the ends of a line of sight lie in a scene.
+/// Position of the ends of a line of sight in a scene.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Ends {
     InTheOpen,

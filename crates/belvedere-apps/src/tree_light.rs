@@ -21,18 +21,19 @@ const HALF_A_YEAR: u32 = 183;
 /// Latitude of the tropics, radians.
 const TROPIC: f64 = 0.409;
 
-/// Whether trees carry leaves.
+/// Foliage of trees: in leaf or bare.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Foliage {
     /// In leaf.
     InLeaf,
-    /// Without leaves.
+    /// Bare trees.
     Bare,
 }
 
 impl Foliage {
-    /// That of deciduous trees on a day of the year, 1 to 366, at a latitude in radians: in leaf from day 97 to day 300
-    /// north of the tropics, half a year later south of them, and always between them, where no winter strips trees.
+    /// Returns the foliage of deciduous trees on a day of the year, 1 to 366, at a latitude in radians. They are in
+    /// leaf from day 97 to day 300 north of the tropics, half a year later south of them, and always between them,
+    /// where no winter strips trees.
     ///
     /// # Source
     /// The days are the defaults of SOLWEIG (Lindberg & Grimmond 2011), for Gothenburg.
@@ -46,12 +47,12 @@ impl Foliage {
     }
 }
 
-/// What share of the light gets through a crown, 0 to 1.
+/// Share of the light that passes a crown, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Transmissivity {
     /// In leaf. Default 0.03: that of SOLWEIG, within the 0.01 to 0.05 measured on single trees in full leaf.
     pub in_leaf: f64,
-    /// Without leaves. Default 0.5: that of SOLWEIG, within the 0.40 to 0.52 measured on single trees.
+    /// Share for bare trees. Default 0.5: that of SOLWEIG, within the 0.40 to 0.52 measured on single trees.
     pub bare: f64,
 }
 
@@ -90,11 +91,11 @@ impl Transmissivity {
     }
 }
 
-/// Whether trees carry leaves on a date.
+/// Choice of the foliage: by date, in leaf or bare.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Leaves {
-    /// By the date, as [`Foliage::on_day`] has it; in leaf where a question has no date. Default.
+    /// Foliage of the date, by [`Foliage::on_day`]; in leaf for a question without a date. Default.
     #[default]
     ByDate,
     /// In leaf, whatever the date.
@@ -125,41 +126,40 @@ pub struct Season {
 }
 
 impl Season {
-    /// That of a date at a site.
+    /// Returns the season of a date at a site.
     #[must_use]
     pub fn on(date: Date, site: &Site) -> Self {
         Self { day_of_year: date.day_of_year(), latitude: site.latitude }
     }
 }
 
-/// What crowns let through, and when.
+/// Light through crowns, by season.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CrownLight {
     /// The same share for all crowns, whatever the way through them.
     Share {
-        /// What share of the light gets through a crown.
+        /// Share of the light that passes a crown.
         transmissivity: Transmissivity,
-        /// Whether trees carry leaves.
+        /// Choice of the foliage.
         leaves: Leaves,
     },
-    /// What pulses measured in each voxel ([`belvedere_core::medium`]).
+    /// Extinction that pulses measured in each voxel ([`belvedere_core::medium`]).
     Measured {
-        /// Whether trees carry leaves, where the survey was flown in leaf; `None` for the leaves of the survey,
-        /// whatever the date.
+        /// Choice of the foliage, for a survey flown in leaf; `None` for the foliage of the survey on all dates.
         leaves: Option<Leaves>,
     },
 }
 
 impl CrownLight {
-    /// Whether shadows are shares of light. What pulses measured, as they did, is a yes or no.
+    /// Returns true if shadows are shares of light. Unchanged measured crowns give a yes or no.
     #[must_use]
     pub fn gives_shares(&self) -> bool {
         *self != Self::Measured { leaves: None }
     }
 
-    /// Share of the light that gets through crowns in a season, or what their optical depth is multiplied by where it
-    /// was measured; a season is `None` where a question has no date.
+    /// Returns the share of the light that passes crowns in a season, or the factor of their optical depth if it was
+    /// measured. A season is `None` for a question without a date.
     #[must_use]
     pub fn factor(&self, season: Option<Season>) -> f64 {
         match self {
@@ -186,7 +186,7 @@ pub fn bare_depth() -> f64 {
 pub struct TreeLight {
     /// The balls that are not vegetation.
     pub opaque: Arc<MedialScene>,
-    /// What the vegetation lets through.
+    /// Light through the vegetation.
     pub crowns: CrownLight,
     /// The crowns, where they were measured.
     pub medium: Option<Arc<Medium>>,

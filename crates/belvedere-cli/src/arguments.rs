@@ -1,5 +1,5 @@
-//! What can be typed: flags as entered. What they build is made in `pipeline` and in each command. Texts longer than a
-//! line are in `help/`.
+//! Command-line arguments: flags as entered. `pipeline` and each command convert them. Texts longer than a line are in
+//! `help/`.
 
 mod balls;
 mod cameras;
@@ -134,7 +134,7 @@ pub(crate) struct Global {
     pub(crate) quiet: bool,
 }
 
-/// What tests many directions at many places.
+/// Device for tests of many directions at many places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum DeviceChoice {
     Automatic,

@@ -57,7 +57,7 @@ pub(crate) fn with_device(model: SceneModel) -> SceneModel {
     model
 }
 
-/// Which device was used, and what the CPU had to do instead.
+/// Reports the device that was used, and the work that fell to the CPU.
 pub(crate) fn report(summary: &mut Summary) {
     #[cfg(feature = "gpu")]
     if let Some(gpu) = CHOSEN.get() {

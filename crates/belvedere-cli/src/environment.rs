@@ -1,5 +1,4 @@
-//! What was typed, and what the environment says of threads, of the instructions of the processor, and of where scenes
-//! are kept.
+//! Settings from arguments and the environment: threads, instructions of the processor, and the folder of kept scenes.
 
 use crate::arguments::{Global, MAX_THREADS, Usage};
 use anyhow::{Result, anyhow};
@@ -11,7 +10,7 @@ use std::ffi::OsString;
 
 /// Threads, as other programs with the same library have it.
 const THREADS: &str = "RAYON_NUM_THREADS";
-/// Whether AVX2 is used where the processor has it: on or off.
+/// Use of AVX2 if the processor has it: on or off.
 const AVX2: &str = "BELVEDERE_AVX2";
 
 /// The words that were typed. Addresses in them are without user, password and key from here on, so that nothing that
@@ -40,7 +39,7 @@ pub(crate) fn apply(global: &Global) -> Result<()> {
     })
 }
 
-/// Where scenes are kept; `None` where that is not wanted, or no folder is known.
+/// Returns the cache of scenes; `None` if it is not wanted, or no folder is known.
 pub(crate) fn cache(global: &Global) -> Option<SceneCache> {
     if global.no_cache {
         return None;

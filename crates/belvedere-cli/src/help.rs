@@ -79,7 +79,6 @@ const RARE: &[&str] = &[
     "keep-duplicates",
     "leaves",
     "linke",
-    "load-matrix",
     "masks",
     "max-height",
     "measures",
@@ -96,7 +95,6 @@ const RARE: &[&str] = &[
     "patches",
     "per-target",
     "refraction",
-    "save-matrix",
     "scene-config",
     "search-limit",
     "shell",
@@ -129,8 +127,8 @@ const RARE_IN: &[(&str, &[&str])] = &[
 /// Options of all commands that `-h` shows.
 const SHOWN_OF_ALL: [&str; 3] = ["json", "verbose", "help"];
 
-/// What a command does, its input, output, units and limits, and examples that work as printed on the files of the
-/// demo.
+/// Long help of each command: purpose, input, output, units and limits, and examples that work as printed on the files
+/// of the demo.
 const TEXTS: &[(&str, &str)] = &[
     ("demo", include_str!("help/demo.txt")),
     ("simulate", include_str!("help/simulate.txt")),

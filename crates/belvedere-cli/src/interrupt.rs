@@ -8,13 +8,13 @@ use std::time::Duration;
 
 /// Exit status of a run that was interrupted, as shells have it for SIGINT.
 const STATUS: u8 = 130;
-/// How long work may go on after the signal before the program ends without it.
+/// Time that work may continue after the signal before the program ends without it.
 const PATIENCE: Duration = Duration::from_millis(120);
 
 static IS_REQUESTED: AtomicBool = AtomicBool::new(false);
 static IS_REPORTED: AtomicBool = AtomicBool::new(false);
 
-/// Whether the run should stop.
+/// Returns true if the run should stop.
 pub(crate) fn is_requested() -> bool {
     IS_REQUESTED.load(Ordering::Relaxed)
 }

@@ -18,7 +18,7 @@ pub(crate) fn limit(typed: &MemoryArgument) -> Option<u64> {
     typed.memory.map(|memory| memory.0).or_else(|| available_bytes().map(|bytes| bytes / 2))
 }
 
-/// Most memory that this process had at once.
+/// Returns the maximum memory that this process had at once, bytes.
 pub(crate) fn peak_bytes() -> Option<u64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

@@ -1,11 +1,11 @@
-//! From arguments to clouds, scene models and views. Calls the library; decides and computes nothing itself.
+//! Converts arguments to clouds, scene models and views. Calls the library; decides and computes nothing itself.
 
-mod near;
 pub(crate) mod params;
 mod plan;
+mod scene_in_reach;
 
-pub(crate) use near::scene_in_reach;
 pub(crate) use plan::{areas, mesh_in, planned};
+pub(crate) use scene_in_reach::scene_in_reach;
 
 use crate::arguments::{
     CloudInput, GroundChoice, MethodChoice, ProfileChoice, SceneInput, SizeChoice, SkyPlaces, UnprovenChoice, UpChoice,
@@ -177,7 +177,7 @@ pub(crate) fn scene_of_places(
     scene.into_question_scene(Some(&places.ground), shell, run)
 }
 
-/// Whether a scene keeps the points that its balls were made from.
+/// Choice to keep the points that the balls of a scene were made from.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum KeepPoints {
     Keep,
@@ -195,7 +195,7 @@ pub(crate) fn scene(arguments: &SceneInput, points: KeepPoints, run: &mut Comman
     Ok(scene)
 }
 
-/// Whether a path is a file, or the address of one.
+/// Returns true if a path is a file, or the address of one.
 pub(crate) fn is_file(path: &Path) -> bool {
     path.is_file() || web_address(path).is_some()
 }
@@ -359,7 +359,7 @@ impl From<ProfileChoice> for Profile {
 impl ViewChoice {
     /// The views on a scene, reported: one, or the two halves of a panorama.
     pub(crate) fn views(&self, scene: &LoadedScene, summary: &mut Summary) -> Result<Vec<View>> {
-        let from = self.from(scene, summary)?;
+        let from = self.view_from(scene, summary)?;
         summary.remarks(from.remark(scene.model.coverage().as_ref()));
         summary.add("view", Summary::of(&from.section()));
         match from {
@@ -368,8 +368,8 @@ impl ViewChoice {
         }
     }
 
-    /// From where a picture of a scene is taken.
-    pub(crate) fn from(&self, scene: &LoadedScene, summary: &mut Summary) -> Result<ViewFrom> {
+    /// Returns the position and projection of a picture of a scene.
+    pub(crate) fn view_from(&self, scene: &LoadedScene, summary: &mut Summary) -> Result<ViewFrom> {
         match self.kind.panorama {
             Some(eye) => {
                 let (eye, width) = (scene.local_from_file(eye.0), self.panorama_width()?);
@@ -397,7 +397,7 @@ impl ViewChoice {
         Ok(())
     }
 
-    /// Whether the view is from an eye.
+    /// Returns true if the view is from an eye.
     pub(crate) fn is_central(&self) -> bool {
         self.kind.panorama.is_some() || self.kind.eye.is_some()
     }

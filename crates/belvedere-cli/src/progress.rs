@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Least time between two lines of JSON about one stage.
+/// Minimum time between two lines of JSON about one stage.
 const BETWEEN_LINES: Duration = Duration::from_millis(200);
 
 /// The stages of a command, one after the other: what the library reports to, and where it learns of Ctrl-C.
@@ -43,7 +43,7 @@ struct RunningStage {
     total: usize,
     done: usize,
     bar: ProgressBar,
-    /// When the last line of JSON was written.
+    /// Time of the last line of JSON.
     last_line: Instant,
 }
 
@@ -162,7 +162,7 @@ impl CommandStages {
         self
     }
 
-    /// What functions of the library report their stages to.
+    /// Returns the control to which functions of the library report their stages.
     pub(crate) fn control(&self) -> Control<'_> {
         Control::new(&self.progress)
     }

@@ -7,12 +7,12 @@ use belvedere::apps::ask::Answers;
 use belvedere::cache::SceneCache;
 use belvedere::control::{Control, Watcher};
 
-/// What every command has beside its arguments.
+/// Context of every command beside its arguments.
 pub(crate) struct CommandContext {
     stages: CommandStages,
     pub(crate) summary: Summary,
     pub(crate) seed: u64,
-    /// Where scenes are kept.
+    /// Cache of scenes.
     pub(crate) cache: Option<SceneCache>,
 }
 
@@ -28,7 +28,7 @@ impl CommandContext {
         Self { stages: CommandStages::new(global).watched(watcher), ..Self::new(global) }
     }
 
-    /// What functions of the library report their stages to.
+    /// Returns the control to which functions of the library report their stages.
     pub(crate) fn control(&self) -> Control<'_> {
         self.stages.control()
     }

@@ -1,4 +1,4 @@
-//! How balls are made: flags, and the file of `--scene-config` that completes them.
+//! Ball parameters: flags, and the file of `--scene-config` that completes them.
 
 use crate::arguments::{
     BallShape, BallsArguments, Cleaning, OrientedPoints, Orienting, ProfileChoice, SceneBalls, SceneConfig, Shrinking,
@@ -16,7 +16,7 @@ use serde_json::{Map, Value};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// How balls are made: what was typed, completed by the file.
+/// Ball parameters: typed values, completed by the file.
 #[derive(Clone, Default)]
 pub(crate) struct BallParameters {
     pub(crate) cleaning: Cleaning,
@@ -41,7 +41,7 @@ struct SceneShape {
 }
 
 impl BallsArguments {
-    /// How balls are made.
+    /// Returns the ball parameters.
     pub(crate) fn parameters(&self) -> Result<BallParameters> {
         let (cleaning, orienting) = (self.cleaning.clone(), self.orienting.clone());
         let shrinking = self.shrinking.clone();
@@ -50,7 +50,7 @@ impl BallsArguments {
 }
 
 impl OrientedPoints {
-    /// How points are prepared.
+    /// Returns the parameters of preparing points.
     pub(crate) fn parameters(&self) -> Result<BallParameters> {
         let (cleaning, orienting) = (self.cleaning.clone(), self.orienting.clone());
         BallParameters { cleaning, orienting, ..BallParameters::default() }.completed(&self.config)
@@ -58,7 +58,7 @@ impl OrientedPoints {
 }
 
 impl SceneBalls {
-    /// How balls are made.
+    /// Returns the ball parameters.
     pub(crate) fn parameters(&self) -> Result<BallParameters> {
         let mut typed = BallParameters::default();
         typed.orienting.orient.clone_from(&self.orient);
@@ -198,7 +198,7 @@ fn read(path: &Path) -> Result<Map<String, Value>> {
     Ok(keys)
 }
 
-/// Whether a value alone can be used. An error of the whole object would not say which key it is about.
+/// Checks that a value alone can be used. An error of the whole object would not name its key.
 fn check(key: &str, value: &Value) -> serde_json::Result<()> {
     let alone = Value::Object(Map::from_iter([(key.to_owned(), value.clone())]));
     Cleaning::deserialize(&alone)?;

@@ -1,4 +1,4 @@
-//! What a command found, for people and as JSON.
+//! Summary of a command, for people and as JSON.
 
 use crate::arguments::Global;
 use belvedere::apps::ask::{Remark, remark_on_left_out};
@@ -24,7 +24,7 @@ pub(crate) struct Summary {
     extent: SummaryDetail,
 }
 
-/// How much of a summary is printed as text.
+/// Extent of a summary printed as text.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 enum SummaryDetail {
     /// The headlines, remarks and files; all of it with `--verbose`.

@@ -69,8 +69,8 @@ pub(crate) fn check_input(path: &Path) -> belvedere::Result<()> {
     }
 }
 
-/// Whether an argument names a file that is read after the scene is built, which may take hours. The files of the scene
-/// are read at once.
+/// Returns true if an argument names a file that is read after the scene is built, which may take hours. The files of
+/// the scene are read at once.
 fn is_beside_the_scene(argument: &Arg) -> bool {
     let is_of_scene = |name: &clap::builder::Str| ["CLOUD", "DIR"].contains(&name.as_str());
     // a page is written to
@@ -91,17 +91,17 @@ fn files_named(argument: &Arg, value: &OsStr) -> Vec<PathBuf> {
     }
 }
 
-/// Whether an argument names a file to write. Folders hold files of other names than their command reads.
+/// Returns true if an argument names a file to write. Folders hold files of other names than their command reads.
 fn is_output(argument: &Arg) -> bool {
     is_called(argument, "OUT")
 }
 
-/// Whether an argument names a folder to write into.
+/// Returns true if an argument names a folder to write into.
 pub(crate) fn is_folder(argument: &Arg) -> bool {
     is_called(argument, "DIR")
 }
 
-/// Whether an argument names a file or a folder to write.
+/// Returns true if an argument names a file or a folder to write.
 pub(crate) fn is_written(argument: &Arg) -> bool {
     is_output(argument) || is_folder(argument)
 }
@@ -126,7 +126,7 @@ fn files_of(path: PathBuf) -> Vec<PathBuf> {
     }
 }
 
-/// Whether two paths lead to the same plain file, through links too, or would if it was there.
+/// Returns true if two paths lead to the same plain file, through links too, or would if it existed.
 fn is_same(a: &Path, b: &Path) -> bool {
     match (a.metadata(), b.metadata()) {
         (Ok(of_a), Ok(of_b)) => of_a.is_file() && of_b.is_file() && is_identical((a, &of_a), (b, &of_b)),

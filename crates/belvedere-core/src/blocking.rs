@@ -1,4 +1,4 @@
-//! When a ball blocks a line of sight: the one definition that rays, skylines, beams, depth maps and sweeps share.
+//! The rule by which a ball blocks a line of sight: one definition for rays, skylines, beams, depth maps and sweeps.
 //!
 //! Everything here is scalar arithmetic on one ball and one line, so that another device can repeat it operation by
 //! operation. Lengths are metres, positions are local, directions are unit vectors. A line of sight runs from its
@@ -23,8 +23,8 @@ use belvedere_data::{Error, Parameter, Result};
 
 /// The largest part of its radius by which a ball gives way to a target: a wire must not vanish.
 pub const SHELL_SHARE: f64 = 0.5;
-/// How far a point of an airborne scan may lie from the surface of the balls around it, metres: 0.05 of noise, and as
-/// much by which the default balls stand out over points.
+/// Maximum distance of a point of an airborne scan from the surface of the balls around it, metres: 0.05 of noise, and
+/// as much by which the default balls stand out over points.
 pub(crate) const SURFACE_DEVIATION: f64 = 0.1;
 /// Slope of a surface against the picture plane up to which its own points shall be visible: 63°, level ground under a
 /// sun 27° high.
@@ -53,24 +53,24 @@ pub enum Profile {
     PaperCone,
 }
 
-/// How balls block lines of sight.
+/// Rule by which balls block lines of sight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BlockRule {
     /// Surface that represents a ball. Default the sphere.
     pub profile: Profile,
-    /// How far an end may lie inside a ball, along its line of sight, and the line still be free, metres, 0 or more.
-    /// Default 0.
+    /// Maximum depth of an end inside a ball, along its line of sight, for which the line is still free, metres, 0 or
+    /// more. Default 0.
     pub bias: f64,
-    /// How far a ball gives way to an end near its surface, metres, 0 or more: see [`BlockRule::radius_for`]. Balls
-    /// bulge by centimetres between the points of a surface, and what lies on that surface must not vanish in them.
-    /// Default 0. Depth maps have no shell: they do not know the target when balls are drawn.
+    /// Surface tolerance: the maximum reduction of a ball near an end of a line, metres, 0 or more; see
+    /// [`BlockRule::radius_for`]. Balls bulge by centimetres between the points of a surface, and a target on that
+    /// surface must stay visible. Default 0. Depth maps have no shell: the target is unknown when balls are drawn.
     pub shell: f64,
 }
 
 impl BlockRule {
-    /// For carved balls: spheres with a shell of 0.2 m and no bias. On simulated towns of another seed than those of
-    /// `research/notes/accuracy-tables.md` a bias of 0.25 m instead costs 1.7 points on facades and gains 0.7 on roofs;
-    /// a shell of 0.3 m gains 0.4 and costs 0.3.
+    /// Returns the rule of carved balls: spheres with a shell of 0.2 m and no bias. It was measured on simulated towns
+    /// of another seed than those of `research/notes/accuracy-tables.md`. A bias of 0.25 m instead costs 1.7 points on
+    /// facades and gains 0.7 on roofs; a shell of 0.3 m gains 0.4 and costs 0.3.
     #[must_use]
     pub fn carved() -> Self {
         Self { profile: Profile::Sphere, bias: 0.0, shell: 0.2 }
@@ -125,8 +125,8 @@ impl BlockRule {
     /// The radius that a ball of `radius` counts with for an end `distance` metres from its centre; between two ends
     /// the lesser of both counts.
     ///
-    /// With s the lesser of the shell and half the radius: r − s for an end less than s inside the surface, r − (s −
-    /// (distance − r)) for one less than s outside, and the whole r for all others.
+    /// Let s be the smaller of the shell and half the radius. The result is r − s for an end less than s inside the
+    /// surface, r − (s − (distance − r)) for one less than s outside, and r for all others.
     #[must_use]
     #[inline]
     pub fn radius_for(&self, radius: f64, distance: f64) -> f64 {
@@ -135,7 +135,7 @@ impl BlockRule {
         if outside.abs() < shell { radius - (shell - outside.max(0.0)) } else { radius }
     }
 
-    /// Whether an end of a line of sight lies so deep in a ball, or deeper, that the ball does not give way: it blocks
+    /// Returns true if an end of a line of sight lies so deep in a ball that the ball does not give way: it blocks
     /// every line from there.
     #[must_use]
     #[inline]
@@ -143,19 +143,19 @@ impl BlockRule {
         ball.depth_of(end) > self.shell_of(f64::from(ball.radius)) + self.bias.max(0.0)
     }
 
-    /// Where the line of sight from `target` along `towards` leaves a ball that blocks it, metres from the target, at
-    /// most `reach`; `None` for a ball that does not block. The line ends at the viewer, `reach` metres from the
-    /// target.
+    /// Returns the distance from the target at which the line of sight from `target` along `towards` leaves a ball that
+    /// blocks it, metres, at most `reach`. `None` for a ball that does not block. The line ends at the viewer, `reach`
+    /// metres from the target.
     #[must_use]
     #[inline]
     pub fn blocks_line(&self, ball: Ball, target: [f64; 3], towards: [f64; 3], reach: f64) -> Option<f64> {
         self.blocked_piece(ball, target, towards, reach).map(|[_, leaves]| leaves.min(reach))
     }
 
-    /// The piece of the line of sight from `target` along `towards` to `reach` metres that a ball blocks: where the
-    /// line enters and leaves the ball, which may lie beyond the ends, metres from the target; `None` for a ball that
-    /// does not block. Which end is the target changes the answer by no more than what is rounded, and not at all where
-    /// lines are given as [`Ray::between`](crate::ray_index::Ray::between) gives them.
+    /// Returns the interval of the line of sight from `target` along `towards` to `reach` metres that a ball blocks:
+    /// entry and exit, which may lie beyond the ends, metres from the target. `None` for a ball that does not block.
+    /// Exchanging the ends changes the answer by rounding only, and not at all for lines from
+    /// [`Ray::between`](crate::ray_index::Ray::between).
     #[must_use]
     #[inline]
     pub fn blocked_piece(&self, ball: Ball, target: [f64; 3], towards: [f64; 3], reach: f64) -> Option<[f64; 2]> {
@@ -174,8 +174,8 @@ impl BlockRule {
         (half + along > self.bias && half + before_viewer > self.bias).then_some([along - half, along + half])
     }
 
-    /// As [`BlockRule::blocks_line`], for a line that a picture plane or a near limit cuts `reach` metres from the
-    /// target: balls that reach past it block nothing.
+    /// Returns the result of [`BlockRule::blocks_line`] for a line that a picture plane or a near limit cuts `reach`
+    /// metres from the target: balls that reach past it block nothing.
     #[must_use]
     #[inline]
     pub fn blocks_before_plane(&self, ball: Ball, target: [f64; 3], towards: [f64; 3], reach: f64) -> Option<f64> {
@@ -187,9 +187,9 @@ impl BlockRule {
         self.blocks_line(ball, target, towards, f64::INFINITY)
     }
 
-    /// The piece of a chord of a curved line of sight that a ball blocks: where the chord enters and leaves the ball,
-    /// which may lie beyond its ends, metres from its start; `None` for a ball that does not block. Viewer and target
-    /// are those of the whole line.
+    /// Returns the interval of a chord of a curved line of sight that a ball blocks: entry and exit, which may lie
+    /// beyond its ends, metres from its start. `None` for a ball that does not block. Viewer and target are those of
+    /// the whole line.
     #[must_use]
     #[inline]
     pub fn blocks_chord(&self, ball: Ball, chord: &Chord) -> Option<[f64; 2]> {
@@ -205,8 +205,8 @@ impl BlockRule {
         (along - half < to && along + half > from).then_some([along - half, along + half])
     }
 
-    /// Where a viewer at `eye` who looks along `direction` meets a ball, metres from the eye; `None` for a ball that
-    /// the ray misses or that holds the eye. No ball gives way, since there is no target.
+    /// Returns the distance at which a viewer at `eye` who looks along `direction` meets a ball, metres. `None` for a
+    /// ball that the ray misses or that holds the eye. No ball gives way, since there is no target.
     #[must_use]
     #[inline]
     pub fn meets_ray(&self, ball: Ball, eye: [f64; 3], direction: [f64; 3]) -> Option<f64> {
@@ -222,8 +222,8 @@ impl BlockRule {
         })
     }
 
-    /// The vector from `place` to the centre of a ball, and the radius that the ball counts with for a target at
-    /// `place`; `None` where `place` lies inside the ball even so.
+    /// Returns the vector from `place` to the centre of a ball, and the radius of the ball for a target at `place`.
+    /// `None` if `place` lies inside the reduced ball.
     #[must_use]
     #[inline]
     pub fn seen_from(&self, ball: Ball, place: [f64; 3]) -> Option<([f64; 3], f64)> {
@@ -249,7 +249,8 @@ impl BlockRule {
         Cover { towards: offset.map(|v| v / distance), cosine, highest }
     }
 
-    /// From the point of a line nearest to the centre to where the line leaves the profile, metres.
+    /// Returns the distance from the point of a line nearest to the centre to the exit of the line from the profile,
+    /// metres.
     #[inline]
     fn half_chord(&self, radius: f64, beside_square: f64) -> f64 {
         match self.profile {
@@ -259,11 +260,11 @@ impl BlockRule {
     }
 }
 
-/// Distance from the plane of a triangle up to which an end of a line of sight lies on the triangle, metres: targets
-/// are f32, which is off by 0.1 mm a kilometre from the origin, and a target on a triangle must not be hidden by it.
+/// Maximum distance between the plane of a triangle and an end of a line of sight that lies on it, metres. Targets are
+/// f32, which is off by 0.1 mm a kilometre from the origin, and a target on a triangle must not be hidden by it.
 pub const CONTACT: f64 = 1e-3;
-/// How deep behind a patch of a surface of the survey an end of a line of sight still lies on that surface, metres: the
-/// noise of measuring, as points lie on both sides of the plane that was fitted to them.
+/// Maximum depth of an end of a line of sight behind a surface patch for which it lies on that surface, metres: the
+/// measurement noise, since points lie on both sides of the fitted plane.
 pub const PATCH_DEPTH: f64 = 0.15;
 
 /// The plane of a triangle that blocks lines of sight, and how deep behind it ends still lie on it.
@@ -277,12 +278,12 @@ pub struct Sheet {
     pub normal: [f64; 3],
     /// A place in the plane.
     pub corner: [f64; 3],
-    /// How far behind the plane an end lies on the surface, metres, at least [`CONTACT`].
+    /// Maximum depth of an end behind the plane for which it lies on the surface, metres, at least [`CONTACT`].
     pub depth: f64,
 }
 
 impl Sheet {
-    /// Whether an end of a line of sight lies on the surface, so that it does not block the line.
+    /// Returns true if an end of a line of sight lies on the surface, so that it does not block the line.
     #[must_use]
     #[inline]
     pub fn gives_way_to(&self, end: [f64; 3]) -> bool {
@@ -304,7 +305,7 @@ impl Sheet {
         (rise >= 0.0 && rise.is_finite()).then_some(place[2] + rise)
     }
 
-    /// How far a place lies behind the plane, metres; below zero in front of it.
+    /// Returns the depth of a place behind the plane, metres; negative in front of it.
     #[inline]
     fn depth_of(&self, place: [f64; 3]) -> f64 {
         dot(self.normal, sub(self.corner, place))
@@ -338,10 +339,10 @@ pub struct Cover {
     pub highest: f64,
 }
 
-/// How a line passes the centre of a ball.
+/// Position of the centre of a ball relative to a line.
 #[derive(Clone, Copy)]
 struct LinePassing {
-    /// From the start of the line to its point nearest to the centre, metres.
+    /// Distance from the start of the line to its point nearest to the centre, metres.
     along: f64,
     /// Square of the distance between that point and the centre, m².
     beside_square: f64,
@@ -359,8 +360,8 @@ impl LinePassing {
 }
 
 impl Ball {
-    /// Whether the radius is above zero, and centre and radius are at most [`FARTHEST`], whose squares are still exact
-    /// enough.
+    /// Returns true if the radius is above zero, and centre and radius are at most [`FARTHEST`], whose squares are
+    /// still exact enough.
     #[must_use]
     pub fn is_usable(&self) -> bool {
         self.radius > 0.0 && self.radius <= FARTHEST && self.center.iter().all(|v| v.abs() <= FARTHEST)
@@ -380,15 +381,15 @@ impl Ball {
         length(sub(self.center.map(f64::from), point))
     }
 
-    /// How deep `point` lies below the surface, metres; below zero outside.
+    /// Returns the depth of `point` below the surface, metres; negative outside.
     #[must_use]
     #[inline]
     pub fn depth_of(&self, point: [f64; 3]) -> f64 {
         f64::from(self.radius) - self.distance_to(point)
     }
 
-    /// The piece of the line from `origin` along `direction` that lies in the whole ball, however it blocks: from and
-    /// to, metres, below zero before the origin; `None` for a line that misses it.
+    /// Returns the interval of the line from `origin` along `direction` inside the whole ball, however it blocks: from
+    /// and to, metres, negative before the origin. `None` for a line that misses it.
     #[must_use]
     #[inline]
     pub fn interval(&self, origin: [f64; 3], direction: [f64; 3]) -> Option<[f64; 2]> {
@@ -399,15 +400,15 @@ impl Ball {
     }
 }
 
-/// Whether a ball of `radius` holds a point `distance` metres from its centre.
+/// Returns true if a ball of `radius` holds a point `distance` metres from its centre.
 #[must_use]
 #[inline]
 pub fn holds_at(radius: f64, distance: f64) -> bool {
     distance <= radius
 }
 
-/// The bias, metres, by which a target may lie inside a ball along its line of sight and still count as visible, where
-/// noise and balls are all that separates a point from its surface:
+/// Returns the bias, metres: the depth inside a ball, along the line of sight, up to which a target counts as visible.
+/// Only noise and balls separate such a point from its surface. It equals
 /// [`DepthMap::default_depth_bias`](crate::depth::DepthMap::default_depth_bias) for pixels without extent, 0.22 m.
 #[must_use]
 pub fn surface_bias() -> f64 {

@@ -1,8 +1,8 @@
-//! Which instructions of the processor the indexes run on. Answers are the same bits on all of them.
+//! Choice of the processor instructions of the indexes. Answers are the same bits on all of them.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether a face turned AVX2 off.
+/// True if AVX2 was turned off.
 static IS_SCALAR: AtomicBool = AtomicBool::new(false);
 
 /// Instructions that a search runs on.
@@ -17,8 +17,8 @@ pub enum Instructions {
 }
 
 impl Instructions {
-    /// From now on indexes use no more than every machine has: to look for faults of a processor or of a virtual
-    /// machine. Answers stay the same bits. For programs, before any other call.
+    /// Disables AVX2 for the rest of the process, to find faults of a processor or of a virtual machine. Answers are
+    /// the same bits. For programs, before any other call.
     pub fn turn_avx2_off() {
         IS_SCALAR.store(true, Ordering::Relaxed);
     }

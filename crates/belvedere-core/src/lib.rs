@@ -6,7 +6,7 @@ pub mod blocking;
 pub mod clean;
 pub mod depth;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-mod eight;
+mod f32x8;
 pub mod ground;
 mod instructions;
 pub mod medial;

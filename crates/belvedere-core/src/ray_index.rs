@@ -2,13 +2,13 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
-mod opened;
+mod open_node;
 mod search_tree;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 mod simd128;
 mod walk;
 
-pub(crate) use opened::{OpenNode, PartSides};
+pub(crate) use open_node::{OpenNode, PartSides};
 pub(crate) use walk::Visit;
 
 use crate::instructions::Instructions;
@@ -23,23 +23,23 @@ use search_tree::search_tree;
 use simd128::RaySimd128 as RayPlain;
 use walk::{TreeRay, walk};
 
-/// What tests boxes on machines without AVX2.
+/// Scalar test of boxes for machines without AVX2.
 #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
 type RayPlain = walk::RayScalar<false>;
 
-/// Padding of the boxes, as a share of the size of the scene: the tree works in f32 and a ray enters it at the box of
+/// Padding of the boxes, as a share of the size of the scene. The tree works in f32, and a ray enters it at the box of
 /// the scene, so that its slab test errs by a few units of 6e-8 of that size.
 const BOX_PADDING: f64 = 1e-6;
 /// Minimum padding, and how much farther than requested the tree searches, metres: far more than f32 errs within some
 /// hundred metres.
 const TREE_SLACK: f64 = 1e-3;
-/// What ends a walk: no range is below zero.
+/// Range that ends a walk: no range is below zero.
 pub(crate) const END: f32 = -1.0;
 
 /// A piece of a straight line, local metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where ranges count from.
+    /// Point at range 0.
     pub origin: [f64; 3],
     /// Unit vector.
     pub direction: [f64; 3],
@@ -72,8 +72,8 @@ impl Ray {
     }
 }
 
-/// Two ends of a line in the one order in which it is looked at: first the one nearer to the local origin, since less
-/// is rounded from there than from a viewer far away; by x, then y, then z where both are equally far.
+/// Returns two ends of a line in a fixed order: first the one nearer to the local origin, where rounding is smaller
+/// than at a distant viewer. If both are equally far, the order is by x, then y, then z.
 ///
 /// What is rounded depends on the end from which a line is looked at. With one order for all, who looks and what is
 /// looked at can change places, and no answer changes.
@@ -94,7 +94,7 @@ pub struct RayIndex {
 
 /// The parts of a node of a [`RayIndex`].
 pub struct NodeParts {
-    /// What they are.
+    /// The parts.
     pub parts: [NodePart; PARTS],
     /// Middles of their boxes, local metres, by axis.
     pub centers: [[f32; PARTS]; 3],
@@ -102,13 +102,13 @@ pub struct NodeParts {
     pub half_sizes: [[f32; PARTS]; 3],
 }
 
-/// Most parts of a node of a [`RayIndex`].
+/// Maximum number of parts of a node of a [`RayIndex`].
 pub const PARTS: usize = 8;
 
 /// Words of a node: see [`RayIndex::node_words`].
 pub const NODE_WORDS: usize = 20;
 
-/// What a node of a [`RayIndex`] is made of.
+/// Part of a node of a [`RayIndex`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NodePart {
     /// A place that is not taken.
@@ -119,7 +119,7 @@ pub enum NodePart {
     Rows {
         /// The lowest row.
         first: u32,
-        /// How many there are.
+        /// Number of rows.
         count: u32,
     },
 }
@@ -173,7 +173,7 @@ impl RayIndex {
         &self.tree.primitive_indices
     }
 
-    /// Whether `blocks` is true for any row whose box `ray` may meet.
+    /// Returns true if `blocks` is true for any row whose box `ray` may meet.
     pub fn any(&self, ray: &Ray, mut blocks: impl FnMut(usize) -> bool) -> bool {
         let Some(entry) = self.enter(ray, [0.0; 3]) else { return false };
         let mut any = false;
@@ -184,8 +184,8 @@ impl RayIndex {
         any
     }
 
-    /// Visits the rows whose boxes may be met by a ray that runs as `ray` does, between the same ranges, but starts up
-    /// to `room` metres from its origin along each axis, roughly from there on.
+    /// Visits the rows whose boxes may be met by a ray parallel to `ray`, between the same ranges, that starts up to
+    /// `room` metres from its origin along each axis. The order is roughly by range.
     pub(crate) fn visit_beside(&self, ray: &Ray, room: [f64; 3], visit: impl Visit) {
         if let Some(entry) = self.enter(ray, room) {
             self.walk(entry.ray, visit);
@@ -230,7 +230,7 @@ impl RayIndex {
 
     /// Calls `visit` for every row whose box may meet the box between two corners, local metres, in no particular
     /// order.
-    pub fn near(&self, low: [f64; 3], high: [f64; 3], mut visit: impl FnMut(usize)) {
+    pub fn visit_near(&self, low: [f64; 3], high: [f64; 3], mut visit: impl FnMut(usize)) {
         // what the corners of nodes are rounded by
         let slack = (0..3).map(|axis| self.center[axis].abs() + self.half_size[axis]).fold(0.0, f64::max) * BOX_PADDING;
         let mut nodes: Vec<u32> = self.root().into_iter().collect();
@@ -252,7 +252,7 @@ impl RayIndex {
         }
     }
 
-    /// Where the boxes of nodes count from, local metres.
+    /// Returns the origin of the boxes of nodes, local metres.
     #[must_use]
     pub fn center(&self) -> [f64; 3] {
         self.center
@@ -270,13 +270,13 @@ impl RayIndex {
         (!self.tree.nodes.is_empty()).then_some(0)
     }
 
-    /// The parts of a node and their boxes, each of which holds the boxes of all rows in it, but for what f32 rounds: a
-    /// few units of 6e-8 of the largest coordinate.
+    /// Returns the parts of a node and their boxes. Each box holds the boxes of all rows in it, apart from rounding of
+    /// f32: a few units of 6e-8 of the largest coordinate.
     #[must_use]
     #[inline]
     pub fn parts(&self, node: u32) -> Option<NodeParts> {
         let node = self.tree.nodes.get(node as usize)?;
-        let parts = std::array::from_fn(|child| opened::part_of(node, child));
+        let parts = std::array::from_fn(|child| open_node::part_of(node, child));
         let steps = node.compute_extent().to_array();
         let origin = node.p.to_array();
         let sides = [
@@ -299,11 +299,14 @@ impl RayIndex {
         Some(NodeParts { parts, centers, half_sizes })
     }
 
-    /// The nodes as words, for devices that trace rays themselves, in the layout of compressed nodes (Ylitie, Karras &
-    /// Laine 2017) with lowest and highest sides axis by axis: lowest corner from [`RayIndex::center`] (three f32);
-    /// exponents of the steps along x, y, z and a bit for each part that is a node (four bytes); first node; first row;
-    /// the eight parts (a byte each, for rows their count as bits above five bits of their offset); lowest and highest
-    /// sides of the parts in steps, along x, y and z (eight bytes each).
+    /// Returns the nodes as words, for devices that trace rays themselves, in the layout of compressed nodes (Ylitie,
+    /// Karras & Laine 2017). Lowest and highest sides are stored axis by axis:
+    ///
+    /// - lowest corner from [`RayIndex::center`] (three f32);
+    /// - exponents of the steps along x, y, z, and a bit for each part that is a node (four bytes);
+    /// - first node; first row;
+    /// - the eight parts (a byte each; for rows their count as bits above five bits of their offset);
+    /// - lowest and highest sides of the parts in steps, along x, y and z (eight bytes each).
     pub fn node_words(&self) -> impl ExactSizeIterator<Item = [u32; NODE_WORDS]> + '_ {
         self.tree.nodes.iter().map(|node| {
             let [x, y, z] = node.p.to_array().map(f32::to_bits);
@@ -348,8 +351,7 @@ impl RayIndex {
         if index.is_sound(count) { Ok(index) } else { Err(damaged_tree()) }
     }
 
-    /// Whether every part of a node lies within the tree, and nodes lie below the one that they are a part of, so that
-    /// every walk ends.
+    /// Returns true if every part of a node lies within the tree and below its node, so that every walk ends.
     fn is_sound(&self, count: usize) -> bool {
         let nodes = self.tree.nodes.len();
         let is_within = |number: u32, part: NodePart| match part {
@@ -442,7 +444,7 @@ fn to_f32(v: [f64; 3]) -> [f32; 3] {
     v.map(|v| v as f32)
 }
 
-/// How far the tree must look to find every box that holds something within `range`.
+/// Returns the reach of the tree, metres, that finds every box that holds something within `range`.
 #[expect(clippy::cast_possible_truncation, reason = "rounded up on purpose")]
 fn tree_reach(range: f64) -> f32 {
     ((range + TREE_SLACK) as f32).next_up()

@@ -9,15 +9,15 @@ use belvedere_data::{PointCloud, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// How heights of flight lines are compared.
+/// Parameters of the comparison of flight-line heights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripParams {
     /// Side of the cells in which lines are compared, metres, above 0. Default 2: at 2 pulses per m², of which half
     /// are of one line, four of its points.
     pub cell: f64,
-    /// Least number of points of each line in a cell. Default 3.
+    /// Minimum number of points of each line in a cell. Default 3.
     pub min_points: usize,
-    /// Most root mean square distance of the points of two lines in a cell from two parallel planes, metres. Default
+    /// Maximum root mean square distance of the points of two lines in a cell from two parallel planes, metres. Default
     /// 0.08: noise of usual scanners, and no plants.
     pub max_rms: f64,
     /// Steepest slope of these planes, metres a metre. Default 0.5: on steep slopes errors on the map show as heights.
@@ -71,7 +71,7 @@ pub struct StripPair {
 pub struct StripOffset {
     /// Its point source id.
     pub line: u16,
-    /// What is added to its heights, metres, whole millimetres.
+    /// Offset added to its heights, metres, whole millimetres.
     pub up_m: f64,
 }
 
@@ -214,7 +214,7 @@ fn pair(lines: [u16; 2], mut rises: Vec<f64>, params: &StripParams) -> Option<St
     Some(StripPair { lines, cells: rises.len(), rise_m, deviation_m: SD_OF_MAD * median(&mut deviations) })
 }
 
-/// How far each line is moved so that pairs fit best, by least squares with a weight of one for each cell.
+/// Returns the offset of each line so that pairs fit best, by least squares with a weight of one for each cell.
 fn offsets(pairs: &[StripPair]) -> Vec<StripOffset> {
     let believed = || pairs.iter().filter(|pair| pair.deviation_m <= MAX_DEVIATION);
     let mut lines: Vec<u16> = believed().flat_map(|pair| pair.lines).collect();

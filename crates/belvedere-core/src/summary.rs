@@ -1,4 +1,4 @@
-//! What a cloud holds, in numbers: for people who need to know what can be done with a file.
+//! Summary of a cloud in numbers, for people who need to know what a file is good for.
 
 mod facades;
 mod room;
@@ -37,7 +37,7 @@ pub struct CloudSummary {
     pub pulses: Option<PulseCounts>,
     /// First and last GPS time, and how many different ones there are.
     pub gps_time: Option<GpsTimes>,
-    /// Least and greatest scan angle in degrees.
+    /// Minimum and maximum scan angle in degrees.
     pub scan_angle_deg: Option<[f32; 2]>,
     /// Points that share their position with an earlier one.
     pub duplicate_count: usize,
@@ -49,7 +49,7 @@ pub struct PulseCounts {
     /// Each point counts as the part of a pulse that it is, 1 / its return count: a pulse cut at the edge of a tile
     /// counts in part.
     pub count: f64,
-    /// Those with several returns.
+    /// Number of pulses with several returns.
     pub multi_return_count: f64,
 }
 
@@ -75,9 +75,9 @@ impl PulseCounts {
 /// GPS times of a cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GpsTimes {
-    /// Least, seconds.
+    /// First time, seconds.
     pub first: f64,
-    /// Greatest, seconds.
+    /// Last time, seconds.
     pub last: f64,
     /// Number of different times.
     pub distinct_count: usize,
@@ -86,7 +86,7 @@ pub struct GpsTimes {
 }
 
 impl GpsTimes {
-    /// Whether times can distinguish pulses: a time shared by more than twenty points is no time of one pulse.
+    /// Returns true if times can separate pulses: a time shared by more than twenty points is no time of one pulse.
     #[must_use]
     pub fn can_separate_pulses(&self, point_count: usize) -> bool {
         self.distinct_count * 20 > point_count - self.missing_count.min(point_count)
@@ -143,8 +143,8 @@ impl CloudSummary {
     }
 }
 
-/// Three times the spacing that the points would have if they filled their bounding rectangle: nine to a cell, so that
-/// cells between sparse points count too, and gaps of lakes and missing tiles do not.
+/// Returns three times the spacing that the points would have if they filled their bounding rectangle, metres. That is
+/// nine to a cell, so that cells between sparse points count too, and gaps of lakes and missing tiles do not.
 fn cell_size_for(cloud: &PointCloud) -> f64 {
     let area =
         cloud.bounds().map_or(0.0, |Bounds { low, high }| f64::from(high[0] - low[0]) * f64::from(high[1] - low[1]));

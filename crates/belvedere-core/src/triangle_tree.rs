@@ -5,7 +5,7 @@ use belvedere_data::Result;
 use belvedere_data::vector::sub;
 use smallvec::SmallVec;
 
-/// By how much boxes and edges are widened before rays are tested exactly, metres: more than f32 errs near a packet.
+/// Widening of boxes and edges before rays are tested exactly, metres: more than f32 errs near a packet.
 const ROOM: f64 = 1e-3;
 /// The same as a share of coordinates: f32 rounds products of them by a tenth of this.
 const ROUNDING: f64 = 1e-6;
@@ -53,16 +53,16 @@ impl TriangleTree {
         self.bounds
     }
 
-    /// Whether `ray` crosses a triangle within its ranges for which `counts` is true: it is given the row of the
-    /// triangle.
+    /// Returns true if `ray` crosses a triangle within its ranges for which `counts` is true. `counts` gets the row of
+    /// the triangle.
     #[must_use]
     pub fn any(&self, ray: &Ray, mut counts: impl FnMut(usize) -> bool) -> bool {
         let crossing = RayAxes::new(ray);
         self.index.any(ray, |row| self.range(&crossing, row, ray).is_some() && counts(row))
     }
 
-    /// Looks for the rays from `origins`, neighbours together, along a unit vector without end that cross a triangle
-    /// for which `counts` is true: it is given the number of the ray and the row of the triangle, until it was true for
+    /// Finds the rays from `origins`, neighbours in space, along a unit vector without end that cross a triangle for
+    /// which `counts` is true. `counts` gets the index of the ray and the row of the triangle, until it was true for
     /// the ray once. Each ray is found as [`TriangleTree::any`] finds it, but they walk through the tree together.
     pub(crate) fn any_of(
         &self,
@@ -85,7 +85,7 @@ impl TriangleTree {
             let shadow = Shadow::new(triangle.map(|corner| axes.seen(corner)));
             let mut left = 0;
             for (group, start) in groups.iter_mut().zip((0..).step_by(RayGroup::LANES)) {
-                let mut near = group.near(&shadow);
+                let mut near = group.rays_near(&shadow);
                 while near != 0 {
                     let lane = near.trailing_zeros();
                     near &= near - 1;
@@ -123,7 +123,7 @@ impl TriangleTree {
     /// Calls `visit` with the row of every triangle whose box may meet the box between two corners, local metres, in no
     /// particular order.
     pub fn each_near(&self, low: [f64; 3], high: [f64; 3], visit: impl FnMut(usize)) {
-        self.index.near(low, high, visit);
+        self.index.visit_near(low, high, visit);
     }
 
     fn range(&self, crossing: &RayAxes, row: usize, ray: &Ray) -> Option<f64> {
@@ -152,8 +152,8 @@ fn bounding_box([a, b, c]: &Corners) -> [[f32; 3]; 2] {
 /// axes holds the origin.
 ///
 /// # Source
-/// Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection": it gives the barycentric coordinates of Möller &
-/// Trumbore 1997, but two triangles compute the side of a shared edge from the same numbers, so that no ray slips
+/// Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection". It gives the barycentric coordinates of Möller &
+/// Trumbore 1997, but two triangles compute the side of a shared edge from the same numbers, so that no ray passes
 /// between them. All in f64, hence without the paper's fallback.
 struct RayAxes {
     origin: [f64; 3],
@@ -170,7 +170,7 @@ impl RayAxes {
         Self { origin: ray.origin, axes: [x, y, z], shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]] }
     }
 
-    /// Where a place is seen along the rays: its coordinates across the third axis.
+    /// Projects a place along the rays: returns its coordinates across the third axis.
     fn seen(&self, place: [f64; 3]) -> [f64; 2] {
         let ([x, y, z], [shear_x, shear_y, _]) = (self.axes, self.shear);
         let p = sub(place, self.origin);
@@ -204,7 +204,7 @@ fn to_f32(value: f64) -> f32 {
 /// A triangle as seen along rays, with edges that run counter-clockwise.
 struct Shadow {
     corners: [[f32; 2]; 3],
-    /// How far outside an edge a place is still near, times the length of the edge.
+    /// Margin outside an edge within which a place is still near, times the length of the edge.
     margins: [f32; 3],
     low: [f32; 2],
     high: [f32; 2],
@@ -231,7 +231,7 @@ impl Shadow {
 
 /// Rays side by side, as seen along them.
 struct RayGroup {
-    /// Where they start, by axis; beyond the last ray a place that no triangle is near.
+    /// Start of each ray, by axis; beyond the last ray a place that no triangle is near.
     starts: [[f32; Self::LANES]; 2],
     low: [f32; 2],
     high: [f32; 2],
@@ -262,7 +262,7 @@ impl RayGroup {
 
     /// The rays that are left and may cross a triangle, a bit each.
     #[inline]
-    fn near(&self, shadow: &Shadow) -> u32 {
+    fn rays_near(&self, shadow: &Shadow) -> u32 {
         let meets = (0..2).all(|axis| shadow.low[axis] <= self.high[axis] && self.low[axis] <= shadow.high[axis]);
         if self.left == 0 || !meets {
             return 0;

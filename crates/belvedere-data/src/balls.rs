@@ -11,7 +11,7 @@ pub const PULSE_TOUCH: u32 = NO_TOUCH - 1;
 /// Value of [`MedialBalls::touch`] for a ball that neither a point nor a pulse bounds, but a limit of its radius.
 pub const LIMIT_TOUCH: u32 = NO_TOUCH - 2;
 
-/// Which side of the surface a ball lies on.
+/// Side of the surface on which a ball lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// Inside the scene: centre = p − r·n for the outward normal n.
@@ -47,7 +47,7 @@ impl MedialBalls {
         self.radii.len()
     }
 
-    /// Whether there is no ball.
+    /// Returns true if there is no ball.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.radii.is_empty()

@@ -5,10 +5,10 @@ use crate::polygon::PolygonIndex;
 use crate::vector::{dot, sub};
 use crate::{Error, Parameter, Result};
 
-/// How far from its plane a point counts as one of it, in noises of the plane: that of the points that a plane is
-/// fitted to.
+/// Maximum distance of a point of a plane from it, in multiples of the noise of the plane: that of the points that a
+/// plane is fitted to.
 const NOISES: f64 = 3.0;
-/// What is added, metres: positions are steps of a millimetre or two in files and on pages.
+/// Addition to that distance, metres: positions have steps of a millimetre or two in files and on pages.
 const STEP: f64 = 0.005;
 
 /// A plane of a roof.
@@ -50,7 +50,7 @@ pub struct Ridge {
     pub ends: [[f64; 3]; 2],
     /// Rows of its planes.
     pub planes: [usize; 2],
-    /// Whether both planes fall from it: a ridge or hip; a valley otherwise.
+    /// True for a ridge or hip, from which both planes fall; false for a valley.
     pub is_convex: bool,
 }
 
@@ -71,7 +71,7 @@ pub struct Wall {
     pub sd: f64,
     /// Share of the points below the edge that lie on it, 0 to 1.
     pub share: f64,
-    /// How far the edge stands out before it, metres.
+    /// Overhang of the edge before it, metres.
     pub eaves: f64,
 }
 
@@ -89,7 +89,7 @@ pub struct BuildingOutlines {
 }
 
 impl BuildingOutlines {
-    /// Whether there is nothing.
+    /// Returns true if it is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.planes.is_empty()
@@ -108,19 +108,19 @@ impl BuildingOutlines {
         self.planes.iter().filter(is_on).min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
-    /// Without the planes whose middles lie in polygons, local metres on the map, the lines that end these, and those
+    /// Removes the planes whose middles lie in polygons, local metres in plan, the lines that end these, and those
     /// whose own middles lie there.
     #[must_use]
     pub fn outside(self, index: &PolygonIndex) -> Self {
         let is_out = |[a, b]: [[f64; 2]; 2]| !index.holds([0, 1].map(|i| f64::midpoint(a[i], b[i])));
         let on_map = |ends: [[f64; 3]; 2]| ends.map(|[x, y, _]| [x, y]);
-        let (planes, plane_at) = kept(self.planes, |plane| is_out(on_map([plane.center; 2])));
+        let (planes, plane_at) = retain_with_places(self.planes, |plane| is_out(on_map([plane.center; 2])));
         let edges = self.edges.into_iter().map(|edge| {
             let plane = plane_at.get(edge.plane).copied().flatten().filter(|_| is_out(on_map(edge.ends)));
             plane.map(|plane| Edge { plane, ..edge })
         });
         let edges: Vec<Option<Edge>> = edges.collect();
-        let (edges, edge_at) = kept(edges, Option::is_some);
+        let (edges, edge_at) = retain_with_places(edges, Option::is_some);
         let ridges = self.ridges.into_iter().filter(|ridge| is_out(on_map(ridge.ends))).filter_map(|ridge| {
             let [a, b] = ridge.planes.map(|plane| plane_at.get(plane).copied().flatten());
             Some(Ridge { planes: [a?, b?], ..ridge })
@@ -166,8 +166,8 @@ pub fn median_sd(edges: &[Edge]) -> Option<f64> {
     deviations.get(deviations.len() / 2).copied()
 }
 
-/// What is kept, and for each where it is then.
-fn kept<T>(all: Vec<T>, is_kept: impl Fn(&T) -> bool) -> (Vec<T>, Vec<Option<usize>>) {
+/// Returns the items to keep, and the new index of each item, if kept.
+fn retain_with_places<T>(all: Vec<T>, is_kept: impl Fn(&T) -> bool) -> (Vec<T>, Vec<Option<usize>>) {
     let mut left = Vec::new();
     let place = |one: T| {
         let place = is_kept(&one).then_some(left.len());

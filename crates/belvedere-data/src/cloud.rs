@@ -9,20 +9,20 @@ use crate::{Error, Parameter, Result};
 
 /// A point cloud.
 ///
-/// Positions are metres, x east, y north, z up, relative to the origin of its frame; f32 holds a tenth of a millimetre
+/// Positions are metres, x east, y north, z up, relative to the origin of its frame. f32 holds a tenth of a millimetre
 /// within a kilometre of the origin, whereas projected coordinates in f32 would be off by centimetres. Every attribute
 /// that is present has one value per point.
 #[derive(Clone, Debug, Default)]
 pub struct PointCloud {
-    /// Where local positions lie, with the reference system and unit of the file.
+    /// Frame of local positions, with the reference system and unit of the file.
     pub frame: Frame,
     /// Local positions, (N, 3), metres.
     pub positions: Vec<[f32; 3]>,
-    /// What else is known of each point.
+    /// Further attributes of each point.
     pub attributes: Attributes,
     /// Local positions of the scanner set-ups that [`Attributes::scanner_index`] refers to, (S, 3), metres.
     pub scanner_positions: Vec<[f32; 3]>,
-    /// Where pulses of these set-ups met nothing up to the sky, as far as the files tell.
+    /// Regions of these set-ups in which pulses met nothing up to the sky, as far as the files have them.
     pub sky_regions: Vec<SkyRegion>,
     /// Places on the map, local metres, that the survey measured and whose points were cleared since, (C, 2): there is
     /// no hole in the survey.
@@ -37,7 +37,7 @@ pub struct PointCloud {
 pub struct CloudFiles {
     /// The files, in the order of their points.
     pub files: Vec<CloudFile>,
-    /// Which rows of them the points are.
+    /// Rows of them that the points are.
     pub rows: FileRows,
 }
 
@@ -48,13 +48,13 @@ pub struct CloudFile {
     pub path: PathBuf,
     /// Number of its points, with those that were not read.
     pub row_count: u64,
-    /// What its points have beside the attributes of a cloud, in words.
+    /// Attributes of its points beside those of a cloud, in words.
     pub other_attributes: Vec<String>,
     /// Records of its header that a cloud has no place for, in words.
     pub records: Vec<String>,
 }
 
-/// Which rows of files the points of a cloud are.
+/// Rows of files that the points of a cloud are.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum FileRows {
     /// All of them, in their order.
@@ -62,7 +62,7 @@ pub enum FileRows {
     All,
     /// The row of each point, counted over all files after each other.
     Of(Vec<u64>),
-    /// Not known.
+    /// Unknown rows.
     Unknown,
 }
 
@@ -82,38 +82,7 @@ impl CloudFiles {
     }
 }
 
-/// Attributes of the points of a [`PointCloud`], each with one value per point where present.
-#[derive(Clone, Debug, Default)]
-pub struct Attributes {
-    /// Unit normals as given by the file, (N, 3); (0, 0, 0) where the file has none for a point.
-    pub normals: Option<Vec<[f32; 3]>>,
-    /// ASPRS class.
-    pub classification: Option<Vec<u8>>,
-    /// GPS time in seconds, see [`Attributes::gps_time_kind`].
-    pub gps_time: Option<Vec<f64>>,
-    /// What the GPS times count from.
-    pub gps_time_kind: GpsTimeKind,
-    /// Which return of its pulse a point is, from 1.
-    pub return_number: Option<Vec<u8>>,
-    /// How many returns its pulse had.
-    pub return_count: Option<Vec<u8>>,
-    /// Scan angle in radians.
-    pub scan_angle: Option<Vec<f32>>,
-    /// Flight line.
-    pub point_source_id: Option<Vec<u16>>,
-    /// Channel of a multi-channel scanner.
-    pub scanner_channel: Option<Vec<u8>>,
-    /// LAS flags: 1 synthetic, 2 key point, 4 withheld, 8 overlap.
-    pub flags: Option<Vec<u8>>,
-    /// Intensity.
-    pub intensity: Option<Vec<u16>>,
-    /// Red, green, blue, 0 to 65535 (readers widen 8-bit colours).
-    pub color: Option<Vec<[u16; 3]>>,
-    /// Index into [`PointCloud::scanner_positions`]; `u16::MAX` where unknown.
-    pub scanner_index: Option<Vec<u16>>,
-}
-
-/// What GPS times count from.
+/// Epoch of GPS times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GpsTimeKind {
     /// Seconds since Sunday midnight (LAS global encoding bit 0 clear).
@@ -123,86 +92,90 @@ pub enum GpsTimeKind {
     AdjustedStandard,
 }
 
-/// Applies a macro to every per-point column.
-macro_rules! for_each_column {
-    ($apply:ident) => {
-        $apply!(
-            normals,
-            classification,
-            gps_time,
-            return_number,
-            return_count,
-            scan_angle,
-            point_source_id,
-            scanner_channel,
-            flags,
-            intensity,
-            color,
-            scanner_index
-        )
-    };
-}
+/// Defines [`Attributes`] by its per-point columns, and the methods that visit each of them.
+macro_rules! attributes {
+    ($($(#[$doc:meta])* $column:ident: $value:ty,)*) => {
+        /// Attributes of the points of a [`PointCloud`], each with one value per point where present.
+        #[derive(Clone, Debug, Default)]
+        pub struct Attributes {
+            $($(#[$doc])* pub $column: Option<Vec<$value>>,)*
+            /// Epoch of the GPS times.
+            pub gps_time_kind: GpsTimeKind,
+        }
 
-impl Attributes {
-    /// The attributes of the points at `indices`, in that order. Columns that are too short for an index are dropped.
-    #[must_use]
-    pub fn select(&self, indices: &[u32]) -> Self {
-        let mut selected = Self { gps_time_kind: self.gps_time_kind, ..Self::default() };
-        macro_rules! select_columns {
-            ($($column:ident),*) => {$(
-                selected.$column = self.$column.as_ref().and_then(|values| {
-                    indices.iter().map(|&i| values.get(i as usize).copied()).collect()
-                });
-            )*};
-        }
-        for_each_column!(select_columns);
-        selected
-    }
+        impl Attributes {
+            /// Selects the attributes of the points at `indices`, in that order. Columns that are too short for an index
+            /// are dropped.
+            #[must_use]
+            pub fn select(&self, indices: &[u32]) -> Self {
+                Self {
+                    $($column: self.$column.as_ref().and_then(|values| {
+                        indices.iter().map(|&i| values.get(i as usize).copied()).collect()
+                    }),)*
+                    gps_time_kind: self.gps_time_kind,
+                }
+            }
 
-    /// Appends `other`, which belongs to `other_count` points, to these of `count` points. A column that only one of
-    /// the two has is dropped, and its name returned.
-    pub fn append(&mut self, count: usize, other: Self, other_count: usize) -> Vec<&'static str> {
-        let mut dropped = Vec::new();
-        if count == 0 {
-            *self = other;
-            return dropped;
-        }
-        if other_count == 0 {
-            return dropped;
-        }
-        if self.gps_time_kind != other.gps_time_kind && self.gps_time.is_some() {
-            self.gps_time = None;
-        }
-        macro_rules! append_columns {
-            ($($column:ident),*) => {$(
-                match (&mut self.$column, other.$column) {
+            /// Appends `other`, which belongs to `other_count` points, to these of `count` points. A column that only
+            /// one of the two has is dropped, and its name returned.
+            pub fn append(&mut self, count: usize, other: Self, other_count: usize) -> Vec<&'static str> {
+                let mut dropped = Vec::new();
+                if count == 0 {
+                    *self = other;
+                    return dropped;
+                }
+                if other_count == 0 {
+                    return dropped;
+                }
+                if self.gps_time_kind != other.gps_time_kind && self.gps_time.is_some() {
+                    self.gps_time = None;
+                }
+                $(match (&mut self.$column, other.$column) {
                     (Some(mine), Some(theirs)) => mine.extend(theirs),
                     (None, None) => {}
                     _ => {
                         self.$column = None;
                         dropped.push(stringify!($column));
                     }
-                }
-            )*};
-        }
-        for_each_column!(append_columns);
-        dropped
-    }
+                })*
+                dropped
+            }
 
-    /// Name and length of every column present.
-    #[must_use]
-    pub fn columns(&self) -> Vec<(&'static str, usize)> {
-        let mut columns = Vec::new();
-        macro_rules! list_columns {
-            ($($column:ident),*) => {$(
-                if let Some(values) = &self.$column {
-                    columns.push((stringify!($column), values.len()));
-                }
-            )*};
+            /// Lists name and length of every column present.
+            #[must_use]
+            pub fn columns(&self) -> Vec<(&'static str, usize)> {
+                let columns = [$((stringify!($column), self.$column.as_ref().map(Vec::len)),)*];
+                columns.into_iter().filter_map(|(name, length)| Some((name, length?))).collect()
+            }
         }
-        for_each_column!(list_columns);
-        columns
-    }
+    };
+}
+
+attributes! {
+    /// Unit normals as given by the file, (N, 3); (0, 0, 0) where the file has none for a point.
+    normals: [f32; 3],
+    /// ASPRS class.
+    classification: u8,
+    /// GPS time in seconds, see [`Attributes::gps_time_kind`].
+    gps_time: f64,
+    /// Number of the return in its pulse, from 1.
+    return_number: u8,
+    /// Number of returns of its pulse.
+    return_count: u8,
+    /// Scan angle in radians.
+    scan_angle: f32,
+    /// Flight line.
+    point_source_id: u16,
+    /// Channel of a multi-channel scanner.
+    scanner_channel: u8,
+    /// LAS flags: 1 synthetic, 2 key point, 4 withheld, 8 overlap.
+    flags: u8,
+    /// Intensity.
+    intensity: u16,
+    /// Red, green, blue, 0 to 65535 (readers widen 8-bit colours).
+    color: [u16; 3],
+    /// Index into [`PointCloud::scanner_positions`]; `u16::MAX` where unknown.
+    scanner_index: u16,
 }
 
 impl PointCloud {
@@ -237,7 +210,7 @@ impl PointCloud {
         self.positions.len()
     }
 
-    /// Whether there is no point at all.
+    /// Returns true if there is no point.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()

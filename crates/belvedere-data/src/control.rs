@@ -1,9 +1,9 @@
-//! How long work reports its progress, and how it is cancelled.
+//! Control of long work: progress and cancellation.
 
 use crate::{Error, Result};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// How a stage ended.
+/// End of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StageEnd {
     /// Its work is done.
@@ -12,8 +12,8 @@ pub enum StageEnd {
     Stopped,
 }
 
-/// What the owner of long work provides: a progress bar, a notebook, a page, a signal handler. Every method may be
-/// called from any thread and should return at once.
+/// Interface that the owner of long work provides: a progress bar, a notebook, a page, a signal handler. Every method
+/// may be called from any thread and should return at once.
 ///
 /// Stages nest: a stage that begins while another is open is a part of it, and the outer one goes on when it ends.
 /// Finished items belong to the innermost open stage. [`OpenStages`] keeps account of this.
@@ -24,7 +24,7 @@ pub trait Watcher: Sync {
     fn advance(&self, _count: usize) {}
     /// The stage is over.
     fn end(&self, _stage: &'static str, _end: StageEnd) {}
-    /// Whether the work should stop. It is called often, and should return at once.
+    /// Returns true if the work should stop. It is called often, and should return at once.
     fn is_cancelled(&self) -> bool {
         false
     }
@@ -67,7 +67,7 @@ impl<'a> Control<'a> {
         }
     }
 
-    /// Whether the work should stop.
+    /// Returns true if the work should stop.
     #[must_use]
     pub fn is_cancelled(&self) -> bool {
         self.0.is_some_and(Watcher::is_cancelled)
@@ -132,8 +132,8 @@ impl OpenStages {
     }
 }
 
-/// A place to leave a parallel loop whose results are gathered as values: once the work is cancelled its pieces are
-/// passed over, and what was gathered must be thrown away.
+/// Flag to leave a parallel loop whose results are gathered as values. Once the work is cancelled its pieces are
+/// skipped, and the gathered values must be discarded.
 ///
 /// ```
 /// use belvedere_data::control::{Control, Stop};
@@ -157,7 +157,7 @@ impl<'a> Stop<'a> {
         Self { control: *control, is_set: AtomicBool::new(false) }
     }
 
-    /// Whether the rest of the work is to be passed over.
+    /// Returns true if the rest of the work is to be skipped.
     pub fn is_set(&self) -> bool {
         if self.is_set.load(Ordering::Relaxed) {
             return true;

@@ -33,13 +33,13 @@ pub struct Crs {
     pub metres_per_unit: f64,
     /// Metres per vertical unit of the file.
     pub vertical_metres_per_unit: f64,
-    /// What the coordinates are.
+    /// Kind of the coordinates.
     pub kind: CrsKind,
-    /// What in the files speaks against this system, in words; `None` where nothing does.
+    /// Evidence in the files against this system, in words; `None` without any.
     pub doubt: Option<String>,
 }
 
-/// What the coordinates of a reference system are.
+/// Kind of the coordinates of a reference system.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CrsKind {
     /// No system is known; taken as a plane in metres.
@@ -104,7 +104,7 @@ impl Crs {
         Self { epsg: Some(4326), kind: CrsKind::Geographic, ..Self::default() }
     }
 
-    /// Whether this is longitude and latitude of WGS 84 itself.
+    /// Returns true if this is longitude and latitude of WGS 84 itself.
     #[must_use]
     pub fn is_wgs_84(&self) -> bool {
         self.kind == CrsKind::Geographic && matches!(self.epsg, Some(4326 | 4979))
@@ -162,8 +162,8 @@ impl Crs {
         Some(crs)
     }
 
-    /// What names the system for other programs: the well-known text of the file, else the code as `EPSG:28992`; `None`
-    /// where no system is known.
+    /// Returns the name of the system for other programs: the well-known text of the file, else the code as
+    /// `EPSG:28992`. `None` if no system is known.
     #[must_use]
     pub fn definition(&self) -> Option<String> {
         self.wkt.clone().or_else(|| self.epsg.map(|code| format!("EPSG:{code}")))
@@ -198,7 +198,7 @@ impl Crs {
         }
     }
 
-    /// Whether both systems are known and differ, so that two files in them cannot be put together.
+    /// Returns true if both systems are known and differ, so that files in them cannot be combined.
     #[must_use]
     pub fn contradicts(&self, other: &Self) -> bool {
         let is_known = |crs: &Self| crs.kind != CrsKind::Unknown;
@@ -219,7 +219,7 @@ impl Crs {
         Err(Error::UnusableCrs { path: path.to_owned(), what })
     }
 
-    /// Whether two files in these systems can be put together: the same horizontal system in the same units.
+    /// Returns true if files in these systems can be combined: they have the same horizontal system in the same units.
     #[must_use]
     pub fn same_system(&self, other: &Self) -> bool {
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-9 * b.abs();
@@ -269,7 +269,8 @@ impl Crs {
         ))
     }
 
-    /// Whether this is Web Mercator, whose metres are true at the equator only: twice too long at 60° of latitude.
+    /// Returns true if this is Web Mercator, whose metres are true at the equator only: twice too long at 60° of
+    /// latitude.
     #[must_use]
     pub fn is_web_mercator(&self) -> bool {
         let codes = [3857, 3785, 900_913, 102_100, 102_113];
@@ -336,14 +337,14 @@ fn unit_of_code(code: u16) -> Option<f64> {
     UNIT_CODES.iter().find(|&&(known, _)| known == code).map(|&(_, metres)| metres)
 }
 
-/// What speaks against a unit beside a code that has another.
+/// Describes the contradiction between a unit and that of the code beside it.
 fn units_apart(what: &str, own: f64, of_code: f64) -> Option<String> {
     let [named, known] = [own, of_code].map(unit_name);
     ((own - of_code).abs() > 1e-7 * of_code)
         .then(|| format!("{what} is given as {named}, but that of its code is {known}"))
 }
 
-/// What speaks against a vertical system that counts downwards.
+/// Describes the evidence against a vertical system that counts downwards.
 fn counts_down(name: &str) -> String {
     format!("{name} counts downwards, and was read as if it counted upwards; turn the sign of z before")
 }
@@ -483,7 +484,7 @@ impl GeographicProjection {
     }
 }
 
-/// Most rounds of correcting an inverse: one or two are enough where it is approximate at all.
+/// Maximum number of rounds of correcting an inverse: one or two are enough where it is approximate at all.
 const MAX_CORRECTIONS: u32 = 8;
 /// Distance that an inverse may miss, metres: far below a millimetre, above the rounding of degrees in f64 (2 nm).
 const UNPROJECT_TOLERANCE: f64 = 1e-6;

@@ -72,7 +72,7 @@ impl ElevationGrid {
         self.heights.values().iter().filter(|v| v.is_nan()).count()
     }
 
-    /// Where a node lies, local metres; `None` for one without a height.
+    /// Returns the position of a node, local metres; `None` for one without a height.
     #[must_use]
     pub fn node(&self, column: usize, row: usize) -> Option<[f64; 3]> {
         let height = self.heights.get(column, row).filter(|height| !height.is_nan())?;
@@ -80,8 +80,8 @@ impl ElevationGrid {
         Some([west + column as f64 * self.cell[0], north - row as f64 * self.cell[1], f64::from(height)])
     }
 
-    /// The height at a place on the map, both local metres, bilinear between the four nodes around it; `None` beyond
-    /// the outermost nodes and where one of the four is not known.
+    /// Returns the height at a place in plan, both local metres, bilinear between the four nodes around it. `None`
+    /// beyond the outermost nodes, and if one of the four is not known.
     #[must_use]
     pub fn height_at(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let [west, north] = self.north_west;

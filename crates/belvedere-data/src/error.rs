@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// Result of every fallible function of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// What went wrong, with the offending value and what to do about it.
+/// Error, with the offending value and advice.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -25,7 +25,7 @@ pub enum Error {
     Malformed {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it, and what to do.
+        /// Damage and advice.
         what: String,
     },
     /// The extension of a file names no format that fits its use.
@@ -33,7 +33,7 @@ pub enum Error {
     UnknownFormat {
         /// The file.
         path: PathBuf,
-        /// What the file should hold, such as "point cloud".
+        /// Expected kind of content, such as "point cloud".
         kind: &'static str,
         /// The extensions that would do.
         supported: &'static str,
@@ -51,7 +51,7 @@ pub enum Error {
     UnusableCrs {
         /// The file.
         path: PathBuf,
-        /// Which system was found and which conversion to run first.
+        /// System that was found, and the conversion to run first.
         what: String,
     },
     /// A file of several whose points all lie far away from those of the others.
@@ -71,13 +71,13 @@ pub enum Error {
     TooLittleMemory {
         /// The work, such as "making balls of 30000 points".
         work: String,
-        /// What it takes, bytes.
+        /// Memory needed, bytes.
         bytes: u64,
     },
     /// A graphics processor is missing, or fails.
     #[error("{what}")]
     Device {
-        /// What is wrong, and what to do.
+        /// Fault and advice.
         what: String,
     },
     /// The caller stopped the work ([`crate::control::Control`]). Nothing was written.
@@ -86,7 +86,7 @@ pub enum Error {
     /// There is no point to work on.
     #[error("no points are left: {}", printable(what))]
     NoPoints {
-        /// Where they were lost.
+        /// Stage at which they were lost.
         what: String,
     },
     /// There are points, but too few, or none beside one line, for a surface.
@@ -94,13 +94,13 @@ pub enum Error {
     NoSurface {
         /// Number of points.
         count: usize,
-        /// What they lack.
+        /// Missing property.
         what: &'static str,
     },
     /// Nobody is left who can look.
     #[error("no {who} is left: {what}")]
     NoObserver {
-        /// Who should look, such as "observer".
+        /// Missing viewer, such as "observer".
         who: &'static str,
         /// Why each cannot.
         what: String,
@@ -130,9 +130,9 @@ pub enum Error {
     MissingAttribute {
         /// The attribute.
         attribute: &'static str,
-        /// What needs it.
+        /// Purpose that needs it.
         needed_for: &'static str,
-        /// What else could be done.
+        /// Alternative.
         advice: &'static str,
     },
     /// A method cannot answer for targets of this kind.
@@ -140,7 +140,7 @@ pub enum Error {
     UnsupportedTargets {
         /// The method.
         method: &'static str,
-        /// Which targets it can answer for.
+        /// Targets that it can answer for.
         what: &'static str,
     },
     /// A method knows no viewer of this kind.
@@ -148,12 +148,12 @@ pub enum Error {
     UnsupportedViewer {
         /// The method.
         method: &'static str,
-        /// From where it can look.
+        /// Supported position of the viewer.
         what: &'static str,
     },
 }
 
-/// What the operating system says, in words that say what to do where these are known.
+/// Describes an error of the operating system, with advice if it is a known one.
 fn refusal(source: &std::io::Error) -> String {
     match source.kind() {
         // readers and writers that know more have said it

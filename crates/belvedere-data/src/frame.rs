@@ -1,4 +1,4 @@
-//! Where local coordinates lie, and boxes of them.
+//! Frames of local coordinates, and boxes of them.
 
 use crate::cloud::to_local;
 use crate::crs::Crs;
@@ -8,7 +8,7 @@ use crate::crs::Crs;
 /// Clouds, scenes and rasters that share a frame have comparable positions without any conversion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {
-    /// Where local (0, 0, 0) lies, in metres (file coordinates times [`Crs::metres_per_unit`]).
+    /// Position of local (0, 0, 0), metres (file coordinates times [`Crs::metres_per_unit`]).
     pub origin: [f64; 3],
     /// Reference system and unit of the file.
     pub crs: Crs,
@@ -83,13 +83,13 @@ impl Bounds {
         std::array::from_fn(|i| self.high[i] - self.low[i])
     }
 
-    /// Whether `position` lies in the box or on its faces.
+    /// Returns true if `position` lies in the box or on its faces.
     #[must_use]
     pub fn contains(&self, position: [f32; 3]) -> bool {
         (0..3).all(|i| self.low[i] <= position[i] && position[i] <= self.high[i])
     }
 
-    /// Whether all corners are finite.
+    /// Returns true if all corners are finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.low.iter().chain(&self.high).all(|v| v.is_finite())

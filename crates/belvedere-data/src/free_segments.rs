@@ -6,8 +6,8 @@ use crate::{Error, Parameter, Result};
 /// Ways that a pulse may go: along three axes, to both sides.
 const WAYS: u8 = 6;
 
-/// The empty piece of each pulse before its first return, and pieces between its returns, one per row: 16 bytes each
-/// where all are upright and reach the same height, up to 21 otherwise.
+/// Empty piece of each pulse before its first return, and pieces between its returns, one per row. A row has 16 bytes
+/// if all are upright and reach the same height, up to 21 otherwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FreeSegmentColumns {
     /// Ends at the first returns, (P, 3), local metres.
@@ -15,9 +15,9 @@ pub struct FreeSegmentColumns {
     /// The way that a pulse gets on most towards the scanner, (P): 0 up, 1 east, 2 north, 3 down, 4 west, 5 south;
     /// empty where all go up.
     pub ways: Vec<u8>,
-    /// Shift to the east and to the north for each metre of height, in steps of 0.0001, (P, 2). Of pulses that go east
-    /// or west the shift to the north and up, of those that go north or south up and to the east, for each metre of
-    /// that way.
+    /// Shift to the east and to the north for each metre of height, in steps of 0.0001, (P, 2). Pulses that go east or
+    /// west have the shift to the north and up, those that go north or south the shift up and to the east, for each
+    /// metre of that direction.
     pub slopes: Vec<[i16; 2]>,
     /// Lengths, (P), metres, infinite for a pulse that reaches `top`; empty where all do.
     pub lengths: Vec<f32>,

@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// Rows from which on a table all of whose azimuths lie within 0 to 2π is one in radians: a table in degrees has rows
 /// of other azimuths then.
 const MIN_ROWS: usize = 3;
-/// What tables round azimuths by, degrees.
+/// Rounding of azimuths in tables, degrees.
 const ROUNDING: f64 = 0.01;
 
 /// Elevations of a horizon all around, linear between the azimuths that are given.
@@ -55,9 +55,9 @@ impl HorizonProfile {
     /// The profile of a table of azimuths and elevations, degrees, all around: what a file or a user gives.
     ///
     /// # Errors
-    /// Those of [`HorizonProfile::new`]; [`Error::InvalidParameter`] for azimuths beyond a full circle, such as those
-    /// in gon, for azimuths that look like radians, and for a table that says nothing of half of the circle
-    /// ([`HORIZON_ANGLES`]).
+    /// - Errors of [`HorizonProfile::new`].
+    /// - [`Error::InvalidParameter`] for azimuths beyond a full circle, such as those in gon, for azimuths that look
+    ///   like radians, and for a table without half of the circle ([`HORIZON_ANGLES`]).
     pub fn of_degrees(rows: &[[f64; 2]]) -> Result<Self> {
         let profile = Self::new(rows.iter().map(|row| row.map(f64::to_radians)))?;
         let refused =
@@ -111,7 +111,7 @@ impl HorizonProfile {
         before[1] + share * (after[1] - before[1])
     }
 
-    /// Whether the unit vector `direction` (x east, y north, z up) points below the horizon.
+    /// Returns true if the unit vector `direction` (x east, y north, z up) points below the horizon.
     #[must_use]
     pub fn hides(&self, [x, y, z]: [f64; 3]) -> bool {
         z.atan2(x.hypot(y)) < self.elevation_at(x.atan2(y))

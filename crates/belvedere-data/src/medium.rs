@@ -27,7 +27,7 @@ impl ExtinctionVoxels {
         self.voxels.len()
     }
 
-    /// Whether there is none.
+    /// Returns true if there is none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.voxels.is_empty()
@@ -65,8 +65,8 @@ impl ExtinctionVoxels {
         Self { voxels, extinction }
     }
 
-    /// The voxels that are left where the voxels in `cleared` hold points that are gone, and those in `kept` others:
-    /// none that holds or touches what is gone, unless something is left in it.
+    /// Returns the voxels that remain after clearing. `cleared` are voxels that held removed points, `kept` those with
+    /// other points. Voxels that hold or touch removed points are dropped, unless points remain in them.
     #[must_use]
     pub fn without_cleared(&self, cleared: &HashSet<[i32; 3]>, kept: &HashSet<[i32; 3]>) -> Self {
         let is_beside = |voxel: [i32; 3]| {

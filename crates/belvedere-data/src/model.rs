@@ -9,11 +9,11 @@ use crate::patches::SurfacePatches;
 use crate::{Error, Parameter, Result};
 use std::collections::BTreeMap;
 
-/// How far from the origin anything of a scene may lie, and how large a ball may be, metres. Beyond lies damage:
-/// readers leave out points that are 1000 km away, and squares of much larger numbers leave the range of f32.
+/// Maximum distance from the origin of anything in a scene, and maximum radius of a ball, metres. Larger values are
+/// damage: readers leave out points that are 1000 km away, and squares of much larger numbers leave the range of f32.
 pub const FARTHEST: f32 = 1e7;
 
-/// Whether a local position is one that a scene can hold.
+/// Returns true if a scene can hold a local position.
 pub(crate) fn is_near(position: [f32; 3]) -> bool {
     position.iter().all(|v| v.abs() <= FARTHEST)
 }
@@ -35,31 +35,31 @@ pub struct ModelParts {
     pub bounds: Bounds,
     /// The balls that block lines of sight.
     pub balls: MedialBalls,
-    /// Share of the pulses that got through the part of a crown that a ball belongs to, (B), 0 to 1; NaN for a ball
-    /// that is no vegetation, and 0 for vegetation where this was not measured. Empty where vegetation is unknown.
+    /// Share of the pulses that passed the part of a crown that a ball belongs to, (B), 0 to 1. NaN for a ball that is
+    /// no vegetation, and 0 for vegetation that was not measured. Empty if vegetation is unknown.
     pub transmission: Vec<f32>,
     /// Surfaces that are known better than from single balls, and block beside them.
     pub patches: SurfacePatches,
-    /// What is known of surfaces of buildings; it blocks nothing. Only `.npz` files keep it.
+    /// Surfaces of buildings; they block nothing. Only `.npz` files keep them.
     pub outlines: BuildingOutlines,
     /// Crowns as a medium, where pulses measured them. Only `.npz` files keep them.
     pub medium: Option<ExtinctionVoxels>,
     /// The pulses that prove lines of sight free, where they are known.
     pub pulses: Option<FreeSegmentColumns>,
-    /// How the model was made, by name: side, method, parameters, program, input.
+    /// Construction of the model, by name: side, method, parameters, program, input.
     pub provenance: BTreeMap<String, String>,
 }
 
-/// What follows from the parts of a model or was found with them, and takes long to make again.
+/// Parts that follow from those of a model or were found with them, and take long to make again.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DerivedParts {
-    /// Which balls are vegetation, (B); empty where that is not known.
+    /// True for balls that are vegetation, (B); empty if that is not known.
     pub vegetation: Vec<bool>,
     /// Outward unit normals of the points that the model was built from, (N, 3); `None` where they were let go.
     pub normals: Option<Vec<[f32; 3]>>,
     /// The tree of boxes around the balls; `None` where it was not made.
     pub tree: Option<TreeParts>,
-    /// What was made of the pulses; `None` where it was not.
+    /// Proof made from the pulses; `None` if it was not made.
     pub proof: Option<ProofParts>,
 }
 
@@ -94,8 +94,9 @@ impl ModelParts {
         self
     }
 
-    /// Checks that all columns are equally long, centres, bounds and origin within [`FARTHEST`], radii too and not
-    /// negative, transmissions between 0 and 1, the patches, the outlines of buildings and the pulses.
+    /// Checks that all columns are equally long, and centres, bounds and origin within [`FARTHEST`]. Checks that radii
+    /// are within it too and not negative, and transmissions between 0 and 1. Checks the patches, the outlines of
+    /// buildings and the pulses.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] or [`Error::InvalidParameter`] for the first fault.

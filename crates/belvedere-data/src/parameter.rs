@@ -4,8 +4,8 @@ use std::fmt;
 
 macro_rules! parameters {
     ($($(#[$doc:meta])+ $variant:ident => $name:literal,)+) => {
-        /// What an [`Error::InvalidParameter`](crate::Error::InvalidParameter) is about. Several functions share a
-        /// parameter that means the same in each.
+        /// Subject of an [`Error::InvalidParameter`](crate::Error::InvalidParameter). Functions share a parameter with
+        /// the same meaning.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         #[non_exhaustive]
         pub enum Parameter {
@@ -86,7 +86,7 @@ parameters! {
     Target => "target",
     /// Targets of a question.
     Targets => "targets",
-    /// How much a target counts.
+    /// Weight of a target.
     TargetWeight => "weight of a target",
     /// Camera that stays.
     ExistingCamera => "existing camera",
@@ -94,13 +94,13 @@ parameters! {
     CameraPixels => "pixels",
     /// Directions tried for each camera.
     Headings => "headings",
-    /// Where a camera looks.
+    /// Direction of a camera.
     HeadingAndTilt => "heading and tilt in degrees",
     /// Share of the first Fresnel zone.
     FresnelShare => "share of the Fresnel zone that must be free",
     /// Frequency, gigahertz.
     Frequency => "frequency of a radio link",
-    /// How much air bends lines of sight.
+    /// Coefficient of refraction of lines of sight.
     Refraction => "coefficient of refraction",
     /// Radius of the earth, metres.
     EarthRadius => "radius of the earth",
@@ -121,7 +121,7 @@ parameters! {
     SunElevation => "elevation of the sun",
     /// Elevation below which the sun does not count.
     MinSunElevation => "minimum elevation of the sun",
-    /// How clocks run.
+    /// Time zone of clocks.
     TimeZone => "time zone",
     /// A day.
     Date => "date",
@@ -157,15 +157,15 @@ parameters! {
     Air => "air",
     /// Directions around a place, or of the sky.
     DirectionCount => "number of directions",
-    /// How finely the patches of the sky are parted.
+    /// Division of the patches of the sky.
     PatchDivision => "division of sky patches",
     /// Rows of weather and their place.
     Weather => "weather",
     /// Parts of a row of weather, each with a sun of its own.
     WeatherParts => "parts of a row of weather",
-    /// How turbid the air is.
+    /// Linke turbidity of the air.
     Turbidity => "Linke turbidity",
-    /// What is in the air, and how it scatters light.
+    /// Content of the air that scatters light.
     AirContent => "content of the air",
     /// Share of light that the ground sends back.
     Albedo => "albedo",
@@ -173,11 +173,11 @@ parameters! {
     SunCell => "cell of sun directions in degrees",
     /// Share of light that passes crowns.
     Transmissivity => "transmissivity",
-    /// What gets through trees.
+    /// Light through trees.
     ThroughTrees => "light through trees",
-    /// Whether trees bear leaves.
+    /// Leaves of trees.
     Leaves => "leaves",
-    /// What a class of points is.
+    /// Meaning of a class of points.
     ClassMeaning => "class of points",
     /// Place, direction and size of a window.
     Window => "window",
@@ -188,7 +188,7 @@ parameters! {
     RoofAngle => "angle or area for roof planes",
     /// Rings of a parcel.
     Parcel => "parcel",
-    /// What keeps its sun.
+    /// Place that keeps its sun.
     ProtectedPlace => "protected place",
     /// Pairs to test for an envelope.
     ProtectedPairs => "number of pairs of a protected piece and a sun",
@@ -239,7 +239,7 @@ parameters! {
     // Files and reference systems
     /// Text of a reference system.
     Crs => "crs",
-    /// Whether a reference system that is given holds against the files.
+    /// Precedence of a given reference system over the files.
     CrsOverride => "crs_override",
     /// Reference system of a cloud or of targets.
     ReferenceSystem => "reference system",
@@ -257,9 +257,9 @@ parameters! {
     ResultColumns => "result columns",
     /// Number and size of the frames of a film.
     Frames => "frames of a film",
-    /// How long a frame of a film is shown.
+    /// Display time of a frame of a film.
     FrameTime => "time of a frame",
-    /// What does the work.
+    /// Device that computes.
     Device => "device",
     // Clouds, normals and scanners
     /// Position of a point or on a map.
@@ -268,11 +268,11 @@ parameters! {
     PointCount => "number of points",
     /// Neighbours of a point that are looked at.
     NeighborCount => "number of neighbours",
-    /// How flat neighbours lie for a normal.
+    /// Flatness of neighbours for a normal.
     Flatness => "flatness",
-    /// How normals are oriented.
+    /// Orientation of normals.
     Orientation => "orientation",
-    /// Where scanners stood.
+    /// Positions of scanners.
     ScannerPositions => "scanner positions",
     /// Path of a scanner, with its times.
     Trajectory => "trajectory",
@@ -286,7 +286,7 @@ parameters! {
     GroundDetection => "ground detection",
     /// Ground below places.
     Ground => "ground",
-    /// How far ground reaches beyond its points.
+    /// Reach of the ground beyond its points.
     GroundReach => "reach of the ground",
     /// Setting of a surface of points.
     Surface => "surface of points",
@@ -327,11 +327,11 @@ parameters! {
     PulseNearness => "nearness of pulses",
     /// Length that may stay unproven.
     UnprovenLength => "maximum unproven length",
-    /// What unproven answers count as.
+    /// Treatment of unproven answers.
     UnprovenAs => "unproven",
-    /// How certain an answer must be.
+    /// Minimum certainty of an answer.
     Certainty => "certainty",
-    /// Whether to give an interval that holds the truth.
+    /// Choice to give an interval that holds the truth.
     Interval => "interval",
     /// Share of the pulses that are kept out to measure with.
     HeldOutShare => "share of the pulses that are kept out",

@@ -5,7 +5,7 @@ use crate::polygon::PolygonIndex;
 use crate::vector::{cross, length, sub};
 use crate::{Error, Parameter, Result};
 
-/// What a patch is a part of.
+/// Kind of surface that a patch belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum PatchKind {
     /// A roof.
@@ -40,7 +40,7 @@ impl PatchKind {
         Self::ALL.get(usize::from(code)).copied()
     }
 
-    /// What it is called in answers and tables.
+    /// Returns its name in answers and tables.
     #[must_use]
     pub fn name(self) -> &'static str {
         ["roof", "wall", "parapet", "step", "box", "inside", "slab"][self as usize]
@@ -56,11 +56,11 @@ pub type PatchTriangle = [[f32; 3]; 3];
 pub struct SurfacePatches {
     /// Corners, (T, 3, 3), local metres, counter-clockwise seen from outside.
     pub triangles: Vec<PatchTriangle>,
-    /// What each is a part of, (T).
+    /// Kind of each, (T).
     pub kinds: Vec<PatchKind>,
 }
 
-/// How many triangles of a kind there are, and how large.
+/// Number and area of the triangles of a kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PatchCount {
     /// Triangles.
@@ -79,7 +79,7 @@ impl SurfacePatches {
         self.triangles.len()
     }
 
-    /// Whether there is no triangle.
+    /// Returns true if there is no triangle.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
@@ -115,7 +115,7 @@ impl SurfacePatches {
         }
     }
 
-    /// How many triangles of each kind there are, in the order of [`PatchKind::ALL`].
+    /// Returns the number and area of the triangles of each kind, in the order of [`PatchKind::ALL`].
     #[must_use]
     pub fn counts(&self) -> [PatchCount; 7] {
         let mut counts = [PatchCount::default(); 7];
@@ -133,9 +133,9 @@ impl SurfacePatches {
         self.counts().iter().map(|count| count.area_m2).sum()
     }
 
-    /// The patches outside `rings`, local metres on the map: an outline and its holes. Triangles that an edge of the
-    /// rings crosses are cut there; all others stay or go as they are, and so do those that more than a thousand sides
-    /// of the rings come near to.
+    /// Returns the patches outside `rings`, local metres in plan: an outline and its holes. Triangles that an edge of
+    /// the rings crosses are cut there; all others are kept or dropped whole. So are triangles near more than a
+    /// thousand sides of the rings.
     #[must_use]
     pub fn outside(&self, rings: &[Vec<[f64; 2]>]) -> Self {
         self.outside_polygons(&PolygonIndex::new(rings))
@@ -185,7 +185,7 @@ fn area([a, b, c]: &Triangle) -> f64 {
     0.5 * length(cross(sub(*b, *a), sub(*c, *a)))
 }
 
-/// Whether the boxes of a triangle and an edge meet on the map.
+/// Returns true if the boxes of a triangle and an edge meet in plan.
 fn may_cross(piece: &Triangle, edge: &[[f64; 2]; 2]) -> bool {
     (0..2).all(|axis| {
         let [low, high] = [f64::min, f64::max].map(|pick| {
@@ -196,7 +196,7 @@ fn may_cross(piece: &Triangle, edge: &[[f64; 2]; 2]) -> bool {
     })
 }
 
-/// Whether an edge runs through the inside of a triangle on the map, or may where that is a line there.
+/// Returns true if an edge runs through the inside of a triangle in plan, or may if that is a line there.
 fn crosses(piece: &Triangle, edge: &[[f64; 2]; 2]) -> bool {
     let turn = |a: [f64; 3], b: [f64; 3], [x, y]: [f64; 2]| (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
     let [a, b, c] = *piece;
@@ -205,8 +205,8 @@ fn crosses(piece: &Triangle, edge: &[[f64; 2]; 2]) -> bool {
     may_cross(piece, edge) && (doubled_area == 0.0 || ![[a, b], [b, c], [c, a]].into_iter().any(is_beside))
 }
 
-/// Adds the pieces of a triangle that edges cut it into. Each piece is cut by those alone that run through it, so that
-/// the edges of an outline take as many pieces as there are of them, and not each the pieces of all others.
+/// Appends the pieces of a triangle that edges cut it into. Each piece is cut by the edges that cross it only. The
+/// number of pieces therefore grows with that of the edges of an outline, and not with its square.
 fn cut_along(piece: Triangle, edges: &[[[f64; 2]; 2]], pieces: &mut Vec<Triangle>) {
     let mut pending = vec![(piece, edges.to_vec())];
     while let Some((piece, mut edges)) = pending.pop() {

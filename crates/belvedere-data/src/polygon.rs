@@ -3,7 +3,7 @@
 use crate::{Error, Parameter};
 use std::ops::{ControlFlow, Range};
 
-/// Whether a place lies within an outline and outside its holes: the rule of odd crossings over all rings, which may be
+/// Returns true if a place lies within an outline and outside its holes, by odd crossings over all rings, which may be
 /// closed or not.
 #[must_use]
 pub fn is_inside(rings: &[Vec<[f64; 2]>], [x, y]: [f64; 2]) -> bool {
@@ -71,8 +71,8 @@ impl RingFault {
     }
 }
 
-/// Polygons in which sides near a place are found without a look at all of them: a tree over the sides of each ring, in
-/// their order, and one over the polygons.
+/// Index of polygons that finds the sides near a place without testing all of them: a tree over the sides of each ring,
+/// in their order, and one over the polygons.
 #[derive(Clone, Debug)]
 pub struct PolygonIndex {
     /// Corners of all rings, the first of each repeated at its end.
@@ -240,8 +240,8 @@ impl PolygonIndex {
         }
     }
 
-    /// Whether a place lies within the outline of a polygon and outside its holes, by the rule of odd crossings as
-    /// [`is_inside`] has it.
+    /// Returns true if a place lies within the outline of a polygon and outside its holes, by odd crossings as in
+    /// [`is_inside`].
     #[must_use]
     pub fn holds(&self, place: [f64; 2]) -> bool {
         let is_in = |roots: &[usize]| {
@@ -250,7 +250,7 @@ impl PolygonIndex {
         self.each_polygon_near(place, place, is_in).is_break()
     }
 
-    /// Whether a place lies within the rings with these roots.
+    /// Returns true if a place lies within the rings with these roots.
     fn is_within(&self, roots: &[usize], [x, y]: [f64; 2]) -> bool {
         let mut inside = false;
         let mut pending = roots.to_vec();
@@ -321,7 +321,7 @@ impl PolygonIndex {
     }
 }
 
-/// Whether two sides cross at a place that is an end of neither.
+/// Returns true if two sides cross at a place that is an end of neither.
 fn cross_each_other([a, b]: &[[f64; 2]; 2], [c, d]: &[[f64; 2]; 2]) -> bool {
     let turn = |p: &[f64; 2], q: &[f64; 2], r: &[f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
     turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0

@@ -1,4 +1,4 @@
-//! How reports give their numbers: rounded as a reader wants them.
+//! Rounding of the numbers of reports for a reader.
 
 /// `value` with `digits` decimals; a value that is not finite stays as it is. Zero has no sign.
 #[must_use]

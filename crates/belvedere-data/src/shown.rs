@@ -81,7 +81,7 @@ impl<'a> Address<'a> {
         Some((text.get(..start)?, Self { scheme, user, server, path, query }))
     }
 
-    /// Whether something in it may not be shown: any user and any query, since keys have many names.
+    /// Returns true if parts of it may not be shown: any user and any query, since keys have many names.
     #[must_use]
     pub fn has_secrets(&self) -> bool {
         !self.user.is_empty() || (self.query.len() > 1 && self.cut_number().is_none())
@@ -133,7 +133,7 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(escaped)
 }
 
-/// Whether a character commands a terminal or turns the direction of writing.
+/// Returns true if a character commands a terminal or changes the direction of writing.
 #[must_use]
 pub fn is_command(c: char) -> bool {
     (c.is_control() && !matches!(c, '\n' | '\t'))

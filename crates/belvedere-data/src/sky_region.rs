@@ -1,4 +1,4 @@
-//! Where the pulses of a scan met nothing up to the sky.
+//! Regions in which the pulses of a scan met nothing up to the sky.
 
 /// The directions of one scan in which pulses returned nothing and see the sky, on a regular grid of angles about its
 /// scanner. These pulses have no point; they prove that their way is empty.
@@ -6,7 +6,8 @@
 pub struct SkyRegion {
     /// Index into [`PointCloud::scanner_positions`](crate::PointCloud::scanner_positions).
     pub scanner: u16,
-    /// How far from the scanner the ways of pulses are empty, metres: at this range it still received returns.
+    /// Distance from the scanner up to which the pulses prove space empty, metres: at this range it still received
+    /// returns.
     pub range: f32,
     /// The axes of the scan in local coordinates: its direction d is Σ axesᵢ dᵢ.
     pub axes: [[f64; 3]; 3],
@@ -16,7 +17,7 @@ pub struct SkyRegion {
     pub elevation: [f64; 2],
     /// Number of columns.
     pub columns: usize,
-    /// Whether the pulses of a cell see the sky, row by row, (R × C).
+    /// True for cells whose pulses see the sky, row by row, (R × C).
     pub is_open: Vec<bool>,
 }
 

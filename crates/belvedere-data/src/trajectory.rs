@@ -6,14 +6,14 @@ use crate::cloud::to_local;
 use crate::vector::length;
 use crate::{Error, GpsTimeKind, Parameter, PointCloud, Result};
 
-/// Longest gap between two positions that is interpolated over: recorders write at 1 Hz or faster, and in two seconds
-/// an aircraft in a turn leaves the chord by a few metres; beyond that the path is not known.
+/// Maximum gap between two positions that is interpolated over, seconds. Recorders write at 1 Hz or faster, and in two
+/// seconds an aircraft in a turn leaves the chord by a few metres; beyond that the path is not known.
 pub const MAX_GAP_S: f64 = 2.0;
 
 /// Seconds in a GPS week.
 pub const WEEK_S: f64 = 604_800.0;
 
-/// What is taken from GPS time to make it adjusted standard GPS time.
+/// Difference between GPS time and adjusted standard GPS time, seconds.
 pub const ADJUSTED_STANDARD_S: f64 = 1e9;
 
 /// GPS minus UTC since 2017: trajectories are sometimes written in UTC of the week.
@@ -35,11 +35,11 @@ pub struct TrajectorySample {
     pub time: f64,
     /// Metres in the cloud's reference system (not local).
     pub position: [f64; 3],
-    /// How well it is known.
+    /// Accuracy of the position.
     pub quality: TrajectoryQuality,
 }
 
-/// How well a position on a trajectory is known.
+/// Accuracy of a position on a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrajectoryQuality {
     /// Standard deviations along x, y and z, metres.
@@ -50,10 +50,11 @@ pub struct TrajectoryQuality {
     pub line: u16,
 }
 
-/// How the times of a cloud become times of a trajectory, and at how many of them the trajectory knows a position.
+/// Conversion of the times of a cloud to times of a trajectory, and the number of them at which the trajectory knows a
+/// position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClockOffset {
-    /// Which clock the trajectory was written with.
+    /// Clock of the trajectory.
     pub clock: TrajectoryClock,
     /// Seconds added after the change of clock: 0, ±18 for a trajectory in UTC (or a cloud in UTC), or what pulses say.
     pub leap_seconds: f64,
@@ -63,7 +64,7 @@ pub struct ClockOffset {
     pub time_count: usize,
 }
 
-/// What the times of a trajectory count from, seen from the times of a cloud.
+/// Epoch of the times of a trajectory, relative to the times of a cloud.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TrajectoryClock {
     /// The same as those of the cloud.
@@ -140,12 +141,12 @@ impl Trajectory {
         ((t - time).abs() <= MAX_GAP_S).then_some((t, p))
     }
 
-    /// How the times of a cloud, (N) seconds of `kind`, become times of this trajectory: the change of clock and leap
-    /// seconds that let it know a position at the most of them, and how many that is.
+    /// Finds the conversion of the times of a cloud, (N) seconds of `kind`, to times of this trajectory. It is the
+    /// change of clock and leap seconds with the largest number of known positions, which is returned too.
     ///
-    /// Where several know equally many the plainest wins, without leap seconds if possible: a difference of 18 s can
-    /// only be detected where the trajectory begins or ends within 18 s of the cloud. A header may lie about its kind
-    /// of time, hence all changes of clock are tried whatever `kind` says; `kind` only breaks ties.
+    /// If several conversions know equally many, the simplest is chosen, without leap seconds if possible: a difference
+    /// of 18 s can only be detected if the trajectory begins or ends within 18 s of the cloud. A header may have a
+    /// wrong kind of time. All changes of clock are therefore tried whatever `kind` is; `kind` only breaks ties.
     #[must_use]
     pub fn clock_offset_for(&self, times: &[f64], kind: GpsTimeKind) -> ClockOffset {
         use TrajectoryClock::{GpsFromAdjusted, Same, WeekFromAdjusted};
@@ -173,8 +174,8 @@ impl Trajectory {
     /// and how the cloud's times became those of the trajectory.
     ///
     /// # Errors
-    /// [`Error::MissingAttribute`] without GPS times, [`Error::InvalidParameter`] where it knows a position at none of
-    /// them, is more than 50 km away from all points, or above less than a tenth of them.
+    /// [`Error::MissingAttribute`] without GPS times. [`Error::InvalidParameter`] for a trajectory that knows a
+    /// position at none of them, is more than 50 km away from all points, or above less than a tenth of them.
     pub fn scanner_positions(&self, cloud: &PointCloud) -> Result<(Vec<[f32; 3]>, ClockOffset)> {
         let times = cloud.attributes.gps_time.as_deref().ok_or(Error::MissingAttribute {
             attribute: "GPS time",
@@ -186,7 +187,8 @@ impl Trajectory {
         Ok((positions, offset))
     }
 
-    /// As [`Trajectory::scanner_positions`], at `times`, (N), on the clock of `cloud`, in place of those of its points.
+    /// Returns [`Trajectory::scanner_positions`] at `times`, (N), on the clock of `cloud`, in place of those of its
+    /// points.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] where it knows a position at none of the times.
@@ -223,11 +225,11 @@ impl Trajectory {
     }
 }
 
-/// Farthest that a scanner may be from its points, metres: ten times what airborne scanners reach.
+/// Maximum distance of a scanner from its points, metres: ten times the range of airborne scanners.
 const MAX_DISTANCE: f64 = 50_000.0;
-/// How far below its scanner a point must be to count as below it, metres: more than points of the ground are rough.
+/// Minimum height of a scanner above a point that counts as below it, metres: more than the roughness of the ground.
 const CLEARLY_BELOW: f32 = 0.5;
-/// Least share of the points that are below their scanner: those of a vehicle measure the road, those of an aircraft
+/// Minimum share of the points that are below their scanner: those of a vehicle measure the road, those of an aircraft
 /// everything.
 const MIN_BELOW: f64 = 0.1;
 

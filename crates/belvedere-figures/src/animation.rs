@@ -7,8 +7,7 @@ use crate::picture::Picture;
 use crate::png::write_frames;
 use belvedere_data::{Error, Parameter, Result};
 
-/// Longest time that a frame stays, seconds: beyond it the file format, which counts milliseconds in 16 bits, has no
-/// number.
+/// Maximum time of a frame, seconds: the file format counts milliseconds in 16 bits.
 const LONGEST: f64 = 65.535;
 
 /// Writes `frames`, all of one size, as an animated PNG that shows each for `seconds_per_frame` (to a millisecond) and

@@ -85,9 +85,9 @@ impl Canvas {
         Ok(())
     }
 
-    /// Draws the balls of a depth map as spheres lit from the upper left: `depth` and `items`, (height, width) of this
-    /// canvas's view, say which ball each pixel shows and how deep, `centers`, (B, 3) local metres, and `radii`, (B)
-    /// metres, how it is curved there.
+    /// Draws the balls of a depth map as spheres lit from the upper left. `depth` and `items`, (height, width) of this
+    /// canvas's view, give the depth and the ball of each pixel. `centers`, (B, 3) local metres, and `radii`, (B)
+    /// metres, give the curvature there.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] unless both rasters have the size of the picture, there is one radius for each centre,

@@ -22,9 +22,9 @@ const COLORS: [[u8; 3]; 8] = [
 
 /// Curves that share their horizontal positions.
 pub struct Curves<'a> {
-    /// What stands above the diagram.
+    /// Title above the diagram.
     pub title: &'a str,
-    /// What is written below each position; they are equally far apart.
+    /// Label of each position; they are equally far apart.
     pub positions: &'a [String],
     /// Name and values of each curve, one for each position, 0 or more; NaN where not known.
     pub curves: &'a [(String, Vec<f64>)],

@@ -10,7 +10,7 @@ use belvedere_data::vector::{cross, dot, sub, unit};
 use belvedere_data::view::{View, panorama_direction};
 use belvedere_io::colors::{percentiles, ramp};
 
-/// Where a view hit nothing.
+/// Colour of pixels without a surface.
 const NOTHING: [u8; 3] = [222, 224, 228];
 const NOTHING_LABEL: &str = "nothing hit";
 const TITLE_GAP: usize = 6;
@@ -30,16 +30,16 @@ pub fn depth_picture(depth: &Raster<f32>, title: &str) -> Picture {
     with_legend(&enlarged(colored(depth, &colors, |_| 1.0)), &colors, title, "depth (m)")
 }
 
-/// A picture of the depths that `view` shows, as [`depth_picture`], but for an eye: equal ratios of depth are equal
-/// steps of colour, since what is near would else be all one, and surfaces are shaded as if lit from the upper left
-/// behind the eye.
+/// Draws the depths that `view` shows, as [`depth_picture`], but for an eye. Equal ratios of depth are equal steps of
+/// colour, since near depths would otherwise be all alike. Surfaces are shaded as if lit from the upper left behind the
+/// eye.
 #[must_use]
 pub fn camera_picture(view: &View, depth: &Raster<f32>, title: &str) -> Picture {
     let position =
         |[column, row]: [usize; 2], depth: f64| view.position([column as f64 + 0.5, row as f64 + 0.5], depth);
     let colors = DepthColors::by_ratio(depth);
     let shaded = colored(depth, &colors, |pixel| {
-        facing(depth, pixel, position).map_or(1.0, |(normal, to_eye)| lit(normal, to_eye, [-0.4, -0.6, 0.0]))
+        facing(depth, pixel, position).map_or(1.0, |(normal, to_eye)| shade(normal, to_eye, [-0.4, -0.6, 0.0]))
     });
     with_legend(&enlarged(shaded), &colors, title, "depth (m)")
 }
@@ -55,13 +55,13 @@ pub fn panorama_picture(range: &Raster<f32>, title: &str) -> Picture {
         facing(range, pixel, position).map_or(1.0, |(normal, to_eye)| {
             // left of the line of sight, and up
             let left = unit([-to_eye[1], to_eye[0], 0.0]).unwrap_or([0.0; 3]).map(|v| -0.4 * v);
-            lit(normal, to_eye, [left[0], left[1], 0.6])
+            shade(normal, to_eye, [left[0], left[1], 0.6])
         })
     });
     with_legend(&with_compass(&enlarged(shaded)), &colors, title, "range (m)")
 }
 
-/// How depths become colours.
+/// Colour scale of depths.
 enum DepthColors {
     /// Equal differences are equal steps of colour.
     Even { near: f64, span: f64 },
@@ -84,7 +84,7 @@ impl DepthColors {
         }
     }
 
-    /// Where a depth lies between the limits, 0 to 1 from near to far.
+    /// Returns the position of a depth between the limits, 0 to 1 from near to far.
     fn share(&self, depth: f64) -> f64 {
         match *self {
             Self::Even { near, span } => (depth - near) / span,
@@ -136,8 +136,8 @@ fn scaled(color: [u8; 3], share: f64) -> [u8; 3] {
     color.map(|channel| (f64::from(channel) * share.clamp(0.0, 1.0)).round() as u8)
 }
 
-/// Unit normal of the surface that a pixel shows, and unit vector towards the eye at the origin of `position`; `None`
-/// where no neighbour in one of both directions shows a surface.
+/// Returns the unit normal of the surface that a pixel shows, and the unit vector towards the eye at the origin of
+/// `position`. `None` if no neighbour in one of both directions shows a surface.
 fn facing(
     depth: &Raster<f32>,
     [column, row]: [usize; 2],
@@ -163,7 +163,7 @@ fn facing(
 }
 
 /// Share of its colour that a surface shows under a lamp which lies `aside` of the eye.
-fn lit(normal: [f64; 3], to_eye: [f64; 3], aside: [f64; 3]) -> f64 {
+fn shade(normal: [f64; 3], to_eye: [f64; 3], aside: [f64; 3]) -> f64 {
     let to_light = unit(std::array::from_fn(|i| to_eye[i] + aside[i])).unwrap_or(to_eye);
     AMBIENT + (1.0 - AMBIENT) * dot(normal, to_light).max(0.0)
 }

@@ -18,7 +18,7 @@ const FONT: &[u8] = include_bytes!("../fonts/Roboto-Regular.ttf");
 /// Height of the font at scale 1, from the top of the highest letters to the bottom of the lowest, pixels: its capitals
 /// are then 7 pixels high.
 const FONT_HEIGHT: f32 = 11.5;
-/// Where letters stand at scale 1, pixels below the upper edge of a line.
+/// Baseline of letters at scale 1, pixels below the upper edge of a line.
 const BASELINE: f32 = 7.0;
 
 /// The font at a scale.
@@ -31,7 +31,7 @@ struct ScaledFont {
 /// A letter of a line of text.
 struct PlacedGlyph {
     id: GlyphId,
-    /// Where it stands on the line, pixels.
+    /// Position on the line, pixels.
     x: f32,
 }
 
@@ -57,7 +57,7 @@ impl ScaledFont {
         (glyphs, x)
     }
 
-    /// How much of each pixel a glyph covers whose line stands at `y`; `None` for one without ink.
+    /// Returns the coverage of each pixel by a glyph on a line at `y`; `None` for one without ink.
     fn drawn(&self, glyph: &PlacedGlyph, y: f32) -> Option<GlyphPixels> {
         let outline = self.font.outline_glyphs().get(glyph.id)?;
         let bounds = self.font.glyph_metrics(Size::unscaled(), LocationRef::default()).bounds(glyph.id)?;
@@ -72,7 +72,7 @@ struct GlyphPixels {
     cover: Rasterizer,
     /// The upper left corner of the pixels in the picture.
     corner: [f32; 2],
-    /// Where the glyph stands in its pixels, and pixels per unit of the outline.
+    /// Position of the glyph in its pixels, and pixels per unit of the outline.
     place: [f32; 2],
     pixels_per_unit: f32,
     start: Point,
@@ -80,7 +80,7 @@ struct GlyphPixels {
 }
 
 impl GlyphPixels {
-    /// Nothing drawn yet, in pixels that hold `bounds` of a glyph that stands at `place`.
+    /// Creates empty pixels around `bounds` of a glyph at `place`.
     fn around(bounds: BoundingBox, place: [f32; 2], pixels_per_unit: f32) -> Self {
         // y grows downwards in pictures; a pixel of room on all sides holds what is rounded
         let low = [place[0] + bounds.x_min * pixels_per_unit, place[1] - bounds.y_max * pixels_per_unit];

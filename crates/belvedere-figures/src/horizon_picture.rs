@@ -10,7 +10,7 @@ const SCALE: usize = 2;
 const LINE: usize = 2;
 const SKY: [u8; 3] = [214, 232, 248];
 const SOLID: [u8; 3] = [96, 102, 112];
-/// Where the sky may begin as well.
+/// Colour of elevations at which the sky may begin as well.
 const UNSURE: [u8; 3] = [164, 174, 188];
 const GRID: [u8; 3] = [178, 190, 202];
 /// Names of azimuths, eighths of a circle apart from north.

@@ -13,7 +13,7 @@ use belvedere_io::colors::ramp;
 
 /// Maps smaller than this are enlarged.
 const MIN_SIDE: usize = 600;
-/// Where nothing is known of the relief.
+/// Colour of unknown relief.
 const UNKNOWN: [u8; 3] = [236, 237, 240];
 /// Share of a pixel that the colour of the map takes, the rest is relief.
 const TINT: f64 = 0.5;
@@ -23,23 +23,23 @@ const TO_LIGHT: [f64; 3] = [-0.5, 0.5, std::f64::consts::FRAC_1_SQRT_2];
 const BARE: [u8; 3] = [197; 3];
 /// Colours of a mark: its disc and the ring around it.
 const MARK: [[u8; 3]; 2] = [[225, 30, 45], [255, 255, 255]];
-/// How far the view of a mark is drawn, how wide its edge is, and where its label stands, in radii of the mark.
+/// Length of the view of a mark, width of its edge, and distance of its label, in radii of the mark.
 const WEDGE: f64 = 7.0;
 const EDGE: f64 = 0.2;
 const LABEL: f64 = 4.5;
 
 /// About so many coordinates along the longer side of a map.
 const COORDINATES: f64 = 5.0;
-/// Most round values beside a ramp.
+/// Maximum number of round values beside a ramp.
 const MAX_TICKS: f64 = 9.0;
 
-/// What a map shows.
+/// Content of a map.
 pub struct MapPicture<'a> {
     /// Heights whose relief lies below the colours, metres, NaN where not known; row 0 in the north.
     pub relief: &'a Raster<f32>,
     /// Side of a pixel, metres.
     pub cell: f64,
-    /// Where the map lies, for coordinates along its sides, in the reference system and unit of the file; `None` draws
+    /// Position of the map, for coordinates along its sides, in the reference system and unit of the file; `None` draws
     /// none.
     pub place: Option<&'a Georeference>,
     /// Colour of each pixel, as many as heights; `None`, where there is no answer, shows the bare relief, and the
@@ -47,11 +47,11 @@ pub struct MapPicture<'a> {
     pub colors: &'a [Option<[u8; 3]>],
     /// Places to mark.
     pub marks: &'a [MapMark],
-    /// What the marks are, for the legend.
+    /// Name of the marks, for the legend.
     pub mark_name: &'a str,
-    /// What stands above the map.
+    /// Title above the map.
     pub title: &'a str,
-    /// What stands beside it.
+    /// Legend beside the map.
     pub legend: MapLegend<'a>,
 }
 
@@ -78,11 +78,11 @@ pub struct MapMark {
     /// Azimuth that it looks to, clockwise from the north of the grid, and width of its view, radians: drawn as a
     /// wedge.
     pub view: Option<[f64; 2]>,
-    /// What stands beside it; empty for nothing.
+    /// Label beside it; empty for none.
     pub label: String,
 }
 
-/// What colours mean.
+/// Meaning of colours.
 pub enum MapLegend<'a> {
     /// Each colour and its meaning.
     Colors(&'a [([u8; 3], &'a str)]),
@@ -166,7 +166,7 @@ fn draw_mark(picture: &mut Picture, place: [f64; 2], radius: f64) {
     }
 }
 
-/// What a mark looks to, as a wedge through which the map shines.
+/// Draws the view of a mark, as a transparent wedge.
 fn draw_view(picture: &mut Picture, place: [f64; 2], view: Option<[f64; 2]>, radius: f64) {
     let Some([heading, width]) = view.filter(|view| view[0].is_finite() && view[1] < TAU) else { return };
     for_pixels_around(picture, place, radius * WEDGE, |picture, pixel, [east, south]| {
@@ -387,10 +387,10 @@ impl Axes {
     }
 }
 
-/// Round values between `low` and `high`, and either end that is half a step or more from the next of them (counts
-/// begin at 1): the share of the way that each lies at, and how it is written.
+/// Returns round values between `low` and `high`, and either end that is half a step or more from the next of them
+/// (counts begin at 1). Each has its position between the ends, 0 to 1, and its text.
 fn ticks([low, high]: [f64; 2]) -> Vec<(f64, String)> {
-    /// What rounding may take from a whole number of steps.
+    /// Rounding error of a whole number of steps.
     const ROUNDING: f64 = 1e-6;
     let span = high - low;
     if !(span > 0.0 && span.is_finite()) {

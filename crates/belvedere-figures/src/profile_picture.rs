@@ -25,7 +25,7 @@ pub struct DistanceProfile<'a> {
     pub solid: &'a [Vec<[f64; 2]>],
     /// Distance on the map at which the line of sight is blocked, if it is, metres.
     pub blocked_at: Option<f64>,
-    /// What stands above the diagram.
+    /// Title above the diagram.
     pub title: &'a str,
 }
 
@@ -91,7 +91,7 @@ pub fn profile_picture(profile: &DistanceProfile<'_>) -> Picture {
     sheet
 }
 
-/// What the colours mean, in a row between two columns.
+/// Draws the legend of the colours, in a row between two columns.
 fn draw_legend(sheet: &mut Picture, [left, right]: [usize; 2], row: usize) {
     let mut at = left;
     for (color, text) in [(GROUND, "ground"), (SOLID, "blocks"), (SEEN, "seen"), (HIDDEN, "hidden")] {

@@ -23,7 +23,7 @@ const WORTH_USING: usize = 1 << 14;
 /// them for a line of sight.
 const WORTH_DRAWING: usize = 1 << 12;
 
-/// Which device is used.
+/// Choice of the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choice {
     /// A separate graphics card for large questions, else the CPU.
@@ -63,7 +63,7 @@ pub(crate) struct Ready {
 
 #[derive(Debug)]
 enum Readiness {
-    /// Not yet needed.
+    /// Device that is not yet needed.
     Unopened,
     Ready(Arc<Ready>),
     /// There is none, or it failed.
@@ -90,8 +90,8 @@ impl Gpu {
         Ok(gpu)
     }
 
-    /// As [`Gpu::new`] with a device whose buffers have at most `max_bytes`, and that fails after so many directions
-    /// of a part of a scene: what tests of scenes in parts, and of the way back to the CPU, need.
+    /// Creates a backend as [`Gpu::new`] with a device whose buffers have at most `max_bytes`, and that fails after
+    /// `fails_after` directions of a part of a scene. For tests of scenes in parts, and of the fallback to the CPU.
     ///
     /// # Errors
     /// Those of [`Gpu::new`].
@@ -110,7 +110,8 @@ impl Gpu {
         Self { shared: Arc::new(GpuState { choice, state, notes, used, fails_after, pixel_counts }) }
     }
 
-    /// Which share of the pixels of all depth maps so far the CPU drew again, because single precision did not suffice.
+    /// Returns the share of the pixels of all depth maps so far that the CPU drew again, because single precision did
+    /// not suffice.
     #[must_use]
     pub fn redone_share(&self) -> f64 {
         let [drawn, redone] = *self.shared.pixel_counts.lock().unwrap_or_else(PoisonError::into_inner);
@@ -133,7 +134,7 @@ impl Gpu {
         }
     }
 
-    /// What the CPU had to do instead, and why, a line each.
+    /// Returns one line for each piece of work that fell to the CPU, with the reason.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
         self.shared.notes.lock().unwrap_or_else(PoisonError::into_inner).clone()
@@ -215,8 +216,8 @@ impl GpuState {
     }
 }
 
-/// Whether a picture that takes the CPU as long as so many lines of sight is drawn on a device. By itself only a large
-/// one is, also where a device is ready: so a picture does not depend on the questions before it.
+/// Returns true if a picture is drawn on a device; the CPU would take as long as for `lines` lines of sight. By itself
+/// only a large one is, also if a device is ready, so that a picture does not depend on the questions before it.
 fn is_worth_drawing(choice: Choice, lines: usize) -> bool {
     lines >= if choice == Choice::Automatic { WORTH_A_DEVICE } else { WORTH_DRAWING }
 }
@@ -256,7 +257,7 @@ struct OnDevice {
     memory: Mutex<DeviceMemory>,
 }
 
-/// What is in the memory of the device: one part of the scene at a time.
+/// Contents of the memory of the device: one part of the scene at a time.
 #[derive(Default)]
 struct DeviceMemory {
     /// The scene in parts, none before it is needed.
@@ -293,8 +294,8 @@ impl PreparedBackend for OnDevice {
 }
 
 impl OnDevice {
-    /// What the device decides, and for how many of the viewers it did before it failed, if it did; `None` where it is
-    /// not used.
+    /// Returns the decisions of the device, and the number of viewers before it failed, if it did; `None` if it is not
+    /// used.
     fn decide(
         &self,
         targets: &[[f32; 3]],

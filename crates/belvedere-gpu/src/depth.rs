@@ -32,8 +32,8 @@ const BLOCK: usize = 2048;
 const MAX_TILES: usize = 9;
 /// Words of the ranges of depth in which balls are counted.
 const RANGES: usize = 4096;
-/// Balls at a time on a device in software, at most: Mesa's ends a loop of a thread after 65 535 turns, and a pixel may
-/// turn once for each ball.
+/// Maximum number of balls at a time on a device in software. Mesa's ends a loop of a thread after 65 535 turns, and a
+/// pixel may turn once for each ball.
 const MAX_SOFTWARE_BALLS: usize = 1 << 15;
 /// Bytes of a pixel in the largest buffer.
 const PIXEL_BYTES: usize = 16;
@@ -41,7 +41,7 @@ const PIXEL_BYTES: usize = 16;
 const BEYOND: f64 = 2.0;
 /// Views with a nearest depth beyond this are the CPU's, metres.
 const MAX_NEAR: f64 = 1e9;
-/// What a limit of depth without end is on a device, metres: beyond all that it draws.
+/// Limit of depth without end on a device, metres: beyond all that it draws.
 const ENDLESS: f64 = 1e30;
 /// Tiles that are drawn at a time on a graphics card, and on any other device: as for lines of sight, so that no
 /// picture freezes.
@@ -57,7 +57,7 @@ pub(crate) struct Painter {
     turn: Mutex<()>,
 }
 
-/// What pixels show, as the shaders number it.
+/// Content of pixels, as the shaders number it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Shows {
     /// Depths at their centres.
@@ -73,9 +73,9 @@ pub(crate) enum Shows {
 pub(crate) struct DevicePicture<'v> {
     view: &'v View,
     shows: Shows,
-    /// Of depth.
+    /// Limits of depth.
     limits: [f64; 2],
-    /// Of bounds.
+    /// Starts of the bounds.
     starts: [f64; 2],
     shell: f64,
 }
@@ -94,13 +94,13 @@ impl<'v> DevicePicture<'v> {
         Self { view, shows: Shows::Bounds, limits: [near, ENDLESS], starts, shell: params.shell }
     }
 
-    /// Whether single precision can say what it needs.
+    /// Returns true if single precision can represent its parameters.
     pub(crate) fn can_be_drawn(&self) -> bool {
         self.limits[0] <= MAX_NEAR && (1e-6..=1e9).contains(&scale_of(self.view))
     }
 }
 
-/// What a device has drawn.
+/// Result of a device.
 #[derive(Debug)]
 pub(crate) struct Drawn {
     /// Depths, or upper bounds. The sign of a pixel that the CPU has to draw again is set.
@@ -353,7 +353,7 @@ fn scale_of(view: &View) -> f64 {
 struct BallRows {
     first: usize,
     count: usize,
-    /// Whether no others come after them.
+    /// True if no others come after them.
     is_last: bool,
 }
 

@@ -6,7 +6,7 @@ use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 /// Bytes that are copied to a device at a time.
 const PART_BYTES: usize = 1 << 25;
 
-/// What a device is.
+/// Kind of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DeviceKind {
@@ -40,7 +40,7 @@ pub struct DeviceInfo {
     pub driver: String,
     /// The interface that it is reached by: Vulkan, Metal or DirectX 12.
     pub interface: String,
-    /// What it is.
+    /// Kind of the device.
     pub kind: DeviceKind,
     /// The largest buffer that a shader can use, bytes.
     pub max_bytes: u64,
@@ -143,7 +143,7 @@ impl Device {
             .map_err(|error| Error::Device { what: format!("{}: {error}", info.name) })?;
         let trouble = Trouble::default();
         let (of_errors, of_loss) = (trouble.clone(), trouble.clone());
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| of_errors.note(said(&error))));
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| of_errors.note(describe(&error))));
         device.set_device_lost_callback(move |_, why| of_loss.note(format!("the device was lost: {why}")));
         Ok(Self { info, device, queue, trouble })
     }
@@ -186,7 +186,7 @@ impl Device {
     }
 }
 
-fn said(error: &wgpu::Error) -> String {
+fn describe(error: &wgpu::Error) -> String {
     match error {
         wgpu::Error::OutOfMemory { .. } => "the memory of the device is full".to_owned(),
         other => other.to_string().lines().collect::<Vec<_>>().join(" "),

@@ -1,12 +1,13 @@
 //! Lines of sight and depth maps on a graphics processor.
 //!
-//! [`Gpu`] is a [`Backend`](belvedere_core::query::Backend): it follows lines of sight through the tree of balls in
-//! single precision, decides those that rounding cannot change, and leaves the others to the CPU, which decides
-//! exactly. So answers have the same bits as on the CPU. Of depth maps, too, it leaves the pixels to the CPU whose
-//! depth single precision does not know well enough: depths differ by
-//! [`DEPTH_MAP_TOLERANCE`](belvedere_core::query::DEPTH_MAP_TOLERANCE) of themselves at most. When there is no device,
-//! too little memory, or the device is lost in the middle of the work, the CPU does what is left, and [`Gpu::notes`]
-//! says so in a line.
+//! [`Gpu`] is a [`Backend`](belvedere_core::query::Backend). It follows lines of sight through the tree of balls in
+//! single precision and decides those that rounding cannot change. The CPU decides the others exactly, so that answers
+//! have the same bits as on the CPU.
+//!
+//! In depth maps the CPU draws the pixels whose depth is too inaccurate in single precision. Depths differ by
+//! [`DEPTH_MAP_TOLERANCE`](belvedere_core::query::DEPTH_MAP_TOLERANCE) of themselves at most. If there is no device,
+//! too little memory, or the device is lost during the work, the CPU does the rest, and [`Gpu::notes`] has a line on
+//! it.
 //!
 //! ```no_run
 //! use belvedere_core::query::MedialScene;

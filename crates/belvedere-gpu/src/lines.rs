@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// Targets of a group of threads.
 const GROUP: usize = 64;
 /// Lines of sight in a piece of work of a graphics card: a tenth of a second on a slow one, so that its picture does
-/// not freeze and no driver gives it up; a fast one does as many in twenty milliseconds.
+/// not freeze and no driver gives it up. A fast one does as many in twenty milliseconds.
 const CARD_LINES: usize = 1 << 23;
 /// The same of any other device.
 const OTHER_LINES: usize = 1 << 20;
@@ -27,14 +27,14 @@ const MAX_BYTES: usize = 1 << 25;
 const SCENE_BYTES: usize = 64;
 /// Bytes of `Viewer` in the shader.
 const VIEWER_BYTES: usize = 32;
-/// How much farther than their sides boxes reach, as a share of how far from the middle of the tree lines start: the
-/// room that f32 needs, twice.
+/// Widening of boxes beyond their sides, as a share of the distance of the starts of lines from the middle of the tree:
+/// twice the error of f32.
 const WIDENING: f64 = 2e-6;
 /// Kinds of viewers in the shader.
 const NOBODY: u32 = 0;
 const DIRECTION: u32 = 1;
 const EYE: u32 = 2;
-/// By how much the length of a direction may differ from one: what f64 rounds, and then some.
+/// Maximum deviation of the length of a direction from one: more than the rounding of f64.
 const UNIT: f64 = 1e-12;
 
 /// A device with the shader.
@@ -63,7 +63,7 @@ pub(crate) struct Words {
 }
 
 impl Words {
-    /// Those of a tree which is a part of the one with the index `whole`: targets as far away as from that are decided.
+    /// Encodes a tree that is a part of the one with the index `whole`: targets as far away as from that are decided.
     fn new(tree: &BallTree, whole: &RayIndex) -> Self {
         let (index, rule) = (tree.index(), tree.rule());
         let as_words = |ball: &Ball| {
@@ -146,9 +146,8 @@ impl Liner {
         Ok(loaded)
     }
 
-    /// What is certain of the lines of sight of `targets`, (M, 3) local metres, to each of `viewers`. What is finished
-    /// goes to `done` viewer by viewer: a bit for each target, 32 a word, of the lines that are free and of those that
-    /// are blocked.
+    /// Decides the lines of sight of `targets`, (M, 3) local metres, to each of `viewers`. Results go to `done` viewer
+    /// by viewer: bit masks over the targets, 32 a word, of free and of blocked lines.
     ///
     /// # Errors
     /// [`Error::Cancelled`], and [`Error::Device`] where the device fails: what was handed to `done` before is right.

@@ -8,7 +8,7 @@ use belvedere_data::contradiction::{ANNOUNCED_BOUNDS, ANNOUNCED_POINTS, FoundCon
 /// unit of the file, are the same.
 const MIN_ROOM: f64 = 0.01;
 
-/// What another file says of a LAS or LAZ file.
+/// Description of a LAS or LAZ file by another file.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Announced {
     /// Name of the other file.
@@ -17,7 +17,7 @@ pub(crate) struct Announced {
     pub(crate) points: Option<u64>,
     /// Lowest and highest corner of a box around them, in the coordinates of the file.
     pub(crate) bounds: Option<([f64; 3], [f64; 3])>,
-    /// What the box is.
+    /// Kind of the box.
     pub(crate) bounds_are: BoundsAre,
 }
 
@@ -31,7 +31,7 @@ pub(crate) enum BoundsAre {
 }
 
 impl Announced {
-    /// What of it is not so by the header of the file.
+    /// Returns the parts of it that contradict the header of the file.
     pub(super) fn contradictions(&self, header: &LasHeader) -> Vec<FoundContradiction> {
         let mut found = Vec::new();
         let by = &self.by;
@@ -69,7 +69,7 @@ impl Announced {
 }
 
 impl LasHeader {
-    /// Whether the bounds of the header say anything.
+    /// Returns true if the header gives bounds.
     pub(super) fn has_bounds(&self) -> bool {
         are_given(&self.bounds)
     }

@@ -6,8 +6,8 @@
 /// A polygon in degrees: its outer ring and its holes, each closed.
 pub(super) type DegreeRings = Vec<Vec<[f64; 2]>>;
 
-/// The parts of a polygon, longitude and latitude in degrees: itself where it does not cross 180 degrees, else what
-/// lies west and what lies east of it, each between -180 and 180.
+/// Cuts a polygon, longitude and latitude in degrees, at 180 degrees. Returns the polygon itself if it does not cross,
+/// else its parts west and east of the meridian, each between -180 and 180.
 pub(super) fn cut(rings: DegreeRings) -> Vec<DegreeRings> {
     let crosses = rings.iter().any(|ring| ring.windows(2).any(|pair| (pair[1][0] - pair[0][0]).abs() > 180.0));
     if !crosses {
@@ -79,8 +79,9 @@ fn side(rings: &[Vec<[f64; 2]>], is_inside: impl Fn(f64) -> bool) -> Vec<DegreeR
     polygons
 }
 
-/// Closed rings of chains that begin and end on the meridian. Along it the polygon lies between the first and the
-/// second crossing, between the third and the fourth and so on, so that a chain goes on where its partner begins.
+/// Joins chains that begin and end on the meridian to closed rings. Along the meridian the polygon lies between the
+/// first and the second crossing, between the third and the fourth and so on. A chain therefore continues where its
+/// partner begins.
 fn joined(chains: Vec<Chain>) -> Vec<Vec<[f64; 2]>> {
     let mut crossings: Vec<f64> = chains.iter().flat_map(|chain| [chain.from, chain.to]).collect();
     crossings.sort_unstable_by(f64::total_cmp);

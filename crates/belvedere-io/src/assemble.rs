@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::part::{Coordinates, FilePart, unquantise};
+use super::file_part::{Coordinates, FilePart, unquantise};
 use super::read_options::{DistantFiles, ReadOptions, RowNumbers};
 use super::read_report::ReadReport;
 use belvedere_data::Frame;
@@ -204,7 +204,7 @@ fn middle(parts: &[FilePart], scale: impl Fn(&FilePart) -> [f64; 3]) -> [f64; 3]
     })
 }
 
-/// What a pass over a part found.
+/// Result of a pass over a part.
 #[derive(Clone, Copy, Default)]
 struct PartPass {
     bounds: PointExtent,

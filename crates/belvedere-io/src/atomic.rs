@@ -9,19 +9,19 @@ use std::time::Duration;
 
 use belvedere_data::{Error, Result};
 
-/// How many names are tried for the temporary file; leftovers of killed runs may occupy some.
+/// Maximum number of names to try for the temporary file; leftovers of killed runs may occupy some.
 const MAX_NAME_ATTEMPTS: u32 = 1000;
 
 /// Bytes gathered before they are handed to the operating system.
 const BUFFER_BYTES: usize = 1 << 18;
 
-/// How long an unfinished file that this computer cannot judge is left alone after it was written to last: runs write
-/// all the time, and none pauses for a day.
+/// Minimum age of an unfinished file that this computer cannot judge before it is removed, since the last write. Runs
+/// write all the time, and none pauses for a day.
 const OLD: Duration = Duration::from_secs(24 * 3600);
 
-/// Where this process has its number: the start of this computer, and the space of process numbers, of which each
-/// container has its own. Part of the names of unfinished files, so that computers and containers with a common folder
-/// do not take the files of each other for leftovers. Only Linux says it.
+/// Identity of the host of this process: the start of this computer, and the space of process numbers, of which each
+/// container has its own. It is part of the names of unfinished files. Computers and containers with a common folder
+/// then do not take the files of each other for leftovers. Available on Linux only.
 static HOST: LazyLock<String> = LazyLock::new(|| {
     let boot = fs::read_to_string("/proc/sys/kernel/random/boot_id").unwrap_or_default();
     let space = fs::read_link("/proc/self/ns/pid").unwrap_or_default();
@@ -71,7 +71,7 @@ impl Drop for Temporary {
     }
 }
 
-/// What `body` returns, after everything that it wrote is under `path`.
+/// Writes a file and returns the result of `body`, after everything that it wrote is under `path`.
 ///
 /// The body writes to a temporary file in the same folder, which replaces `path` when the body succeeded. When it
 /// returns an error or panics, the temporary file is removed and what was under `path` stays as it was. A link is
@@ -170,7 +170,7 @@ fn remove_leftovers(target: &Path, name: &OsStr, own: &Path) {
     }
 }
 
-/// Whether the end of a name is that of an unfinished file: its host, the number of its process and its own.
+/// Returns true if the end of a name is that of an unfinished file: its host, the number of its process and its own.
 fn is_maker(text: &str) -> bool {
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     let is_host = |text: &str| text == "0" || (text.len() > 12 && text.bytes().all(|byte| byte.is_ascii_hexdigit()));
@@ -180,8 +180,8 @@ fn is_maker(text: &str) -> bool {
     }
 }
 
-/// Whether the process that made an unfinished file is known to be no more; `maker` is its host, its number and that of
-/// the file.
+/// Returns true if the process that made an unfinished file is known to have ended; `maker` is its host, its number and
+/// that of the file.
 fn is_abandoned(maker: &str, own: &fs::Metadata, other: &fs::Metadata) -> bool {
     let mut parts = maker.split('-');
     let (Some(host), Some(process), Some(_), None) = (parts.next(), parts.next(), parts.next(), parts.next()) else {

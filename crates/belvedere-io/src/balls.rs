@@ -11,24 +11,33 @@ pub(crate) const SUPPORTED: &str = ".npz .ply .laz .las";
 
 /// Writes `balls` in the format that follows from the extension (.npz .ply .laz .las).
 ///
-/// An `.npz` file keeps every bit: arrays `centers` (B, 3) f32 in metres relative to `origin` (3) f64 metres, `radii`
-/// (B) f32 metres, `source` and `touch` (B) u32, `separation_angles` (B) f32 radians, and `metadata`, JSON text as u8,
-/// which holds reference system, bounds and provenance; where known also `transmission` (B) f32, and the pulses that
-/// prove what is visible: `pulse_starts` (P, 3) f32 metres relative to the origin, `pulse_slopes` (P, 2) i16 in steps
-/// of 0.0001, `pulse_top` (1) f32 metres, `pulse_lengths` (P) f32 metres unless all reach the top, and `pulse_ways` (P)
-/// u8 unless all go up: 16 to 21 bytes each. Surface patches are `patch_corners` (T, 3, 3) f32 metres relative to the
-/// origin and `patch_kinds` (T) u8 (0 roof, 1 wall, 2 parapet, 3 inside).
-/// What is known of buildings are `roof_planes` (R, 15): normal, middle, lowest and highest corner, points, noise,
-/// standard deviation; `roof_edges` (E, 10): both ends, plane, standard deviation, sides, drop; `roof_ridges` (K, 9):
-/// both ends, both planes, 1 if both fall from it; and `walls` (W, 12): both ends in plan, lowest and highest height,
-/// edge, points, noise, standard deviation, share, eaves; all f64, metres relative to the origin.
+/// An `.npz` file keeps every bit. Its arrays are:
+///
+/// - `centers` (B, 3) f32 in metres relative to `origin` (3) f64 metres; `radii` (B) f32 metres; `source` and `touch`
+///   (B) u32; `separation_angles` (B) f32 radians;
+/// - `metadata`, JSON text as u8, with reference system, bounds and provenance;
+/// - if known, `transmission` (B) f32;
+/// - the pulses that prove visibility: `pulse_starts` (P, 3) f32 metres relative to the origin, `pulse_slopes` (P, 2)
+///   i16 in steps of 0.0001, `pulse_top` (1) f32 metres;
+/// - `pulse_lengths` (P) f32 metres unless all reach the top, and `pulse_ways` (P) u8 unless all go up: 16 to 21 bytes
+///   for each pulse;
+/// - surface patches: `patch_corners` (T, 3, 3) f32 metres relative to the origin and `patch_kinds` (T) u8 (0 roof, 1
+///   wall, 2 parapet, 3 inside);
+/// - buildings, all f64, metres relative to the origin, in the next four;
+/// - `roof_planes` (R, 15): normal, middle, lowest and highest corner, points, noise, standard deviation;
+/// - `roof_edges` (E, 10): both ends, plane, standard deviation, sides, drop;
+/// - `roof_ridges` (K, 9): both ends, both planes, 1 if both fall from it;
+/// - `walls` (W, 12): both ends in plan, lowest and highest height, edge, points, noise, standard deviation, share,
+///   eaves.
 ///
 /// `.ply`, `.las` and `.laz` files are point clouds of the centres in the reference system and unit of the cloud
-/// (doubles in PLY, steps of at most a millimetre in LAS) with the columns `radius`, in the horizontal unit of the
-/// file, `separation_angle` in radians, `source` and `touch`, −1 where a ball never shrank, and `transmission` where
-/// that is known. They are for looking at, with the radius as the size of a point, and answer as the balls alone do:
-/// they hold no pulses. Surface patches are an element `patch` of PLY (corners x1, y1, z1 to z3 and `kind`), and the
-/// record 3 of the user `belvedere` of LAS, which keeps every bit.
+/// (doubles in PLY, steps of at most a millimetre in LAS). Their columns are `radius`, in the horizontal unit of the
+/// file, `separation_angle` in radians, `source` and `touch`, −1 for a ball that never shrank, and `transmission` if
+/// known.
+///
+/// They are for viewing, with the radius as the size of a point, and answer as the balls alone do: they hold no pulses.
+/// Surface patches are an element `patch` of PLY (corners x1, y1, z1 to z3 and `kind`). In LAS they are the record 3 of
+/// the user `belvedere`, which keeps every bit.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`] for other extensions, [`Error::MissingFeature`], those of [`ModelParts::validate`], and
@@ -70,8 +79,8 @@ pub fn read_balls<'a>(source: impl Into<Source<'a>>) -> Result<ModelParts> {
     Ok(balls)
 }
 
-/// Whether a source holds balls rather than a cloud, judged by its header; `false` also for what cannot be understood.
-/// An `.npz` file is never a cloud: it is left to [`read_balls`] to say what is wrong with it.
+/// Returns true if a source holds balls and no cloud, by its header; `false` also for an unknown format. An `.npz` file
+/// is never a cloud: [`read_balls`] reports its errors.
 ///
 /// # Errors
 /// [`Error::Io`] when the file cannot be opened.

@@ -11,7 +11,7 @@ use super::source::Source;
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Mesh, Parameter, Result};
 
-/// Which of the levels of detail of each city object to read.
+/// Choice of the levels of detail to read of each city object.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum LevelOfDetail {
     /// The highest that has surfaces, object by object: what normals are best oriented with.
@@ -29,8 +29,8 @@ pub enum LevelOfDetail {
 /// are taken as they are; the system that `metadata.referenceSystem` names by an EPSG code is that of the mesh.
 ///
 /// # Errors
-/// [`Error::Io`] where the file cannot be read, [`Error::Malformed`] for anything that is not CityJSON, indices without
-/// a vertex or template, nesting that does not fit the type of geometry, and files without a triangle.
+/// [`Error::Io`] if the file cannot be read. [`Error::Malformed`] for anything that is not CityJSON, indices without a
+/// vertex or template, nesting that does not fit the type of geometry, and files without a triangle.
 ///
 /// # Source
 /// CityJSON 2.0.1 specification, sections 2 to 5 and "Geometry templates".
@@ -252,7 +252,8 @@ fn type_of(geometry: &Value) -> &str {
     geometry.get("type").and_then(Value::as_str).unwrap_or("")
 }
 
-/// How many lists deep the surfaces of a geometry lie, or `None` for geometries without surfaces.
+/// Returns the depth of nested lists at which the surfaces of a geometry are, or `None` for geometries without
+/// surfaces.
 fn surface_depth(geometry: &Value) -> Option<usize> {
     match type_of(geometry) {
         "MultiSurface" | "CompositeSurface" => Some(1),

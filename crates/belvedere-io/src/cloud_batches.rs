@@ -4,9 +4,9 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 
 use super::assemble::assemble;
+use super::file_part::FilePart;
 #[cfg(feature = "las")]
 use super::las::{self, LasPoints};
-use super::part::FilePart;
 use super::read_cloud::{Systems, files_of, read_one};
 use super::read_options::{ReadOptions, Reading, UpAxis};
 use super::source::Source;
@@ -41,10 +41,11 @@ pub struct CloudBatches<'a> {
 
 /// The points of `sources` in clouds of at most about a million points, in the order of the sources and their points.
 ///
-/// All clouds have the frame of [`ReadOptions::frame`]. Where that is not given, the first cloud chooses the origin for
-/// all. Only LAS and LAZ files are read piece by piece; a source in another format is read whole and becomes one cloud.
-/// Attributes are those of the file: what [`crate::read_cloud`] decides from all points together (whether colours have
-/// 8 bits, whether GPS times are of use) is not decided here for LAS and LAZ files.
+/// All clouds have the frame of [`ReadOptions::frame`]. Without it, the first cloud sets the origin for all. Only LAS
+/// and LAZ files are read in pieces; a source in another format is read whole and becomes one cloud.
+///
+/// Attributes are those of the file. [`crate::read_cloud`] decides from all points whether colours have 8 bits and
+/// whether GPS times are of use; for LAS and LAZ files this is not decided here.
 ///
 /// Batches without a point that the options ask for are skipped.
 ///

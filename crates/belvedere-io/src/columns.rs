@@ -125,7 +125,7 @@ pub(crate) fn attribute_columns(cloud: &PointCloud) -> Vec<Column<'_>> {
 pub struct ExtraColumn<'a> {
     /// Name, such as `visible`; at most 31 bytes are kept in LAS files.
     pub name: &'a str,
-    /// What the values mean, with their unit; at most 31 bytes are kept in LAS files.
+    /// Meaning of the values, with their unit; at most 31 bytes are kept in LAS files.
     pub description: &'a str,
     /// One value per point.
     pub values: ExtraValues<'a>,
@@ -142,18 +142,18 @@ pub enum ExtraValues<'a> {
     F32(&'a [f32]),
 }
 
-/// What became of a cloud that was written.
+/// Report of writing a cloud.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct WriteReport {
     /// Number of points written.
     pub point_count: usize,
-    /// What the cloud, or the files that its points come from, have and the output has not, in words.
+    /// Attributes of the cloud, or of the files that its points come from, that the output lacks, in words.
     pub left_out: Vec<String>,
     /// Values that did not fit their field and were cut to its range, such as a 16th return.
     pub clamped_count: usize,
 }
 
-/// What the points of the files of a cloud have and the cloud has not.
+/// Returns the attributes of the files of a cloud that the cloud lacks.
 pub(crate) fn not_in_cloud(cloud: &PointCloud) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for name in cloud.files.files.iter().flat_map(|file| &file.other_attributes) {

@@ -1,4 +1,4 @@
-//! Which chunks of a COPC file hold the points of a box: a walk through the hierarchy of the file.
+//! Chunks of a COPC file that hold the points of a box, found in the hierarchy of the file.
 //!
 //! COPC is LAZ whose chunks are the nodes of an octree. The hierarchy names for each node where its chunk lies; it
 //! comes in pages, and of a large one only pages of nodes that meet the box are read. What the hierarchy claims is
@@ -24,10 +24,10 @@ use belvedere_data::{Error, Result};
 const ENTRY_BYTES: u64 = 32;
 /// Hierarchies of up to this many bytes, for 8000 nodes, are read whole: a millisecond, and nothing can be hidden.
 const SMALL_HIERARCHY: u64 = 1 << 18;
-/// How far points may lie outside the cell of their node, in steps of the coordinates: what writers round them by.
+/// Maximum distance of points outside the cell of their node, in steps of the coordinates: the rounding of writers.
 const ROOM_STEPS: f64 = 10.0;
 
-/// Where a chunk lies in its file, as the file says it.
+/// Position of a chunk in its file, as stated there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct ChunkPlace {
     pub(super) start: u64,
@@ -42,7 +42,7 @@ struct CopcOctree {
     root: (u64, u64),
 }
 
-/// What a file says of its nodes.
+/// Nodes of a file, as stated there.
 pub(super) enum CopcNodes {
     /// The file is no COPC.
     None,
@@ -53,7 +53,7 @@ pub(super) enum CopcNodes {
 }
 
 impl CopcNodes {
-    /// What to say of a hierarchy that is passed over.
+    /// Returns a note on a hierarchy that is ignored.
     pub(super) fn note(&self) -> Option<String> {
         let Self::Unfit(what) = self else { return None };
         Some(format!("its COPC hierarchy is not that of its points ({what}); they are read in the order of the file"))

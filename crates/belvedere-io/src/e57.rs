@@ -6,7 +6,7 @@ use std::path::Path;
 use ::e57::{E57Reader, PointCloud as Scan, Quaternion, Record, RecordDataType, RecordName, RecordValue};
 
 use super::e57_counts::records_in_section;
-use super::part::{COARSE_STEP, FilePart, single_step};
+use super::file_part::{COARSE_STEP, FilePart, single_step};
 use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, role_of};
 use super::sky::ScanGrid;
@@ -21,8 +21,8 @@ const MIN_LENGTH: f64 = 1e-9;
 
 /// The valid points of all scans of the source.
 ///
-/// Poses are applied to points and normals. The scanner is where the pose puts it; without a pose at (0, 0, 0) if
-/// the scan is a grid or spherical, and is unknown otherwise, as in clouds that only passed through E57.
+/// Poses are applied to points and normals. The pose gives the scanner. Without a pose it is at (0, 0, 0) if the scan
+/// is a grid or spherical, and is unknown otherwise, as in clouds that only passed through E57.
 pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> {
     let Input { name, reader: mut file, size } = input;
     let path = name.as_path();
@@ -52,13 +52,13 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
         }
         plan.check(path, scan, i, size)?;
         if let Some(fault) = pose_fault(scan) {
-            let what = format!("the pose of scan {}{} {fault}; export it again", i + 1, named(scan));
+            let what = format!("the pose of scan {}{} {fault}; export it again", i + 1, name_of(scan));
             return Err(Error::malformed(path, what));
         }
         if let Some(length) = scan.transform.as_ref().map(|pose| quaternion_length(&pose.rotation))
             && (length - 1.0).abs() > LENGTH_TOLERANCE
         {
-            let what = format!("the rotation of scan {}{} has the length {length:.4}", i + 1, named(scan));
+            let what = format!("the rotation of scan {}{} has the length {length:.4}", i + 1, name_of(scan));
             part.note(format!("{what}; it is used as a rotation without scale"));
         }
         let index = plan.scanner.map_or(u16::MAX, |position| {
@@ -87,7 +87,7 @@ pub(super) fn read(input: Input<'_>, reading: &Reading<'_>) -> Result<FilePart> 
         let text = format!(
             "scan {}{} counts {counted} points, but {beyond} more follow in the file: its writer was interrupted; export it again",
             i + 1,
-            named(scan)
+            name_of(scan)
         );
         let found = POINTS_NOT_COUNTED.found(text).with("counted", counted as f64).with("beyond", beyond as f64);
         part.contradict(found);
@@ -105,11 +105,11 @@ struct ScanPoints {
     rows: Rows,
     scanner_index: Vec<u16>,
     invalid: usize,
-    /// Greatest coordinate of the scan that is read, in its own axes.
+    /// Maximum coordinate of the scan that is read, in its own axes.
     farthest: f64,
 }
 
-/// How to read the records of one scan.
+/// Layout of the records of one scan.
 struct ScanLayout {
     columns: Vec<RecordColumn>,
     single_precision: bool,
@@ -159,7 +159,7 @@ impl ScanLayout {
         }
     }
 
-    /// Whether the points are given by angles and range.
+    /// Returns true if the points are given by angles and range.
     fn is_spherical(&self) -> bool {
         self.columns.iter().any(|column| column.meaning == Meaning::Range)
     }
@@ -352,7 +352,7 @@ fn read_scan<R: Read + Seek>(
 struct GridBounds {
     rows: [i64; 2],
     columns: [i64; 2],
-    /// Whether the file states them, rather than the type of its numbers, which may hold more.
+    /// True if the file states them; otherwise they are those of the type of its numbers, which may hold more.
     is_stated: bool,
 }
 
@@ -393,7 +393,7 @@ impl GridBounds {
 }
 
 /// Name of a scan for messages.
-fn named(scan: &Scan) -> String {
+fn name_of(scan: &Scan) -> String {
     let name: String = scan.name.as_deref().unwrap_or_default().chars().take(40).collect();
     if name.is_empty() { String::new() } else { format!(" (\"{name}\")") }
 }

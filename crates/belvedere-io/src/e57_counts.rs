@@ -1,4 +1,4 @@
-//! How many records the binary section of an E57 scan holds, whatever its XML counts.
+//! Number of records in the binary section of an E57 scan, whatever its XML counts.
 //!
 //! # Source
 //! ASTM E2807-11, sections 9.3 (compressed vector sections), 9.3.4 (data packets) and 7 (pages with checksums).
@@ -17,8 +17,8 @@ const MAX_PACKETS: usize = 1 << 20;
 const SECTION_HEADER: usize = 32;
 const PACKET_HEADER: usize = 6;
 
-/// Records that the section at a physical byte holds at least, counted in the stream with this index, of so many bits
-/// for a record; `None` for a section that is damaged.
+/// Returns a lower bound of the number of records in the section at a physical byte, counted in the stream with this
+/// index. Each record has `bits` bits. `None` for a section that is damaged.
 pub(super) fn records_in_section(
     file: &mut (impl Read + Seek),
     physical: u64,

@@ -27,10 +27,11 @@ pub(super) const NAME: &str = "ept.json";
 const NODES: &str = "ept-data";
 /// Largest page of a hierarchy that is read, bytes: some million nodes.
 const MAX_BYTES: u64 = 1 << 28;
-/// Most pages of a hierarchy that are read for one box. A country has some thousand, and each is a request.
+/// Maximum number of pages of a hierarchy that are read for one box. A country has some thousand, and each is a
+/// request.
 const MAX_PAGES: usize = 20_000;
-/// How far points may lie outside the cell of their node, in steps of the coordinates, and the step of files that do
-/// not say it.
+/// Maximum distance of points outside the cell of their node, in steps of the coordinates, and the default step of
+/// files.
 const ROOM_STEPS: f64 = 10.0;
 const USUAL_STEP: f64 = 0.01;
 
@@ -47,7 +48,7 @@ fn is_description(path: &Path) -> bool {
     path.file_name().is_some_and(|name| name == NAME)
 }
 
-/// What `ept.json` says of the points.
+/// Description of the points in `ept.json`.
 struct EptDescription {
     cube: OctreeCube,
     room: [f64; 3],
@@ -61,7 +62,7 @@ struct EptDescription {
 pub(super) struct EptNodes {
     /// Their LAZ files.
     pub(super) files: Vec<Source<'static>>,
-    /// What contradicts each other in the hierarchy.
+    /// Contradictions in the hierarchy.
     pub(super) contradictions: Vec<FoundContradiction>,
 }
 
@@ -69,8 +70,10 @@ pub(super) struct EptNodes {
 /// the system of the description, where it names none itself.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`] for what is no description or no hierarchy, for a hierarchy without end, for
-/// bounds that do not hold the points where a box needs them, and for nodes that are not LAZ; [`Error::Cancelled`].
+/// - [`Error::Io`].
+/// - [`Error::Malformed`] for a file that is no description or no hierarchy, for a hierarchy without end, and for
+///   bounds that do not hold the points if a box needs them. Also for nodes that are not LAZ.
+/// - [`Error::Cancelled`].
 pub(super) fn files_within(path: &Path, wanted: Option<&FileBox>, control: &Control<'_>) -> Result<EptNodes> {
     let description = describe(path)?;
     let folder = folder_and_query(path);
@@ -118,7 +121,7 @@ pub(super) fn files_within(path: &Path, wanted: Option<&FileBox>, control: &Cont
 /// Name of the node of all points.
 const ROOT: &str = "0-0-0-0";
 
-/// What was found in the pages of a hierarchy so far.
+/// Result of the pages of a hierarchy so far.
 #[derive(Default)]
 struct HierarchyWalk {
     /// Names of pages.
@@ -129,7 +132,7 @@ struct HierarchyWalk {
     first: Option<([i32; 4], String)>,
     /// Points of all nodes of these pages.
     points: u64,
-    /// Whether pages were passed over, since their nodes lie beside the box.
+    /// True if pages were skipped, since their nodes lie beside the box.
     is_partial: bool,
 }
 
@@ -180,8 +183,8 @@ impl HierarchyWalk {
         Ok(below)
     }
 
-    /// What to say of a hierarchy with fewer points than the description; `None` where it is whole, and where not all
-    /// of it was read.
+    /// Returns the contradiction of a hierarchy with fewer points than the description. `None` if it is complete, and
+    /// if only a part of it was read.
     fn lost_points(&self, description: &EptDescription, path: &Path) -> Option<FoundContradiction> {
         let all = description.points.filter(|&all| !self.is_partial && self.points < all)?;
         let (own, path) = (self.points, path.display());

@@ -22,7 +22,7 @@ pub struct PolygonArea {
     /// For each polygon its outer ring, counter-clockwise, and its holes, clockwise, each closed; easting and northing
     /// in metres.
     pub polygons: Vec<Vec<Vec<[f64; 2]>>>,
-    /// What is known of it.
+    /// Properties of the feature.
     pub properties: Map<String, Value>,
 }
 
@@ -31,7 +31,7 @@ pub struct PolygonArea {
 pub struct Spot {
     /// Easting, northing and height, metres.
     pub place: [f64; 3],
-    /// What is known of it.
+    /// Properties of the feature.
     pub properties: Map<String, Value>,
 }
 
@@ -40,22 +40,22 @@ pub struct Spot {
 pub struct PathLine {
     /// Easting, northing and height of each corner, metres.
     pub places: Vec<[f64; 3]>,
-    /// What is known of it.
+    /// Properties of the feature.
     pub properties: Map<String, Value>,
 }
 
-/// What the coordinates in a GeoJSON file are.
+/// Coordinates of a GeoJSON file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GeojsonCoordinates {
     /// Longitude and latitude of WGS 84, as RFC 7946 wants.
     Wgs84,
-    /// Those of the cloud's file: its system gives no longitude and latitude.
+    /// Coordinates of the cloud's file: its system gives no longitude and latitude.
     OfTheFile,
 }
 
-/// Writes each of `areas` as a feature with a multipolygon, and tells in which coordinates: longitude and latitude
-/// where `crs`, the system of the areas, gives these; else easting and northing in the unit of `crs`, with a member
-/// `crs_note` that says so. Polygons that cross 180 degrees are cut there.
+/// Writes each of `areas` as a feature with a multipolygon, and returns the kind of its coordinates. They are longitude
+/// and latitude if `crs`, the system of the areas, gives these. Otherwise they are easting and northing in the unit of
+/// `crs`, with a member `crs_note`. Polygons that cross 180 degrees are cut there.
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::UnusableCrs`] for places that have no longitude and latitude.

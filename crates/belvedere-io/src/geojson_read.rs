@@ -11,7 +11,7 @@ use belvedere_data::crs::evidence::Comparison;
 use belvedere_data::crs::{Crs, CrsKind, GeographicProjection};
 use belvedere_data::{Error, Result};
 
-/// What stands at a feature's place: absolute metres in the system of the cloud, height NaN where the file has none.
+/// Geometry of a feature: absolute metres in the system of the cloud, height NaN if the file has none.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FeatureShape {
     /// A point.
@@ -34,15 +34,16 @@ pub struct GeojsonFeature {
 /// Reads the shapes of a GeoJSON file and brings them into the system `crs` of the cloud.
 ///
 /// Coordinates are longitude and latitude of WGS 84 (RFC 7946) unless the file names a system in the older member
-/// `crs`: longitude and latitude of another datum are brought into WGS 84, a plane must be that of the cloud. In a file
-/// without that member coordinates that can be no longitude and latitude, and all where the cloud has no place on
-/// earth, are taken as those of the cloud's file. Heights are in the unit of the cloud's heights. Features without
-/// geometry are passed over.
+/// `crs`. Longitude and latitude of another datum are converted to WGS 84; a plane must be that of the cloud. In a file
+/// without that member, coordinates that cannot be longitude and latitude are taken as those of the cloud's file. So
+/// are all if the cloud has no location on earth. Heights are in the unit of the cloud's heights. Features without
+/// geometry are skipped.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`] for what is no GeoJSON and for coordinates that are not finite;
-/// [`Error::UnusableCrs`] where the file names another plane than the cloud's, a system that is not known, or degrees
-/// that do not lead to the cloud.
+/// - [`Error::Io`].
+/// - [`Error::Malformed`] for a file that is no GeoJSON and for coordinates that are not finite.
+/// - [`Error::UnusableCrs`] if the file names another plane than the cloud's, a system that is not known, or degrees
+///   that do not lead to the cloud.
 pub fn read_geojson<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<GeojsonFeature>> {
     let source = source.into();
     refuse_other_shapes(source.name())?;
@@ -168,10 +169,10 @@ fn system_of_name(name: &str) -> Option<Crs> {
     }
 }
 
-/// How coordinates of the file become metres of the cloud's system.
+/// Conversion of coordinates of the file to metres of the cloud's system.
 struct Placing {
     projection: Option<GeographicProjection>,
-    /// From longitude and latitude of another datum to those of WGS 84.
+    /// Conversion from longitude and latitude of another datum to those of WGS 84.
     datum: Option<GeographicProjection>,
     scale: [f64; 3],
 }

@@ -38,11 +38,11 @@ pub struct Bands<'a> {
     pub values: BandValues<'a>,
     /// Names of the bands, in their order; further bands have none.
     pub names: &'a [String],
-    /// What the values are.
+    /// Description of the values.
     pub description: Option<&'a str>,
 }
 
-/// Where a raster lies.
+/// Position of a raster.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Georeference {
     /// File coordinates of the upper left corner of the upper left pixel.
@@ -272,7 +272,7 @@ where
     image.write_data(values)
 }
 
-/// What says in which system a raster lies; without a system the keys still say that pixels are areas.
+/// Returns the keys of the system of a raster; without a system they still mark pixels as areas.
 pub(crate) fn geo_keys(place: &Georeference) -> text::GeoKeys {
     text::geo_keys(&place.crs, text::KeyUse::PixelAreas)
         .unwrap_or_else(|| text::GeoKeys { directory: vec![1, 1, 0, 1, 1025, 0, 1, 1], text: String::new() })

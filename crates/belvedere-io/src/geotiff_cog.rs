@@ -174,7 +174,7 @@ impl Tag {
     }
 
     /// Bytes beside the directory: all but what fits into the entry, on even places.
-    fn beside(&self) -> usize {
+    fn bytes_beside(&self) -> usize {
         if self.bytes.len() > 4 { self.bytes.len().next_multiple_of(2) } else { 0 }
     }
 }
@@ -256,7 +256,7 @@ fn tags(level: &RasterLevel, offsets: &[u32], nodata: &str) -> Vec<Tag> {
     tags
 }
 
-/// Those of the finest level alone, which is the raster.
+/// Returns the tags of the finest level alone, which is the raster.
 fn tags_of_whole(place: &Georeference, bands: &Bands<'_>) -> Vec<Tag> {
     let ([x, y], keys) = (place.upper_left, geo_keys(place));
     let mut tags = vec![
@@ -284,18 +284,18 @@ fn write_directory(head: &mut Vec<u8>, tags: &[Tag], size: usize, is_last: bool)
         head.extend(tag.kind.to_le_bytes());
         head.extend((tag.count as u32).to_le_bytes());
         let mut entry = [0; 4];
-        match tag.beside() {
+        match tag.bytes_beside() {
             0 => entry[..tag.bytes.len()].copy_from_slice(&tag.bytes),
             _ => entry = (beside as u32).to_le_bytes(),
         }
         head.extend(entry);
-        beside += tag.beside();
+        beside += tag.bytes_beside();
     }
     let next = if is_last { 0 } else { start + size };
     head.extend((next as u32).to_le_bytes());
-    for tag in tags.iter().filter(|tag| tag.beside() > 0) {
+    for tag in tags.iter().filter(|tag| tag.bytes_beside() > 0) {
         head.extend(&tag.bytes);
-        head.resize(head.len() + tag.beside() - tag.bytes.len(), 0);
+        head.resize(head.len() + tag.bytes_beside() - tag.bytes.len(), 0);
     }
 }
 

@@ -12,7 +12,7 @@ use belvedere_data::crs::Crs;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Result};
 
-/// Most bytes of values for each byte of a file: LZW comes to 1365, Deflate to 1032.
+/// Maximum number of bytes of values for each byte of a file: LZW comes to 1365, Deflate to 1032.
 const MAX_PACKED: u64 = 1400;
 
 /// All bands of a raster of one of the types that results have.
@@ -109,9 +109,9 @@ pub struct PlacedRaster {
     pub values: Raster<f32>,
     /// Name of the first band; empty where the file says none.
     pub name: String,
-    /// Where it lies, if the file says so.
+    /// Position, if the file has one.
     pub place: Option<Georeference>,
-    /// What its values are, if Belvedere wrote the file and said so.
+    /// Description of its values, if Belvedere wrote the file with one.
     pub description: Option<String>,
     /// Bands beside the first, if Belvedere wrote the file.
     pub further_bands: Vec<NamedBand>,

@@ -5,10 +5,10 @@ use belvedere_data::horizon::HorizonProfile;
 use belvedere_data::{Error, Result};
 use serde_json::Value;
 
-/// The horizon in a file of PVGIS (JSON, or the table with the columns A and H_hor), whose azimuths count from south,
-/// or in a table of azimuth and elevation, two columns, whose azimuths count clockwise from north, as those of pvlib
-/// and of `belvedere horizon`. All in degrees; lines that are neither a header nor numbers are passed over before the
-/// first row.
+/// Reads the horizon from a file of PVGIS (JSON, or the table with the columns A and H_hor), whose azimuths count from
+/// south. Or from a table of azimuth and elevation, two columns, whose azimuths count clockwise from north, as those of
+/// pvlib and of `belvedere horizon`. All are in degrees. Lines that are neither a header nor numbers are skipped before
+/// the first row.
 ///
 /// # Errors
 /// [`Error::Io`]; [`Error::Malformed`] for what holds no profile, and for numbers that [`HorizonProfile::of_degrees`]

@@ -11,13 +11,13 @@ use ::las::point::Format;
 use ::las::{PointData, PointDataBuilder, Transform, Vector};
 
 use super::copc::{self, ChunkPlace, CopcNodes};
+use super::file_part::{Coordinates, FilePart};
 use super::las_columns::{LasColumns, UnreadFields};
 use super::las_extra::{ExtraField, ExtraNormals, find_columns, find_extra_normals};
 use super::las_header::{COPC, LasHeader, RecordSize, read_header};
 use super::las_records;
 use super::las_system::{find_crs, unnamed_degrees};
 use super::laz::{self, LazFields, LazReader, NeededChunks, is_chunked};
-use super::part::{Coordinates, FilePart};
 use super::read_options::{FileBox, PassedOver, Reading, RowNumbers, Selection};
 use super::source::{Input, Source, SourceReader, web_address};
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
@@ -28,7 +28,7 @@ use belvedere_data::{Error, Result};
 /// Points decoded at a time: some LAZ chunks of 50 000 for each of two dozen threads, and a tenth of a second of work.
 const BATCH: u64 = 1_000_000;
 
-/// How far points may lie outside the bounds of a header, in its unit: what programs round them by.
+/// Maximum distance of points outside the bounds of a header, in its unit: the rounding of programs.
 const MIN_ROOM: f64 = 0.01;
 
 /// A LAS or LAZ file whose header has been checked.
@@ -128,9 +128,8 @@ impl<'a> LasFile<'a> {
         Ok(())
     }
 
-    /// The points that may lie in `wanted`, many at a time in file order, how many are passed over because they cannot,
-    /// and what to note: in COPC by its hierarchy, in other files because they are in none of `rows`, where these are
-    /// known.
+    /// Returns the points that may lie in `wanted`, many at a time in file order, the number skipped because they
+    /// cannot, and a note. In COPC the hierarchy decides; in other files `rows`, if these are known.
     fn batches_within(
         mut self,
         extra: LazFields,
@@ -157,7 +156,7 @@ impl<'a> LasFile<'a> {
             }
             (_, None) => self.batches_of(extra, iter::once(0..all), None)?,
         };
-        let left = batches.records.left();
+        let left = batches.records.remaining();
         Ok((batches, all.saturating_sub(left), note))
     }
 
@@ -207,10 +206,10 @@ enum Records<'a> {
 
 impl Records<'_> {
     /// Points that are still to come.
-    fn left(&self) -> u64 {
+    fn remaining(&self) -> u64 {
         match self {
             Self::Plain { rows, .. } => rows.iter().fold(0, |sum, rows| sum.saturating_add(rows.end - rows.start)),
-            Self::Laz(reader) => reader.left(),
+            Self::Laz(reader) => reader.remaining(),
         }
     }
 }
@@ -279,18 +278,18 @@ pub(super) fn read(source: Source<'_>, reading: &Reading<'_>) -> Result<FilePart
     check_bounds(part, points.bounds, points.scale)
 }
 
-/// How far points with coordinates in steps of `scale` may lie outside the bounds of their header.
+/// Returns the maximum distance of points with coordinates in steps of `scale` outside the bounds of their header.
 fn room(scale: [f64; 3]) -> [f64; 3] {
     scale.map(|scale| (10.0 * scale.abs()).max(MIN_ROOM))
 }
 
-/// Whether bounds of a header say anything.
+/// Returns true if the bounds of a header are set.
 pub(super) fn are_given(bounds: &[[f64; 2]; 3]) -> bool {
     bounds.iter().all(|[low, high]| low <= high) && bounds.as_flattened().iter().any(|&v| v != 0.0)
 }
 
-/// Compares the points of a file with the bounds of its header, which follow from the same scale and offset: notes
-/// points outside, refuses a file all of whose points are.
+/// Compares the points of a file with the bounds of its header, which follow from the same scale and offset. Notes
+/// points outside, and refuses a file with all points outside.
 fn check_bounds(mut part: FilePart, bounds: [[f64; 2]; 3], scale: [f64; 3]) -> Result<FilePart> {
     let mut found = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
     let mut outside = 0_usize;
@@ -352,7 +351,7 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
     let normals = find_extra_normals(&mut part, header, &source.format);
     let extra = if normals.is_some() { LazFields::AttributesAndExtraBytes } else { LazFields::Attributes };
     part.other_attributes.extend(las_records::other_attributes(header, &source.format));
-    part.records.extend(las_records::kept(header).map(las_records::in_words));
+    part.records.extend(las_records::kept_records(header).map(las_records::in_words));
     let (announced, present) = (header.points, source.points_in_file());
     if announced > present {
         part.note(format!("the header announces {announced} points, but the file holds only {present}"));
@@ -373,7 +372,7 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
     let batches = match wanted {
         Some(wanted) => {
             let (batches, outside, note) = source.batches_within(extra, &wanted, rows)?;
-            passed_over.outside(outside);
+            passed_over.count_outside(outside);
             part.report.notes.extend(note);
             batches
         }
@@ -444,7 +443,7 @@ impl LasPoints<'_> {
         let Some(selection) = &self.selection else {
             return Ok(Some(SomePoints { coordinates, attributes, rows: (first_row..self.next_row).collect() }));
         };
-        let kept = selection.kept(&coordinates, &attributes, &mut self.passed_over)?;
+        let kept = selection.select(&coordinates, &attributes, &mut self.passed_over)?;
         Ok(Some(SomePoints {
             coordinates: coordinates.select(&kept),
             attributes: attributes.select(&kept),
@@ -503,7 +502,7 @@ impl LasHeader {
     }
 }
 
-/// What the header of a LAS or LAZ file says of its points.
+/// Description of the points in the header of a LAS or LAZ file.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LasHead {
@@ -518,18 +517,17 @@ pub struct LasHead {
     pub bounds: [[f64; 3]; 2],
     /// Reference system; of kind unknown where the file names none.
     pub crs: Crs,
-    /// What GPS times count from; `None` for points without them.
+    /// Epoch of GPS times; `None` for points without them.
     pub gps_times: Option<GpsTimeKind>,
-    /// Whether points name the channel of their scanner: point formats 6 to 10.
+    /// True if points name the channel of their scanner: point formats 6 to 10.
     pub has_channels: bool,
-    /// What is odd about the file.
+    /// Oddities of the file.
     pub notes: Vec<String>,
-    /// What contradicts each other in it, and what was said of it.
+    /// Contradictions in it, and with what other files announced.
     pub contradictions: Vec<FoundContradiction>,
 }
 
-/// What the header of a LAS, LAZ or COPC file says, without a look at its points, and whether the hierarchy of COPC is
-/// that of its points.
+/// Reads the header of a LAS, LAZ or COPC file, without its points, and checks the hierarchy of COPC against them.
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::Malformed`] for a damaged header and for one without usable bounds.

@@ -3,8 +3,8 @@
 use ::las::PointData;
 use ::las::point::Format;
 
+use super::file_part::{Coordinates, narrow};
 use super::las_extra::{ExtraField, ExtraNormals};
-use super::part::{Coordinates, narrow};
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 
 /// ASPRS class of overlap points in point formats 0 to 5, which have no flag for it.
@@ -34,7 +34,7 @@ impl UnreadFields {
         self.scan_bits |= other.scan_bits;
     }
 
-    /// Those that are set at any point, in words.
+    /// Returns the fields that are set at any point, in words.
     pub(super) fn in_words(self) -> impl Iterator<Item = String> {
         let fields = [
             ("user data", self.user_data != 0),
@@ -92,7 +92,8 @@ impl LasColumns {
             flags,
             intensity,
             color,
-            ..
+            gps_time_kind: _,
+            scanner_index: _,
         } = &mut self.attributes;
         let (positions, extra_normals, unread) = (&mut self.positions, self.extra_normals, &mut self.unread);
         rayon::scope(|scope| {

@@ -7,6 +7,7 @@ use ::las::point::Format;
 use ::las::{Builder, PointData, PointDataBuilder, Transform, Vector, Vlr};
 use rayon::prelude::*;
 
+use super::file_part::{Coordinates, FilePart};
 use super::las::{Batches, LasFile};
 use super::las_columns::LasColumns;
 use super::las_extra::{ExtraDescription, descriptions};
@@ -15,13 +16,12 @@ use super::las_records;
 use super::las_results::result_columns;
 use super::las_system::find_crs;
 use super::laz::LazFields;
-use super::part::{Coordinates, FilePart};
 use super::source::Source;
 use crate::columns::Column;
 use belvedere_data::cloud::{Attributes, to_local};
 use belvedere_data::{Error, FileRows, PointCloud, Result};
 
-/// How far a record may lie from its point, in steps of an f32 at the place of the point and steps of the file.
+/// Maximum distance between a record and its point, in steps of an f32 at the place of the point and steps of the file.
 const ROUNDING_STEPS: f64 = 4.0;
 /// Degrees per step of the scan angle of point formats 6 and up (LAS 1.4 R15, table 17).
 const DEGREES_PER_SCAN_STEP: f64 = 0.006;
@@ -29,7 +29,7 @@ const DEGREES_PER_SCAN_STEP: f64 = 0.006;
 const SHORT_FIELDS: usize = 20;
 const LONG_FIELDS: usize = 30;
 
-/// How the records of some files become records of one.
+/// Conversion of the records of some files into records of one.
 pub(super) struct RecordCopy<'a> {
     cloud: &'a PointCloud,
     files: Vec<CopiedFile<'a>>,
@@ -38,9 +38,9 @@ pub(super) struct RecordCopy<'a> {
     transforms: Vector<Transform>,
     /// Extra bytes that are kept, with their place in a copy.
     extra: Vec<ExtraDescription>,
-    /// What the files have and the copies have not, in words.
+    /// Fields of the files that the copies lack, in words.
     lost: Vec<String>,
-    /// Whether all files have times of one kind.
+    /// True if all files have times of one kind.
     keeps_times: bool,
 }
 
@@ -51,13 +51,13 @@ struct CopiedFile<'a> {
     row_count: u64,
     header: LasHeader,
     format: Format,
-    /// Where the extra bytes lie that are kept, in the order of [`RecordCopy::extra`].
+    /// Position of the extra bytes that are kept, in the order of [`RecordCopy::extra`].
     extra_at: Vec<usize>,
 }
 
 impl<'a> RecordCopy<'a> {
-    /// The copy of the records that the points of `cloud` come from, with room for `columns`; `None` where these are no
-    /// LAS files, are gone, or where the rows of the points are not known.
+    /// Creates the copy of the records that the points of `cloud` come from, with room for `columns`. `None` if these
+    /// are no LAS files, are gone, or if the rows of the points are not known.
     pub(super) fn of(cloud: &'a PointCloud, columns: &[Column<'_>]) -> Option<Self> {
         let rows_are_known = match &cloud.files.rows {
             FileRows::All => cloud.files.files.iter().map(|file| file.row_count).sum::<u64>() == cloud.len() as u64,
@@ -145,7 +145,7 @@ impl<'a> RecordCopy<'a> {
     /// Extra bytes that all files describe in the same way, except those whose name one of `columns` has.
     fn choose_extra(&mut self, columns: &[Column<'_>]) {
         let described: Vec<Vec<ExtraDescription>> =
-            self.files.iter().map(|file| described(&file.header, &file.format)).collect();
+            self.files.iter().map(|file| describe_extra_bytes(&file.header, &file.format)).collect();
         let Some(of_first) = described.first() else { return };
         let is_one = described.len() == 1;
         let mut at = base_length(&self.format);
@@ -181,8 +181,8 @@ impl<'a> RecordCopy<'a> {
         base_length(&self.format) + self.extra.iter().map(|extra| extra.size).sum::<usize>()
     }
 
-    /// What the copies lack of the files, in words.
-    pub(super) fn lost(self) -> Vec<String> {
+    /// Returns the fields of the files that the copies lack, in words.
+    pub(super) fn lost_fields(self) -> Vec<String> {
         self.lost
     }
 
@@ -213,10 +213,10 @@ impl<'a> RecordCopy<'a> {
         let mut lost = Vec::new();
         let is_in_all = |record: &&VariableRecord| self.files.iter().all(|file| file.header.records.contains(record));
         for file in &self.files {
-            let of_file = las_records::kept(&file.header).filter(|record| !is_in_all(record));
+            let of_file = las_records::kept_records(&file.header).filter(|record| !is_in_all(record));
             lost.extend(of_file.map(las_records::in_words));
         }
-        for record in las_records::kept(header).filter(is_in_all) {
+        for record in las_records::kept_records(header).filter(is_in_all) {
             let records = if record.is_extended { &mut builder.evlrs } else { &mut builder.vlrs };
             records.push(las_records::to_vlr(record));
         }
@@ -424,7 +424,8 @@ impl RecordCopy<'_> {
     }
 }
 
-/// Whether the attributes that both have are the same: `own` those of records, `of_cloud` those of its `points`.
+/// Returns true if the attributes that both have are the same: `own` those of records, `of_cloud` those of its
+/// `points`.
 fn is_equal(own: &Attributes, of_cloud: &Attributes, points: std::ops::Range<usize>) -> bool {
     fn same<T: PartialEq>(own: Option<&Vec<T>>, all: Option<&Vec<T>>, points: &std::ops::Range<usize>) -> bool {
         match (own, all) {
@@ -476,7 +477,7 @@ fn base_length(format: &Format) -> usize {
     color_at(format) + if format.has_color { 6 } else { 0 } + if format.has_nir { 2 } else { 0 }
 }
 
-/// Where the colour of a point begins, or would.
+/// Returns the byte at which the colour of a point begins, or would.
 fn color_at(format: &Format) -> usize {
     match (format.is_extended, format.has_gps_time) {
         (true, _) => LONG_FIELDS,
@@ -491,7 +492,7 @@ fn transforms_of(header: &LasHeader) -> Vector<Transform> {
 }
 
 /// The extra bytes of a file, those without a description among them; none where the descriptions do not fit.
-fn described(header: &LasHeader, format: &Format) -> Vec<ExtraDescription> {
+fn describe_extra_bytes(header: &LasHeader, format: &Format) -> Vec<ExtraDescription> {
     let mut found = descriptions(header, format);
     let room = usize::from(format.extra_bytes);
     let mut used: usize = found.iter().map(|extra| extra.size).sum();
@@ -511,7 +512,7 @@ fn described(header: &LasHeader, format: &Format) -> Vec<ExtraDescription> {
     found
 }
 
-/// Whether two files describe extra bytes in the same way: type, name, and how values are scaled.
+/// Returns true if two files describe extra bytes in the same way: type, name, and scaling of values.
 fn is_same(a: &ExtraDescription, b: &ExtraDescription) -> bool {
     // options of lowest and highest values differ from file to file
     let options = |extra: &ExtraDescription| extra.bytes[3] & if extra.bytes[2] == 0 { !0 } else { !0b110 };

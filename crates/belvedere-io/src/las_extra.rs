@@ -2,11 +2,11 @@
 
 use ::las::point::Format;
 
+use super::file_part::FilePart;
 use super::las_header::LasHeader;
-use super::part::FilePart;
 use belvedere_data::contradiction::COLUMN_TWICE;
 
-/// Where in a record NormalX, NormalY and NormalZ lie, and how they are kept.
+/// Position and type of NormalX, NormalY and NormalZ in a record.
 pub(super) type ExtraNormals = [ExtraField; 3];
 
 #[derive(Clone, Copy)]
@@ -18,7 +18,7 @@ pub(super) struct ExtraField {
 }
 
 impl ExtraField {
-    /// Whether it is a number of a kind that is read.
+    /// Returns true if it is a number of a kind that is read.
     pub(super) fn is_number(self) -> bool {
         matches!(self.kind, 1..=6 | 9 | 10)
     }
@@ -123,8 +123,7 @@ pub(super) fn find_extra_normals(part: &mut FilePart, header: &LasHeader, format
     normals
 }
 
-/// What to know of values of points that nothing uses, of these names, in `size` bytes of a point; `None` where there
-/// are none.
+/// Returns a note on unused values of points with these names, in `size` bytes of a point; `None` if there are none.
 fn note_on_unused(names: &[String], size: u16, has_normals: bool) -> Option<String> {
     let what = match names {
         [] if size == 0 || has_normals => return None,

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use belvedere_data::{Error, Result};
 
-/// What of the header is needed to read the points.
+/// Part of the header that is needed to read the points.
 pub(super) struct LasHeader {
     pub(super) version: (u8, u8),
     /// Point format without the compression bits.
@@ -22,7 +22,7 @@ pub(super) struct LasHeader {
     pub(super) points: u64,
     pub(super) scale: [f64; 3],
     pub(super) offset: [f64; 3],
-    /// Least and greatest x, y and z that the header gives.
+    /// Minimum and maximum x, y and z that the header gives.
     pub(super) bounds: [[f64; 2]; 3],
     /// Global encoding bit 0.
     pub(super) adjusted_gps_time: bool,
@@ -30,14 +30,14 @@ pub(super) struct LasHeader {
     pub(super) has_synthetic_returns: bool,
     /// Global encoding bit 4.
     pub(super) has_wkt: bool,
-    /// Whether the system is that of the WKT record, as this bit says and point formats from 6 on require.
+    /// True if the system is that of the WKT record, by its bit and as required for point formats from 6 on.
     pub(super) wkt_decides: bool,
     pub(super) file_source: u16,
     pub(super) identifier: [u8; 16],
     pub(super) system: [u8; 32],
-    /// Whether the number of points of the old and the new field differ.
+    /// True if the numbers of points in the old and the new field differ.
     pub(super) counts_differ: bool,
-    /// Whether Belvedere wrote the file.
+    /// True if Belvedere wrote the file.
     pub(super) is_of_belvedere: bool,
     pub(super) records: Vec<VariableRecord>,
     /// Bytes of the file that hold the hierarchy of a COPC file.
@@ -52,7 +52,7 @@ pub(super) struct VariableRecord {
     pub(super) user: String,
     pub(super) id: u16,
     pub(super) description: String,
-    /// Whether it stands behind the points.
+    /// True if it stands behind the points.
     pub(super) is_extended: bool,
     /// Empty where it is larger than is of interest.
     pub(super) data: Vec<u8>,
@@ -63,10 +63,10 @@ pub(super) struct VariableRecord {
 /// User of the records of COPC.
 pub(super) const COPC: &str = "copc";
 
-/// Which records are read with their data.
+/// Selection of records that are read with their data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RecordSize {
-    /// Those as large as the definition of a reference system, at most a megabyte.
+    /// Records as large as the definition of a reference system, at most a megabyte.
     OfReferenceSystems,
     /// All that the file holds.
     Any,

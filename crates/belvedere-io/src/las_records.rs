@@ -1,4 +1,5 @@
-//! What LAS files hold beside the attributes of a cloud, and which of their records a copy of their points keeps.
+//! Contents of LAS files beside the attributes of a cloud, and selection of the records that a copy of their points
+//! keeps.
 
 use ::las::Vlr;
 use ::las::point::Format;
@@ -13,7 +14,7 @@ const SPECIFICATION: &str = "LASF_Spec";
 /// The user and the number of the record that names the columns of results that Belvedere wrote.
 pub(super) const RESULTS: (&str, u16) = ("belvedere", 2);
 
-/// What the points of a file have beside the attributes of a cloud and beside rare fields, in words.
+/// Returns the attributes of the points of a file beside those of a cloud and rare fields, in words.
 pub(super) fn other_attributes(header: &LasHeader, format: &Format) -> Vec<String> {
     let described = descriptions(header, format);
     let described_bytes: usize = described.iter().map(|field| field.size).sum();
@@ -27,14 +28,14 @@ pub(super) fn other_attributes(header: &LasHeader, format: &Format) -> Vec<Strin
     found
 }
 
-/// Whether a record is about the reference system.
+/// Returns true if a record is about the reference system.
 pub(super) fn is_projection(record: &VariableRecord) -> bool {
     record.user == PROJECTION || record.user == "liblas" && record.id == 2112
 }
 
-/// The records that a copy of all points keeps: all but those of the compression, of extra bytes and results, which are
-/// made anew, those of waveforms and of the hierarchy of COPC, and those of reference systems.
-pub(super) fn kept(header: &LasHeader) -> impl Iterator<Item = &VariableRecord> {
+/// Returns the records that a copy of all points keeps. Records of the compression, of extra bytes and results are made
+/// anew. Records of waveforms, of the hierarchy of COPC, and of reference systems are dropped.
+pub(super) fn kept_records(header: &LasHeader) -> impl Iterator<Item = &VariableRecord> {
     let is_made_anew = |record: &VariableRecord| {
         let key = (record.user.as_str(), record.id);
         key == ("laszip encoded", 22204) || key == (SPECIFICATION, 4) || key == RESULTS
@@ -44,7 +45,7 @@ pub(super) fn kept(header: &LasHeader) -> impl Iterator<Item = &VariableRecord> 
     })
 }
 
-/// Whether a record describes or holds waveforms.
+/// Returns true if a record describes or holds waveforms.
 fn is_of_waveforms(record: &VariableRecord) -> bool {
     record.user == SPECIFICATION && (matches!(record.id, 100..=354) || record.id == 65535)
 }

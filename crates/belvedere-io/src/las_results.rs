@@ -2,12 +2,12 @@
 
 use ::las::point::Format;
 
+use super::file_part::narrow;
 use super::las::LasFile;
 use super::las_extra::{ExtraField, described};
 use super::las_header::LasHeader;
 use super::las_records;
 use super::laz::LazFields;
-use super::part::narrow;
 use super::source::Source;
 use belvedere_data::{Error, Result};
 
@@ -20,7 +20,7 @@ pub struct PointResults {
     pub columns: Vec<(String, Vec<f32>)>,
 }
 
-/// Whether a LAS or LAZ file was written by Belvedere and has columns of results.
+/// Returns true if a LAS or LAZ file was written by Belvedere and has columns of results.
 ///
 /// # Errors
 /// [`Error::Io`]; [`Error::Malformed`] for what is no such file.

@@ -1,7 +1,7 @@
 //! The reference system of a LAS file: its records, compared with each other and with what stands beside the file.
 
+use super::file_part::{FilePart, Unnamed};
 use super::las_header::LasHeader;
-use super::part::{FilePart, Unnamed};
 use super::source::SystemBeside;
 use belvedere_data::crs::evidence::Comparison;
 use belvedere_data::crs::{Crs, CrsKind};

@@ -22,15 +22,15 @@ use belvedere_data::{Error, Result};
 /// A chunk that would decompress to more bytes than this is no chunk that any writer makes (50 000 points are usual).
 const MAX_CHUNK_BYTES: u64 = 1 << 30;
 
-/// A chunk that decompresses to more than [`FREE_CHUNK_BYTES`] must not be shrunk more than this: points that are worth
-/// storing are shrunk 3 to 20 times, and what a file makes its reader allocate must depend on the size of the file.
+/// Maximum compression ratio of a chunk that decompresses to more than [`FREE_CHUNK_BYTES`]. Useful points are
+/// compressed 3 to 20 times, and the allocations of a reader must depend on the size of the file.
 const MAX_RATIO: u64 = 256;
 const FREE_CHUNK_BYTES: u64 = 1 << 26;
 
-/// Which fields of points are wanted, where a file has them in layers of their own.
+/// Selection of the fields of points, for files that have them in layers of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LazFields {
-    /// Those that are attributes of a cloud.
+    /// Attributes of a cloud.
     Attributes,
     /// Extra bytes too.
     AttributesAndExtraBytes,
@@ -38,19 +38,19 @@ pub(super) enum LazFields {
     All,
 }
 
-/// Which chunks are wanted.
+/// Selection of chunks.
 pub(super) enum NeededChunks {
-    /// Those that hold any of these rows, ranges in their order.
+    /// Chunks that hold any of these rows, ranges in their order.
     Rows(Vec<Range<u64>>),
-    /// Those that a COPC file has there.
+    /// Chunks of a COPC file at these places.
     Places(Vec<ChunkPlace>),
 }
 
 /// Decompresses the points of a file batch by batch.
 pub(super) struct LazReader<'a> {
-    /// Without a buffer: chunks are read whole, and what is read ahead beyond one may never be needed.
+    /// Unbuffered file: chunks are read whole, and bytes read ahead beyond one may never be needed.
     file: Box<dyn ReadSeek + 'a>,
-    /// Where the file is read next; `None` before the first chunk.
+    /// Position of the next read; `None` before the first chunk.
     place: Option<u64>,
     vlr: LazVlr,
     chunks: std::vec::IntoIter<LazChunk>,
@@ -103,7 +103,7 @@ impl<'a> LazReader<'a> {
     }
 
     /// Points of the chunks that are still to come.
-    pub(super) fn left(&self) -> u64 {
+    pub(super) fn remaining(&self) -> u64 {
         self.chunks.as_slice().iter().fold(0, |sum, chunk| sum.saturating_add(chunk.entry.point_count))
     }
 
@@ -146,7 +146,7 @@ impl<'a> LazReader<'a> {
         Ok(points)
     }
 
-    /// Whether what precedes the compressed streams of each chunk fits the size of the chunk.
+    /// Returns true if the data before the compressed streams of each chunk fit the size of the chunk.
     fn streams_are_sound(&self, batch: &[ChunkTableEntry]) -> bool {
         let mut rest = self.compressed.as_slice();
         batch.iter().all(|chunk| {
@@ -157,7 +157,8 @@ impl<'a> LazReader<'a> {
         })
     }
 
-    /// Whether the streams after the first point, which is not compressed, fit in the chunk and begin as they must.
+    /// Returns true if the streams after the first point, which is not compressed, fit in the chunk and begin as
+    /// required.
     fn chunk_is_sound(&self, chunk: &[u8]) -> bool {
         let Some((_, streams)) = chunk.split_at_checked(self.record_length) else { return false };
         let Some(layers) = self.layers else { return begins_soundly(streams) };
@@ -175,9 +176,9 @@ impl<'a> LazReader<'a> {
     }
 }
 
-/// Whether an arithmetic-coded stream begins with a value below its interval. From 0xFFFFFFFF the decoder of the laz
-/// crate (0.13) yields the same symbol forever without consuming a byte, or looks for symbols that are not in its
-/// tables.
+/// Returns true if an arithmetic-coded stream begins with a value below its interval. From 0xFFFFFFFF the decoder of
+/// the laz crate (0.13) yields the same symbol forever without consuming a byte, or searches symbols that are not in
+/// its tables.
 fn begins_soundly(stream: &[u8]) -> bool {
     stream.first_chunk() != Some(&[0xff; 4])
 }
@@ -216,8 +217,8 @@ fn all_chunks(
     checked_chunks(path, &table, vlr, header, size)
 }
 
-/// Where the chunks of a file lie, in its order; `None` where all have the same number of points, which those of COPC
-/// have not.
+/// Returns the positions of the chunks of a file, in its order. `None` if all have the same number of points, which
+/// those of COPC do not.
 pub(super) fn chunk_table(
     path: &Path,
     file: &mut SourceReader<'_>,
@@ -346,7 +347,7 @@ fn checked_chunks(
     Ok(chunks)
 }
 
-/// Those of all chunks that hold any of `rows`.
+/// Selects the chunks that hold any of `rows`.
 fn with_rows(mut chunks: Vec<LazChunk>, rows: &[Range<u64>]) -> Vec<LazChunk> {
     let mut next = 0_u64;
     chunks.retain(|chunk| {
@@ -385,7 +386,7 @@ fn unfit(path: &Path, chunk: &ChunkTableEntry, header: &LasHeader) -> Error {
     Error::malformed(path, what)
 }
 
-/// Whether `vlr` is of a kind that can be read; old files of one single chunk cannot.
+/// Returns true if `vlr` is of a kind that can be read; old files of one single chunk cannot.
 pub(super) fn is_chunked(vlr: &[u8]) -> bool {
     let kind = vlr.first_chunk().map(|&kind| u16::from_le_bytes(kind));
     kind == Some(CompressorType::PointWiseChunked as u16) || kind == Some(CompressorType::LayeredChunked as u16)

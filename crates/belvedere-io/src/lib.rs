@@ -18,7 +18,6 @@ mod assemble;
 pub mod atomic;
 mod ball_formats;
 mod balls;
-mod beside;
 mod cityjson;
 mod cloud_batches;
 pub mod colors;
@@ -31,6 +30,7 @@ mod e57;
 mod e57_counts;
 #[cfg(feature = "las")]
 mod ept;
+mod file_part;
 mod geojson;
 mod geojson_read;
 #[cfg(feature = "tiff")]
@@ -75,7 +75,6 @@ mod observers;
 mod octree;
 mod outline;
 mod output;
-mod part;
 mod pcd;
 #[cfg(feature = "ply")]
 mod ply;
@@ -84,11 +83,10 @@ mod ptx;
 mod read_cloud;
 mod read_options;
 mod read_report;
+mod reference_beside;
 #[cfg(feature = "http")]
 mod remote;
 mod rows;
-#[cfg(feature = "npy")]
-mod saved_matrix;
 mod scan_pose;
 mod secrets;
 mod simple_faces;
@@ -152,10 +150,6 @@ pub use polygons::MeshReport;
 pub use read_cloud::{CLOUD_EXTENSIONS, cloud_files, cloud_sources, read_cloud};
 pub use read_options::{DistantFiles, Insistence, ReadOptions, RowNumbers, UpAxis, Within};
 pub use read_report::{FileReport, LeftOut, ReadReport};
-#[cfg(feature = "npy")]
-pub use saved_matrix::{
-    MatrixHead, RowSink, SavedMatrix, read_matrix, read_matrix_head, read_matrix_rows, write_matrix, write_matrix_rows,
-};
 pub use secrets::{hidden, hidden_text};
 pub use source::{OpenSource, ReadSeek, Source, SystemBeside, web_address};
 pub use stations::read_stations;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use super::file_part::{FilePart, narrow};
 use super::npy;
-use super::part::{FilePart, narrow};
 use super::source::Source;
 use belvedere_data::{Error, Result};
 

@@ -52,8 +52,8 @@ pub fn read_mesh_in<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<(Mes
 /// Start of a file in which the header of a PLY file ends.
 const START_BYTES: u64 = 1 << 16;
 
-/// Whether a source holds a mesh rather than a cloud, by its extension; of `.ply` by its header, which has faces.
-/// `false` also for what cannot be read.
+/// Returns true if a source holds a mesh and no cloud, by its extension; for `.ply` by its header, which has faces.
+/// `false` also for an unreadable file.
 pub fn is_mesh<'a>(source: impl Into<Source<'a>>) -> bool {
     let source = source.into();
     match source.extension().as_str() {

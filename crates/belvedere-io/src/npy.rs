@@ -4,8 +4,8 @@ use std::path::Path;
 
 use npyz::{NpyFile, Order};
 
+use super::file_part::{Coordinates, FilePart};
 use super::npy_header::read_header;
-use super::part::{Coordinates, FilePart};
 use super::source::Input;
 use belvedere_data::{Error, Result};
 

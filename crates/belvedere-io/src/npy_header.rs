@@ -60,7 +60,7 @@ fn is_shallow(text: &[u8]) -> bool {
     })
 }
 
-/// Whether the product of the sides fits 64 bits.
+/// Returns true if the product of the sides fits 64 bits.
 fn sides_multiply(header: &str) -> bool {
     let sides = header
         .split_once("shape")

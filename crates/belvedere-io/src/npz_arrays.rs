@@ -1,9 +1,8 @@
 //! Arrays of NumPy's archive format, written and read. Every size in a header is checked against the size of the data.
 
-use std::io::{self, BufReader, Read, Seek, SeekFrom, Take, Write};
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 
-use npyz::{AutoSerialize, Deserialize, NpyReader, NpyWriter, Order, WriteOptions, WriterBuilder};
-use zip::read::ZipFile;
+use npyz::{AutoSerialize, Deserialize, Order, WriteOptions, WriterBuilder};
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
@@ -72,17 +71,6 @@ pub(crate) fn array<T: AutoSerialize, W: Write + Seek>(
     shape: &[u64],
     values: impl Iterator<Item = T>,
 ) -> io::Result<()> {
-    let mut writer = begin_array(archive, name, shape)?;
-    writer.extend(values)?;
-    writer.finish()
-}
-
-/// Begins an array of an archive, whose values follow.
-pub(crate) fn begin_array<'a, T: AutoSerialize, W: Write + Seek>(
-    archive: &'a mut ZipWriter<W>,
-    name: &str,
-    shape: &[u64],
-) -> io::Result<NpyWriter<T, &'a mut ZipWriter<W>>> {
     // stored, as NumPy does: floats hardly shrink, and loading stays a copy; without the time of day, so that the same
     // balls give the same bytes
     let options = SimpleFileOptions::default()
@@ -90,7 +78,9 @@ pub(crate) fn begin_array<'a, T: AutoSerialize, W: Write + Seek>(
         .last_modified_time(zip::DateTime::default())
         .large_file(true);
     archive.start_file(npyz::npz::file_name_from_array_name(name), options)?;
-    WriteOptions::new().writer(archive).default_dtype().shape(shape).begin_nd()
+    let mut writer = WriteOptions::new().writer(archive).default_dtype().shape(shape).begin_nd()?;
+    writer.extend(values)?;
+    writer.finish()
 }
 
 /// Bytes that all arrays of an archive may hold together, whatever its size.
@@ -161,57 +151,14 @@ pub(crate) fn invalid(what: String) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, what)
 }
 
-/// Values and shape of an array of at most `max` values.
+/// Reads values and shape of an array of at most `max` values, and checks the sum of the whole.
 pub(crate) fn values<T: Deserialize, R: Read + Seek>(
     archive: &mut ZipArchive<R>,
     name: &str,
     max: u64,
 ) -> io::Result<(Vec<T>, Vec<u64>)> {
-    read_array(archive, name, |shape, reader| {
-        let count = shape.iter().try_fold(1_u64, |product, &n| product.checked_mul(n)).unwrap_or(u64::MAX);
-        if count > max {
-            return Err(invalid(format!("the array {name} is too large")));
-        }
-        // the shape was checked against the size of the entry, but that size not yet against the data
-        let mut values = Vec::new();
-        for value in reader {
-            values.push(value?);
-        }
-        Ok((values, shape.to_vec()))
-    })
-}
-
-/// Hands the values of an array to `take`, `max` at a time.
-pub(crate) fn in_blocks<T: Deserialize, R: Read + Seek, E: From<io::Error>>(
-    archive: &mut ZipArchive<R>,
-    name: &str,
-    max: usize,
-    mut take: impl FnMut(&[T]) -> Result<(), E>,
-) -> Result<(), E> {
-    read_array(archive, name, |_, reader| {
-        let mut block = Vec::new();
-        for value in reader {
-            block.push(value?);
-            if block.len() == max {
-                take(&block)?;
-                block.clear();
-            }
-        }
-        if block.is_empty() { Ok(()) } else { take(&block) }
-    })
-}
-
-/// The values of an array, by way of a buffer: a value at a time, the entry of an archive is slow.
-type NpzValues<'a, 'z, T, R> = NpyReader<T, &'a mut BufReader<Take<ZipFile<'z, R>>>>;
-
-/// Lets `read` read an array, of which it is given the shape and the values, and checks the sum of the whole.
-fn read_array<T: Deserialize, R: Read + Seek, O, E: From<io::Error>>(
-    archive: &mut ZipArchive<R>,
-    name: &str,
-    read: impl FnOnce(&[u64], &mut NpzValues<'_, '_, T, R>) -> Result<O, E>,
-) -> Result<O, E> {
     if !has(archive, name) {
-        return Err(invalid(format!("there is no array {name}")).into());
+        return Err(invalid(format!("there is no array {name}")));
     }
     let file = archive.by_name(&npyz::npz::file_name_from_array_name(name)).map_err(io::Error::from);
     let file = file?;
@@ -223,23 +170,27 @@ fn read_array<T: Deserialize, R: Read + Seek, O, E: From<io::Error>>(
     let count = shape.iter().try_fold(1_u64, |product, &n| product.checked_mul(n));
     let bytes_of_values = count.zip(header.dtype().num_bytes()).and_then(|(n, each)| n.checked_mul(each as u64));
     if bytes_of_values.is_none() || bytes_of_values != file.limit().checked_sub(1) {
-        return Err(
-            invalid(format!("array {name} is damaged: its shape {shape:?} does not fit its {size} bytes")).into()
-        );
+        return Err(invalid(format!("array {name} is damaged: its shape {shape:?} does not fit its {size} bytes")));
     }
     if header.order() == Order::Fortran && shape.len() > 1 {
         let what = format!("the array {name} is in Fortran order; save it with numpy.ascontiguousarray");
-        return Err(invalid(what).into());
+        return Err(invalid(what));
     }
     let mut file = BufReader::with_capacity(BUFFER_BYTES, file);
     let data = npyz::NpyFile::with_header(header, &mut file).data::<T>();
-    let mut values = data.map_err(|e| invalid(format!("array {name}: {e}")))?;
-    let found = read(&shape, &mut values)?;
-    drop(values);
+    let data = data.map_err(|e| invalid(format!("array {name}: {e}")))?;
+    if count.is_none_or(|count| count > max) {
+        return Err(invalid(format!("the array {name} is too large")));
+    }
+    // the shape was checked against the size of the entry, but that size not yet against the data: no capacity
+    let mut values = Vec::new();
+    for value in data {
+        values.push(value?);
+    }
     // the checksum of an entry is tested at its end, which the values alone do not reach
     let beyond = io::copy(&mut file, &mut io::sink()).map_err(|e| invalid(format!("array {name} is damaged: {e}")))?;
     if beyond > 0 {
-        return Err(invalid(format!("array {name} is damaged: it is longer than the {size} bytes stated")).into());
+        return Err(invalid(format!("array {name} is damaged: it is longer than the {size} bytes stated")));
     }
-    Ok(found)
+    Ok((values, shape))
 }

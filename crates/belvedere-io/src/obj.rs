@@ -11,7 +11,7 @@ use belvedere_data::{Error, Mesh, Result};
 /// Name of the object of faces that come before any `o` or `g` line, where other faces have one.
 const UNNAMED: &str = "unnamed_object";
 
-/// What a file says, before faces find their vertices: they may stand in front of these.
+/// Contents of a file before faces find their vertices: faces may stand first.
 #[derive(Default)]
 struct ObjFile<'a> {
     /// Position of each vertex, and its line from 1.
@@ -36,8 +36,8 @@ struct ObjFace {
 /// there. A backslash at the end of a line continues it. Coordinates are taken as metres.
 ///
 /// # Errors
-/// [`Error::Io`] where the file cannot be opened; [`Error::Malformed`], which names the line, for syntax errors,
-/// decimal commas, indices without a vertex, and coordinates that are not finite; also for files without a triangle.
+/// [`Error::Io`] if the file cannot be opened. [`Error::Malformed`], which names the line, for syntax errors, decimal
+/// commas, indices without a vertex, and coordinates that are not finite; also for files without a triangle.
 pub(super) fn read(source: Source<'_>) -> Result<(Mesh, MeshReport)> {
     let (name, bytes) = source.read_text()?;
     let path = name.as_path();

@@ -18,11 +18,11 @@ pub struct ObserverRow {
     pub corners: Vec<[f64; 3]>,
     /// Height above the ground, metres.
     pub height: Option<f64>,
-    /// Least and greatest distance, metres.
+    /// Minimum and maximum distance, metres.
     pub distance: [Option<f64>; 2],
     /// Azimuth from and to, degrees.
     pub azimuth_deg: [Option<f64>; 2],
-    /// Least and greatest elevation, degrees.
+    /// Minimum and maximum elevation, degrees.
     pub elevation_deg: [Option<f64>; 2],
     /// Azimuth that a camera looks to, degrees.
     pub heading_deg: Option<f64>,
@@ -30,11 +30,11 @@ pub struct ObserverRow {
     pub tilt_deg: Option<f64>,
     /// Horizontal field of view of a camera, degrees.
     pub fov_deg: Option<f64>,
-    /// How much it counts as a target.
+    /// Weight as a target.
     pub weight: Option<f64>,
 }
 
-/// What a column of a table, or a property in GeoJSON, may say of an observer: in the order of [`from_values`].
+/// Meanings of columns of a table, or properties in GeoJSON, of observers, in the order of [`from_values`].
 const MEANINGS: [Meaning; 13] = [
     Meaning { names: &["height", "observ_hgt", "offseta", "observer_height", "eye_height"], unit: Unit::Height },
     Meaning { names: &["min_distance", "radius1", "radius_in"], unit: Unit::Distance },
@@ -51,11 +51,11 @@ const MEANINGS: [Meaning; 13] = [
     Meaning { names: &["spot"], unit: Unit::HeightOfFile },
 ];
 
-/// Which of these say how far and where somebody looks.
+/// Indices of the meanings that limit distance and direction.
 const LIMITS: Range<usize> = 1..10;
 
-/// The names of one meaning, in lower case: the first is our own, in metres or degrees, and stands above the others,
-/// which are those of the visibility tools of QGIS and ArcGIS and are in the unit of the file.
+/// Names of one meaning, in lower case. The first is our own, in metres or degrees, and precedes the others. These are
+/// the names of the visibility tools of QGIS and ArcGIS, in the unit of the file.
 struct Meaning {
     names: &'static [&'static str],
     unit: Unit,
@@ -91,7 +91,7 @@ pub struct ObserverRows {
     pub limits: Vec<String>,
 }
 
-/// What the rows of a table are.
+/// Meaning of the rows of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowsAre {
     /// Observers, each for itself.
@@ -102,15 +102,17 @@ pub enum RowsAre {
 
 /// Reads observers from a table (.csv .txt) or GeoJSON (.geojson .json).
 ///
-/// A table has columns x and y in the coordinates of the cloud's file, and may have z (height of the eye, in the unit
-/// of the file; empty where it follows from the ground), height (above the ground, metres), min_distance and
-/// max_distance (metres), azimuth_from, azimuth_to, elevation_from, elevation_to, heading, tilt and fov (degrees) and
-/// weight. GeoJSON has these as properties; points are observers, lines are paths, and the corners of polygons are
-/// walked around. A property z stands above the third coordinate. Upper and lower case are the same.
+/// A table has columns x and y in the coordinates of the cloud's file. It may have z (height of the eye, in the unit of
+/// the file; empty if it follows from the ground) and height (above the ground, metres). Further columns are
+/// min_distance and max_distance (metres), azimuth_from, azimuth_to, elevation_from, elevation_to, heading, tilt and
+/// fov (degrees), and weight.
 ///
-/// Names of other programs are understood, lengths in the unit of the file: observ_hgt, radius, radius_in, azim_1,
-/// azim_2, angle_down and angle_up of QGIS, OFFSETA, RADIUS1, RADIUS2, AZIMUTH1, AZIMUTH2, VERT1, VERT2 and SPOT of
-/// ArcGIS: the eye is OFFSETA above SPOT, or 1. Of a range with one end the other is that of all directions.
+/// GeoJSON has these as properties; points are observers, lines are paths, and the corners of polygons are walked
+/// around. A property z precedes the third coordinate. Upper and lower case are the same.
+///
+/// Names of other programs are understood, lengths in the unit of the file. QGIS has observ_hgt, radius, radius_in,
+/// azim_1, azim_2, angle_down and angle_up. ArcGIS has OFFSETA, RADIUS1, RADIUS2, AZIMUTH1, AZIMUTH2, VERT1, VERT2 and
+/// SPOT: the eye is OFFSETA above SPOT, or 1. A range with one end is completed by the end of all directions.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`], [`Error::Malformed`] for missing columns, text in place of numbers and files without
@@ -209,7 +211,7 @@ impl Meaning {
 }
 
 impl ObserverRows {
-    /// What the `names` of a file are for, of which those in `used` had the meaning with that index.
+    /// Returns the use of the `names` of a file; those in `used` had the meaning with that index.
     fn of_names(names: &[String], used: &[(&str, usize)]) -> Self {
         let mut found = Self::default();
         for name in names {

@@ -12,8 +12,8 @@ pub(super) struct OctreeCube {
 }
 
 impl OctreeCube {
-    /// Whether the cell of a node, widened by `room`, meets `wanted`, as all cells do without a box; `None` for a node
-    /// that cannot be. The key is its level, and its number along x, y and z.
+    /// Returns true if the cell of a node, widened by `room`, meets `wanted`, as all cells do without a box; `None` for
+    /// an impossible node. The key is its level, and its number along x, y and z.
     pub(super) fn node_meets(&self, key: [i32; 4], room: [f64; 3], wanted: Option<&FileBox>) -> Option<bool> {
         let [level, place @ ..] = key;
         if !(0..=DEEPEST).contains(&level) {

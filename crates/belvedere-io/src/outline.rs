@@ -101,8 +101,8 @@ fn labelled(cells: &Raster<bool>) -> (Vec<u32>, Vec<usize>) {
 /// Steps to the west, south, east and north: turning left on a map whose rows count southward.
 const STEPS: [[isize; 2]; 4] = [[-1, 0], [0, 1], [1, 0], [0, -1]];
 
-/// Walks around an area with its cells at the left hand, from the north-east corner of `start` westward; the corners at
-/// which the walk turns, the first of them not repeated. Marks the cells whose north sides it ran along.
+/// Walks around an area with its cells at the left hand, from the north-east corner of `start` westward. Returns the
+/// corners at which the walk turns, without repeating the first, and marks the cells whose north sides it followed.
 fn walk(start: [usize; 2], label: &impl Fn(isize, isize) -> u32, walked: &mut [bool], width: usize) -> Vec<[usize; 2]> {
     let start = [start[0].cast_signed() + 1, start[1].cast_signed()];
     let (mut corner, mut heading) = (start, 0);

@@ -1,4 +1,4 @@
-//! Where output goes: a file, which appears only when it is complete, or any writer.
+//! Targets of output: a file, which appears only when it is complete, or any writer.
 
 use std::io::{BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::atomic;
 use belvedere_data::{Error, Result};
 
-/// What an [`Output`] can write to.
+/// Writer that an [`Output`] can use.
 pub trait WriteSeek: Write + Seek {}
 impl<T: Write + Seek> WriteSeek for T {}
 
@@ -48,13 +48,14 @@ impl<'a> Output<'a> {
         crate::source::extension(&self.name)
     }
 
-    /// Whether the output is a file.
+    /// Returns true if the output is a file.
     #[cfg(feature = "las")]
     pub(crate) fn is_path(&self) -> bool {
         self.writer.is_none()
     }
 
-    /// What `body` returns, after everything that it wrote is in the output. The body gets the name for its errors.
+    /// Returns the result of `body`, after everything that it wrote is in the output. The body gets the name for its
+    /// errors.
     pub(crate) fn write<T>(self, body: impl FnOnce(&Path, &mut dyn WriteSeek) -> Result<T>) -> Result<T> {
         let Self { name, writer } = self;
         let Some(writer) = writer else { return atomic::write(&name, |file| body(&name, file)) };

@@ -3,7 +3,7 @@
 use std::io::{BufRead, Read};
 use std::path::Path;
 
-use super::part::FilePart;
+use super::file_part::FilePart;
 use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, contradict_twice, roles_of};
 use super::source::Input;
@@ -33,7 +33,7 @@ struct PcdField {
     size: usize,
     kind: char,
     count: usize,
-    /// What a single value means.
+    /// Meaning of a single value.
     role: Option<Role>,
 }
 
@@ -235,7 +235,7 @@ fn ascii_row(line: &str, header: &PcdHeader) -> Option<Row> {
         for _ in 0..field.count {
             let value: f64 = words.next()?.parse().ok()?;
             if field.is_packed_color() {
-                let bits = if field.kind == 'F' { super::part::narrow(value).to_bits() } else { to_bits(value) };
+                let bits = if field.kind == 'F' { super::file_part::narrow(value).to_bits() } else { to_bits(value) };
                 let [blue, green, red, _] = bits.to_le_bytes();
                 put_color(&mut row, [red, green, blue]);
             } else if let (Some(role), 1) = (field.role, field.count) {
@@ -321,8 +321,8 @@ fn read_compressed(
 /// Unpacks LZF data of `length` bytes; `None` where they do not unpack to just that.
 ///
 /// # Source
-/// Marc Lehmann, LibLZF: a control byte below 32 is followed by so many literal bytes and one more; above, its upper
-/// three bits are a length and its lower five the high bits of how far back to copy from.
+/// Marc Lehmann, LibLZF. A control byte below 32 is followed by so many literal bytes and one more. Above, its upper
+/// three bits are a length and its lower five the high bits of the distance back to copy from.
 fn unpack_lzf(packed: &[u8], length: usize) -> Option<Vec<u8>> {
     let mut out = Vec::with_capacity(length);
     let mut bytes = packed.iter().copied();

@@ -11,8 +11,8 @@ use belvedere_data::{Error, Mesh, Result};
 /// Coordinates beyond this are no place on earth in any unit; kept below, products of three never overflow.
 const MAX_COORDINATE: f64 = 1e9;
 
-/// A triangle is degenerate where its doubled area is below this share of its longest edge squared: f64 coordinates of
-/// 1e6 m determine a height over a 1 m edge to 1e-10 at best.
+/// Maximum ratio of the doubled area of a degenerate triangle to its longest edge squared. f64 coordinates of 1e6 m
+/// determine a height over a 1 m edge to 1e-10 at best.
 const DEGENERATE_AREA_RATIO: f64 = 1e-10;
 
 /// Corners up to which no face takes longer than microseconds, whatever its shape.
@@ -22,10 +22,11 @@ const FEW_CORNERS: usize = 16;
 /// More than this for all such faces of a file would take more than a few seconds.
 const MAX_CROSSED_CUBES: f64 = 1e10;
 
-/// Most corners of a face, in all its rings: the time grows with their square where a face winds around itself.
+/// Maximum number of corners of a face, in all its rings: the time grows with their square for a face that winds around
+/// itself.
 const MAX_CORNERS: usize = 20_000;
 
-/// What was found in, and left out of, a mesh file.
+/// Counts of a mesh file: contents and what was left out.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MeshReport {
     /// Polygons in the file, triangles included.

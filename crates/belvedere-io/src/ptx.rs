@@ -3,7 +3,7 @@
 use std::io::{BufRead, Read};
 use std::path::Path;
 
-use super::part::FilePart;
+use super::file_part::FilePart;
 use super::read_options::Reading;
 use super::rows::{POSITION, Role, Row, Rows};
 use super::scan_pose::fault_of_rotation;
@@ -172,7 +172,7 @@ fn read_header<R: BufRead>(lines: &mut PtxLines<'_, R>) -> Result<Option<PtxHead
     }))
 }
 
-/// What the numbers of a point are: x y z, intensity, colour.
+/// Returns the meanings of the numbers of a point: x y z, intensity, colour.
 fn roles(width: usize) -> impl Iterator<Item = Role> {
     const ALL: [Role; 7] = [Role::X, Role::Y, Role::Z, Role::Intensity, Role::Red, Role::Green, Role::Blue];
     ALL.into_iter().take(width)

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 #[cfg(feature = "e57")]
 use super::e57;
-use super::part::FilePart;
+use super::file_part::FilePart;
 #[cfg(feature = "ply")]
 use super::ply;
 use super::read_options::{ReadOptions, Reading, UpAxis};
@@ -33,26 +33,34 @@ const SUPPORTED: &str = ".las, .laz, .ply, .xyz, .txt, .csv, .pts, .asc, .pcd, .
 
 /// One cloud from `sources`, in that order and the order of their points, with a report.
 ///
-/// A path to a folder means all files in it with one of [`CLOUD_EXTENSIONS`], sorted by name; a folder with
+/// A path to a folder means all files in it with one of [`CLOUD_EXTENSIONS`], sorted by name. A folder with
 /// `coords.npy` has the layout of masbcpp and is one cloud with its normals. A catalogue of tiles (`.vpc`) means its
-/// files, and so do entwine point tiles (`ept.json`, or its folder, with LAZ nodes). Of a box ([`ReadOptions::within`])
-/// only those files of a catalogue are opened, those LAS and LAZ files are read beyond their header, and those chunks
-/// of COPC files are read, whose bounds meet it. The extension selects the format, in upper or lower case.
+/// files, and so do entwine point tiles (`ept.json`, or its folder, with LAZ nodes).
 ///
-/// Coordinates become metres by the unit of the reference system and f32 relative to a near origin: that of
-/// [`ReadOptions::frame`], or else the middle, in whole metres, of the points within 10 km of the median point of all
-/// files. Points more than 1000 km from the median (or from the given origin) along an axis, and points that are not
-/// finite, are left out and counted. A file of several that lies there as a whole is refused, unless
-/// [`ReadOptions::distant`] says otherwise. Colours that are all zero are none. An attribute that one of the files
-/// lacks is dropped; files without any point are ignored. The result does not depend on the number of threads. The
-/// items of progress are points. Tables without x, y and z in a folder are skipped and reported.
+/// With a box ([`ReadOptions::within`]) only files of a catalogue whose bounds meet it are opened. The same holds for
+/// LAS and LAZ files beyond their header, and for chunks of COPC files. The extension selects the format, in upper or
+/// lower case.
+///
+/// Coordinates become metres by the unit of the reference system and f32 relative to a near origin. The origin is that
+/// of [`ReadOptions::frame`], or else the middle, in whole metres, of the points within 10 km of the median point of
+/// all files. Points more than 1000 km from the median (or from the given origin) along an axis, and points that are
+/// not finite, are left out and counted. A file of several that lies there as a whole is refused, unless
+/// [`ReadOptions::distant`] accepts it.
+///
+/// Colours that are all zero are none. An attribute that one of the files lacks is dropped; files without any point are
+/// ignored. The result does not depend on the number of threads. The items of progress are points. Tables without x, y
+/// and z in a folder are skipped and reported.
 ///
 /// # Errors
-/// [`Error::Io`], [`Error::UnknownFormat`], [`Error::MissingFeature`] and [`Error::Malformed`] about the source at
-/// fault; [`Error::UnusableCrs`] for degrees, earth-centred coordinates and files whose systems differ from each other
-/// or from that of the frame; [`Error::DistantFile`]; [`Error::NoPoints`] where no file has a point;
-/// [`Error::InvalidParameter`] for options that cannot be followed; [`Error::MissingAttribute`] where classes are
-/// requested but a file has none; [`Error::Cancelled`].
+/// - [`Error::Io`], [`Error::UnknownFormat`], [`Error::MissingFeature`] and [`Error::Malformed`] about the source at
+///   fault.
+/// - [`Error::UnusableCrs`] for degrees, earth-centred coordinates and files whose systems differ from each other or
+///   from that of the frame.
+/// - [`Error::DistantFile`].
+/// - [`Error::NoPoints`] if no file has a point.
+/// - [`Error::InvalidParameter`] for options that cannot be followed.
+/// - [`Error::MissingAttribute`] if classes are requested but a file has none.
+/// - [`Error::Cancelled`].
 pub fn read_cloud<'a, S: Into<Source<'a>>>(
     sources: impl IntoIterator<Item = S>,
     options: &ReadOptions,
@@ -153,15 +161,15 @@ pub fn cloud_sources(paths: &[PathBuf]) -> Result<(Vec<Source<'_>>, Vec<FoundCon
     Ok((files.sources, files.contradictions))
 }
 
-/// What the sources of a cloud mean.
+/// Resolved sources of a cloud.
 #[derive(Default)]
 pub(super) struct CloudFiles<'a> {
     pub(super) sources: Vec<Source<'a>>,
     /// Files of folders that are tables or grids of something else.
     tables: Vec<PathBuf>,
-    /// What was passed over in folders.
+    /// Notes on skipped files of folders.
     notes: Vec<String>,
-    /// What contradicts each other in catalogues.
+    /// Contradictions in catalogues.
     contradictions: Vec<FoundContradiction>,
 }
 
@@ -204,7 +212,7 @@ pub(super) fn files_of<'a>(sources: impl Iterator<Item = Source<'a>>, reading: &
     Ok(found)
 }
 
-/// What a source is.
+/// Kind of a source.
 enum Opened<'a> {
     /// A catalogue, with its files that may have points in the box to read, and what contradicts each other in it.
     Catalogue(Vec<Source<'static>>, Vec<FoundContradiction>),
@@ -228,8 +236,8 @@ fn is_text(file: &Path) -> bool {
     ["xyz", "txt", "csv", "pts", "asc"].contains(&extension(file).as_str())
 }
 
-/// Whether a text file of a folder is a table or a grid that belongs to its clouds, such as a list of tiles, a model of
-/// the ground, or, `beside_scans`, a trajectory or the positions of a scanner.
+/// Returns true if a text file of a folder is a table or a grid that belongs to its clouds. Examples are a list of
+/// tiles, a model of the ground, or, `beside_scans`, a trajectory or the positions of a scanner.
 fn is_another_table(file: &Path, beside_scans: bool) -> bool {
     Source::path(file).open_text().is_ok_and(|input| xyz::is_another_table(input, beside_scans))
 }
@@ -260,7 +268,7 @@ fn files_in(folder: &Path) -> Result<(Vec<PathBuf>, Option<String>)> {
     Ok((files, note))
 }
 
-/// Whether a folder has the layout of masbcpp.
+/// Returns true if a folder has the layout of masbcpp.
 fn is_masbcpp(folder: &Path) -> bool {
     folder.join("coords.npy").is_file()
 }

@@ -1,4 +1,4 @@
-//! What to read of a cloud, and where to put it.
+//! Selection of the part of a cloud to read, and its frame.
 
 use belvedere_data::cloud::{Attributes, to_local};
 use belvedere_data::control::Control;
@@ -10,19 +10,19 @@ use std::collections::BTreeSet;
 
 use std::path::Path;
 
-use super::part::{Coordinates, FilePart};
+use super::file_part::{Coordinates, FilePart};
 
-/// How often readers that go point by point look whether the work was cancelled: a few milliseconds of points.
+/// Interval between checks for cancellation of readers that go point by point: a few milliseconds of points.
 const POINTS_PER_CHECK: u64 = 1 << 14;
 
-/// How to read.
+/// Options of reading.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct ReadOptions {
     /// Reference system as for [`Crs::parse`] of files that name none, or the same. Default: none, the files are
     /// believed.
     pub crs: Option<String>,
-    /// Whether `crs` holds against the files and the coordinates. Default: contradictions are errors.
+    /// Precedence of `crs` over the files and the coordinates. Default: contradictions are errors.
     pub crs_against_files: Insistence,
     /// Frame of the cloud, so that clouds that are read separately have comparable local positions. A frame without a
     /// reference system takes that of the files. Default: none, the origin is chosen near the middle of the points.
@@ -35,15 +35,15 @@ pub struct ReadOptions {
     pub lines: Option<Vec<u16>>,
     /// Only points that were measured from one day to another, both included, in UTC, are read. Default: all.
     pub dates: Option<[CalendarDay; 2]>,
-    /// Whether the report gives the row of each point in its file. Default: not.
+    /// True to give the row of each point in its file. Default: false.
     pub row_numbers: RowNumbers,
-    /// Which axis of the files is up. Default: z.
+    /// Axis of the files that is up. Default: z.
     pub up: UpAxis,
-    /// What becomes of a file of a set that lies as a whole more than 1000 km from the others. Default: refused.
+    /// Treatment of a file of a set that lies as a whole more than 1000 km from the others. Default: refused.
     pub distant: DistantFiles,
 }
 
-/// What becomes of a file whose points all lie too far from those of the other files to be read with them.
+/// Treatment of a file whose points all lie too far from those of the other files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DistantFiles {
     /// It is an error: mostly such a file is in another reference system.
@@ -53,7 +53,7 @@ pub enum DistantFiles {
     LeftOut,
 }
 
-/// What becomes of a reference system that is given and contradicted by what is known.
+/// Treatment of a given reference system that contradicts other evidence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Insistence {
     /// It is refused.
@@ -63,7 +63,7 @@ pub enum Insistence {
     Insist,
 }
 
-/// Which axis of a file is up.
+/// Axis of a file that is up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum UpAxis {
     /// The third, as in surveys.
@@ -87,7 +87,7 @@ pub enum Within {
     Local(Bounds),
 }
 
-/// Whether the rows of points are kept.
+/// Choice to keep the rows of points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RowNumbers {
     /// [`crate::ReadReport::rows`] stays empty.
@@ -213,7 +213,7 @@ impl ReadOptions {
     }
 }
 
-/// What the reader of one format needs besides its source.
+/// Input of the reader of one format besides its source.
 #[derive(Clone, Copy)]
 pub(super) struct Reading<'r> {
     pub(super) options: &'r ReadOptions,
@@ -231,8 +231,8 @@ impl Reading<'_> {
         if done.is_multiple_of(POINTS_PER_CHECK) { self.control.check() } else { Ok(()) }
     }
 
-    /// A box that holds every requested point, in the coordinates of files that were not opened yet; `None` without a
-    /// box, and where the unit of the files is not known.
+    /// Returns a box that holds every requested point, in the coordinates of files that were not opened yet. `None`
+    /// without a box, and if the unit of the files is not known.
     pub(super) fn box_of_unopened(&self) -> Option<FileBox> {
         let of_frame = self.options.frame.as_ref().map(|frame| &frame.crs).filter(|crs| crs.kind != CrsKind::Unknown);
         let known = self.forced.or(of_frame);
@@ -264,7 +264,7 @@ impl Reading<'_> {
         }
     }
 
-    /// Which points of a file in the system `crs` are read, or `None` for all.
+    /// Returns the selection of the points of a file in the system `crs`, or `None` for all.
     pub(super) fn selection(&self, crs: &Crs) -> Option<Selection> {
         let crs = &self.system(crs);
         let place = match (self.options.within, &self.options.frame) {
@@ -288,7 +288,7 @@ impl Reading<'_> {
     }
 }
 
-/// Which points of a file are read.
+/// Selection of the points of a file.
 pub(super) struct Selection {
     place: Option<SelectedBox>,
     classes: Option<[bool; 256]>,
@@ -310,7 +310,7 @@ enum SelectedBox {
     Local { bounds: Bounds, origin: [f64; 3], units: [f64; 3] },
 }
 
-/// By how much a box in local coordinates is widened at least when files are looked through for it, metres.
+/// Minimum widening of a box in local coordinates when files are searched for it, metres.
 const MIN_BOX_ROOM: f64 = 1e-3;
 
 /// Points that a selection passed over.
@@ -325,7 +325,7 @@ pub(super) struct PassedOver {
 impl PassedOver {
     /// Counts points that need not even be looked at, because their piece of the file lies outside.
     #[cfg(feature = "las")]
-    pub(super) fn outside(&mut self, count: u64) {
+    pub(super) fn count_outside(&mut self, count: u64) {
         self.outside = self.outside.saturating_add(usize::try_from(count).unwrap_or(usize::MAX));
     }
 
@@ -346,7 +346,7 @@ pub(super) struct FileBox {
 }
 
 impl FileBox {
-    /// Whether the box from `low` to `high` shares a point with this one.
+    /// Returns true if the box from `low` to `high` shares a point with this one.
     pub(super) fn meets(&self, low: [f64; 3], high: [f64; 3]) -> bool {
         (0..3).all(|i| low[i] <= self.high[i] && self.low[i] <= high[i])
     }
@@ -416,7 +416,7 @@ impl Selection {
     ///
     /// # Errors
     /// [`Error::MissingAttribute`] where classes, lines or dates are requested but the points have none.
-    pub(super) fn kept(
+    pub(super) fn select(
         &self,
         coordinates: &Coordinates,
         attributes: &Attributes,
@@ -469,7 +469,7 @@ mod tests {
         let selection = Reading { options, forced: None, control: &control }.selection(&Crs::default());
         let coordinates = Coordinates::Real(vec![[0.0; 3]; 3]);
         let Some(selection) = selection else { return Ok(vec![0, 1, 2]) };
-        selection.kept(&coordinates, &attributes, &mut PassedOver::default())
+        selection.select(&coordinates, &attributes, &mut PassedOver::default())
     }
 
     #[test]

@@ -5,25 +5,25 @@ use std::path::PathBuf;
 use belvedere_data::contradiction::FoundContradiction;
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
-/// What reading a cloud found.
+/// Report of reading a cloud.
 #[derive(Clone, Debug, Default)]
 pub struct ReadReport {
     /// One entry per file, in the order of their points.
     pub files: Vec<FileReport>,
     /// The reference system of the cloud in words, see [`Crs::describe`](belvedere_data::crs::Crs::describe).
     pub crs: String,
-    /// Where it was found, such as "WKT record" or "option"; empty where none is known.
+    /// Source of it, such as "WKT record" or "option"; empty if none is known.
     pub crs_source: String,
-    /// What in the files speaks against the reference system; `None` where nothing does.
+    /// Evidence in the files against the reference system; `None` without any.
     pub doubt: Option<String>,
     /// Attributes that only some of the files have and the cloud therefore lacks.
     pub dropped_attributes: Vec<&'static str>,
     /// Files of a folder that are no point clouds although their names look so: tables of something else, such as
     /// trajectories, and grids of heights.
     pub skipped_files: Vec<PathBuf>,
-    /// What should be known before the cloud is used.
+    /// Notes for users of the cloud.
     pub notes: Vec<String>,
-    /// What contradicts each other in folders and catalogues.
+    /// Contradictions in folders and catalogues.
     pub contradictions: Vec<FoundContradiction>,
     /// Row of each point among the points of its file, from 0, where
     /// [`ReadOptions::row_numbers`](crate::ReadOptions::row_numbers) requests it; empty otherwise. The points of the
@@ -31,7 +31,7 @@ pub struct ReadReport {
     pub rows: Vec<u64>,
 }
 
-/// What reading one file found.
+/// Report of reading one file.
 #[derive(Clone, Debug, Default)]
 pub struct FileReport {
     /// The path, or the name of the source.
@@ -42,24 +42,24 @@ pub struct FileReport {
     pub points: usize,
     /// Points left out, by reason.
     pub left_out: Vec<LeftOut>,
-    /// Of these, points that the header announces but the file lacks: it is cut off.
+    /// Number of points that the header announces but the file lacks: it is cut off.
     pub missing_points: usize,
     /// Names of the attributes found, as in [`belvedere_data::cloud::Attributes::columns`].
     pub attributes: Vec<&'static str>,
     /// Its reference system in words; empty where it gives none.
     pub crs: String,
-    /// Where that was found; empty where nowhere.
+    /// Source of it; empty if there is none.
     pub crs_source: String,
-    /// What is odd about it.
+    /// Oddities of the file.
     pub notes: Vec<String>,
-    /// What contradicts each other in it, and what was said of it.
+    /// Contradictions in it, and with what other files announced.
     pub contradictions: Vec<FoundContradiction>,
 }
 
 /// Points left out for one reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LeftOut {
-    /// How many.
+    /// Number of points.
     pub count: usize,
     /// Why.
     pub reason: String,
@@ -72,7 +72,7 @@ impl ReadReport {
         self.files.iter().flat_map(|file| &file.left_out).map(|left_out| left_out.count).sum()
     }
 
-    /// What contradicts each other in all files, each with the name of its file.
+    /// Returns the contradictions in all files, each with the name of its file.
     #[must_use]
     pub fn contradictions(&self) -> Vec<FoundContradiction> {
         let of_files = self.files.iter().flat_map(|file| {

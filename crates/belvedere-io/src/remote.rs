@@ -18,9 +18,9 @@ use belvedere_data::shown::without_secrets;
 /// chunks and pages of COPC files may be small.
 const FIRST_BYTES: u64 = 1 << 14;
 const MIN_BYTES: u64 = 1 << 12;
-/// Most bytes requested ahead of the reader: half of those that it read since the last gap, up to this.
+/// Maximum number of bytes requested ahead of the reader: half of those that it read since the last gap, up to this.
 const MAX_AHEAD: u64 = 1 << 20;
-/// Most bytes of one request, however many the reader wants at once.
+/// Maximum number of bytes of one request, however many the reader wants at once.
 const MAX_BYTES: u64 = 1 << 24;
 /// Bytes that are taken from a connection at once.
 const BLOCK_BYTES: usize = 1 << 16;
@@ -28,21 +28,21 @@ const BLOCK_BYTES: usize = 1 << 16;
 const MAX_WHOLE: u64 = 1 << 28;
 /// Time to wait before asking again, where a server was busy or a connection broke.
 const PAUSES: [Duration; 3] = [Duration::from_millis(300), Duration::from_secs(1), Duration::from_secs(3)];
-/// Longest wait for a connection, for the next bytes, and for all of an answer: a whole file of the largest size at
+/// Maximum wait for a connection, for the next bytes, and for all of an answer: a whole file of the largest size at
 /// half a megabyte a second.
 const CONNECT: Duration = Duration::from_secs(20);
 const NO_PROGRESS: Duration = Duration::from_secs(30);
 const WHOLE_ANSWER: Duration = Duration::from_secs(600);
 
-/// Least speed of a server once it was waited for as long as [`NO_PROGRESS`], bytes a second: a third of what the
-/// slowest mobile networks have. One that sends a byte now and then would hold a command for ever.
+/// Minimum speed of a server after a wait of [`NO_PROGRESS`], bytes a second: a third of the slowest mobile networks.
+/// One that sends a byte now and then would hold a command for ever.
 const MIN_SPEED: u64 = 1000;
 
-/// What is said of a server that sends nothing for too long.
+/// Message for a server that sends nothing for too long.
 const SILENT: &str = "the server does not answer: it sent nothing for 30 s; try again later";
-/// What is said of a server that sends next to nothing.
+/// Message for a server that sends next to nothing.
 const SLOW: &str = "the server sends less than a kilobyte a second; try again later, or download the file first";
-/// What is said of a file that is not the one of which parts were read before.
+/// Message for a file that changed since parts of it were read.
 const CHANGED: &str = "the file on the server changed while it was read; run again";
 
 /// Connections are kept open from one part to the next. The authorities that are trusted are those of the system.
@@ -74,24 +74,24 @@ fn agent(no_progress: Duration) -> Agent {
 pub(crate) struct Remote {
     address: String,
     size: u64,
-    /// What the server calls this version of the file; `None` where it does not say.
+    /// Version of the file named by the server; `None` if it names none.
     version: Option<String>,
-    /// Where the next byte is read.
+    /// Position of the next byte to read.
     position: u64,
     /// The last part that came, and where it starts in the file.
     part: Vec<u8>,
     part_start: u64,
-    /// Where the reader last jumped to.
+    /// Position of the last jump.
     run_start: u64,
     pace: Pace,
 }
 
-/// How fast a server was so far.
+/// Transfer rate of a server so far.
 #[derive(Clone, Copy)]
 struct Pace {
     bytes: u64,
     waited: Duration,
-    /// How long it is waited for before it is judged.
+    /// Time before the server is judged.
     patience: Duration,
 }
 
@@ -107,20 +107,20 @@ impl Pace {
     }
 }
 
-/// What a server sent.
+/// Reply of a server.
 struct Reply {
     bytes: Vec<u8>,
     /// Size of the whole file.
     size: u64,
     version: Option<String>,
-    /// Whether this is the whole file, because the server gives no parts.
+    /// True if this is the whole file, because the server gives no parts.
     is_whole: bool,
 }
 
 /// Why there is no reply.
 struct Failure {
     error: Error,
-    /// Whether a second request may succeed.
+    /// True if a second request may succeed.
     may_pass: bool,
 }
 
@@ -151,7 +151,7 @@ impl Remote {
         self.size
     }
 
-    /// What the server calls this version of the file; `None` where it does not say.
+    /// Returns the version of the file named by the server; `None` if it names none.
     pub(crate) fn version(&self) -> Option<&str> {
         self.version.as_deref()
     }
@@ -336,7 +336,7 @@ fn lasting(what: String) -> Failure {
     Failure { error: Error::other(what), may_pass: false }
 }
 
-/// Whether a connection that failed may work when tried again.
+/// Returns true if a connection that failed may work when tried again.
 fn is_passing(error: &ureq::Error) -> bool {
     let ureq::Error::Io(error) = error else { return false };
     matches!(
@@ -345,7 +345,7 @@ fn is_passing(error: &ureq::Error) -> bool {
     )
 }
 
-/// What is wrong, and what to do; without the secrets of the address, which the client may name.
+/// Describes the error and its remedy, without the secrets of the address, which the client may name.
 fn described(error: &ureq::Error) -> String {
     let text = match error {
         ureq::Error::HostNotFound => "there is no such server; check the address and the connection".to_owned(),

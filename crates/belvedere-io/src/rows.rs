@@ -1,11 +1,11 @@
 //! Points that come one by one with named numbers, as in text, PLY, PCD and E57 files.
 
-use super::part::{Coordinates, FilePart, narrow, to_u8, to_u16};
+use super::file_part::{Coordinates, FilePart, narrow, to_u8, to_u16};
 use super::read_options::RowNumbers;
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 use belvedere_data::contradiction::COLUMN_TWICE;
 
-/// What a number of a point means.
+/// Meaning of a number of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
     X,
@@ -62,7 +62,7 @@ pub(super) const NORMAL: [Role; 3] = [Role::NormalX, Role::NormalY, Role::Normal
 const COLOR: [Role; 3] = [Role::Red, Role::Green, Role::Blue];
 
 /// The role of a column by its name in any of the formats, or `None` where the name says nothing.
-pub(super) fn role_of(name: &str) -> Option<Role> {
+fn role_of(name: &str) -> Option<Role> {
     // Called for every number of a PLY file, hence no allocation.
     let mut buffer = [0_u8; 24];
     let mut length = 0;
@@ -95,8 +95,8 @@ pub(super) fn role_of(name: &str) -> Option<Role> {
     })
 }
 
-/// What each of some columns means, by their names; and names that occur twice with one meaning, of which the first
-/// column counts.
+/// Returns the meaning of each of some columns, by their names. Also returns names that occur twice with one meaning,
+/// of which the first column counts.
 ///
 /// Of several names of one meaning the plain one counts, wherever it stands: of "z" and "height" that is "z".
 pub(super) fn roles_of<'a>(names: impl Iterator<Item = &'a str> + Clone) -> (Vec<Option<Role>>, Vec<String>) {
@@ -118,7 +118,7 @@ pub(super) fn roles_of<'a>(names: impl Iterator<Item = &'a str> + Clone) -> (Vec
     (roles, twice)
 }
 
-/// Whether a name stands above others of the same meaning.
+/// Returns true if a name precedes others of the same meaning.
 pub(super) fn is_plain_name(name: &str) -> bool {
     PLAIN_NAMES.iter().any(|plain| name.trim().eq_ignore_ascii_case(plain))
 }
@@ -208,7 +208,7 @@ impl Rows {
         roles.iter().all(|&role| self.has[role as usize])
     }
 
-    /// Whether x, y and z are among the numbers.
+    /// Returns true if x, y and z are among the numbers.
     pub(super) fn has_position(&self) -> bool {
         self.has(&POSITION)
     }

@@ -1,6 +1,7 @@
 //! Poses of scans: what turns scan into file coordinates must be a rotation.
 
-/// How far lengths and products of the axes of a rotation may be from one and zero: some programs write four digits.
+/// Maximum deviation of lengths and products of the axes of a rotation from one and zero: some programs write four
+/// digits.
 const TOLERANCE: f64 = 2e-3;
 
 /// Why the rows of `matrix` are not the axes of a rotation; `None` where they are. Points turned by anything else would

@@ -8,7 +8,7 @@ use std::sync::{Mutex, PoisonError};
 
 use belvedere_data::shown::{Address, CUT};
 
-/// What was cut from addresses so far, by their number.
+/// Secrets cut from addresses so far, by their number.
 static SECRETS: Mutex<Vec<Secret>> = Mutex::new(Vec::new());
 
 #[derive(PartialEq, Eq)]

@@ -2,12 +2,13 @@
 
 use std::collections::HashSet;
 
-/// A ring may pass a corner more than once, as where an edge leads to a hole and back; such a ring has less than this
-/// many corners for each place. One with more turns around in itself.
+/// Maximum mean number of passes of a ring through its places. A ring may pass a corner more than once, for example
+/// where an edge leads to a hole and back; one with more passes turns around in itself.
 const MAX_PASSES: usize = 2;
 
-/// The corners of a ring without those that repeat the one before, also at its end, and each corner once where the ring
-/// passes its places more than twice on the average; with whether that was so. Corners are the same at the same place.
+/// Returns the corners of a ring without those that repeat the one before, also at its end. If the ring passes its
+/// places more than twice on the average, each corner is kept once, and the flag is true. Corners are the same at the
+/// same place.
 pub(super) fn without_repeats(ring: &[u32], vertices: &[[f64; 3]]) -> (Vec<u32>, bool) {
     // adding zero makes -0 into 0
     let place = |&corner: &u32| vertices.get(corner as usize).map(|v| v.map(|v| (v + 0.0).to_bits()));
@@ -32,8 +33,9 @@ struct Edge {
     high: f64,
 }
 
-/// Whether two edges of a polygon cross between their ends. The first ring of `corners` ends where the next begins, at
-/// the first of `hole_starts`. Edges that only touch, or lie on each other, as on the way to a hole, do not cross.
+/// Returns true if two edges of a polygon cross between their ends. The first ring of `corners` ends where the next
+/// begins, at the first of `hole_starts`. Edges that only touch, or lie on each other, such as on the way to a hole, do
+/// not cross.
 pub(super) fn crosses_itself(corners: &[[f64; 2]], hole_starts: &[u32]) -> bool {
     let mut edges: Vec<Edge> = Vec::with_capacity(corners.len());
     let ends = hole_starts.iter().map(|&start| start as usize).chain([corners.len()]);
@@ -59,7 +61,7 @@ pub(super) fn crosses_itself(corners: &[[f64; 2]], hole_starts: &[u32]) -> bool 
     false
 }
 
-/// Whether each edge has its ends on both sides of the other.
+/// Returns true if each edge has its ends on both sides of the other.
 fn cross(a: &Edge, b: &Edge) -> bool {
     let side = |edge: &Edge, p: [f64; 2]| {
         let along = [edge.east[0] - edge.west[0], edge.east[1] - edge.west[1]];

@@ -8,28 +8,28 @@ use super::read_options::UpAxis;
 use belvedere_data::sky_region::SkyRegion;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Cells are put together in blocks where a grid has more than this many columns around, or rows up to the zenith and
-/// down: blocks of 0.2° of a full turn. Pulses that are nearer to each other prove no more.
+/// Maximum number of columns around, and of rows up to the zenith and down, before cells are put together in blocks:
+/// blocks of 0.2° of a full turn. Pulses that are nearer to each other prove no more.
 const BLOCKS: [usize; 2] = [900, 1800];
 /// Blocks of a grid at most. More columns than that go around more than once, or the sizes mean something else.
 const MAX_BLOCKS: usize = 4 * BLOCKS[0] * BLOCKS[1];
 /// Returns from which angles are found, and the fewest that are enough.
 const SAMPLE: u64 = 500_000;
 const MIN_SAMPLE: usize = 100;
-/// How far the directions of 95 % of the returns may lie off the regular grid, radians: 0.1°, 0.17 m in 100 m, which a
-/// pulse proves about itself four times.
+/// Maximum deviation of the directions of 95 % of the returns from the regular grid, radians: 0.1°, 0.17 m in 100 m, a
+/// quarter of what a pulse proves around itself.
 const TOLERANCE: f64 = 0.1 * DEGREE;
 const TOLERATED_SHARE: f64 = 0.95;
 /// Margin about cells with a return, radians; at least a row. Beams and angles that are a little off graze no edge.
 const MARGIN: f64 = 0.1 * DEGREE;
-/// How high the top of a grid must look for its empty cells to be the sky, radians: below, a window may reach it.
+/// Minimum elevation of the top of a grid for its empty cells to be the sky, radians: below, a window may reach it.
 const MIN_TOP: f64 = 45.0 * DEGREE;
 /// Smallest piece of the sky that counts, steradians: 36° across. The lamp and the skylight of a room are smaller.
 const MIN_SOLID_ANGLE: f64 = 0.3;
 /// Share of the returns that come from farther away than pulses prove their way empty. What returns that many pulses is
 /// no single reflector.
 const FARTHER_SHARE: f64 = 0.001;
-/// Most that the columns turn, radians: once around, and what scanners measure twice.
+/// Maximum turn of the columns, radians: once around, and the part that scanners measure twice.
 const MAX_TURN: f64 = 1.05 * TAU;
 /// Above this elevation a direction does not tell its column, radians.
 const NEAR_ZENITH: f64 = 80.0 * DEGREE;
@@ -151,7 +151,7 @@ impl ScanGrid {
         Some(region)
     }
 
-    /// How far away the scanner still received returns, in the unit of the file.
+    /// Returns the maximum range at which the scanner still received returns, in the unit of the file.
     fn far_range(&self) -> Option<f32> {
         let mut ranges: Vec<f64> = self.sample.iter().map(|found| found.range).collect();
         let place = at_share(1.0 - FARTHER_SHARE, ranges.len())?;
@@ -168,13 +168,13 @@ fn at_share(share: f64, count: usize) -> Option<usize> {
     count.checked_sub(1).map(|last| place.min(last))
 }
 
-/// Whether the columns of a grid go all around, so that the last stands beside the first.
+/// Returns true if the columns of a grid go all around, so that the last stands beside the first.
 fn goes_around(region: &SkyRegion) -> bool {
     let turn = region.azimuth[1].abs() * region.columns as f64;
     (turn - TAU).abs() < 1.5 * region.azimuth[1].abs()
 }
 
-/// How many columns are at least `angle` wide in a row.
+/// Returns the number of columns that are at least `angle` wide in a row.
 fn columns_of(angle: f64, region: &SkyRegion, row: usize) -> usize {
     let width = region.azimuth[1].abs() * region.elevation_of(row).cos().max(0.0);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
@@ -252,8 +252,8 @@ fn reaching_the_top(free: &[bool], region: &SkyRegion, rows: usize) -> Vec<bool>
 }
 
 impl GridAngles {
-    /// The angles that the returns show; `None` where these do not lie on a regular grid, or go around more than once:
-    /// neighbours in the grid would not be all neighbours in the sky.
+    /// Fits the angles of the grid to the returns. `None` if these do not lie on a regular grid, or go around more than
+    /// once: neighbours in the grid would not be all neighbours in the sky.
     fn of(sample: &[SampledReturn], columns: u64) -> Option<Self> {
         if sample.len() < MIN_SAMPLE {
             return None;
@@ -314,7 +314,7 @@ fn wrapped(angle: f64) -> f64 {
     (angle + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0
 }
 
-/// What the scans of a file saw of the sky.
+/// Sky seen by the scans of a file.
 #[derive(Debug, Default)]
 pub(super) struct Skies {
     regions: Vec<SkyRegion>,
@@ -349,7 +349,7 @@ impl Skies {
         }
     }
 
-    /// What was found, with the scanners that have a number in the cloud, by `numbers`, and in metres; and in words.
+    /// Returns the regions, in metres and with the scanners' numbers in the cloud, by `numbers`; and notes in words.
     pub(super) fn placed(self, numbers: &[u16], units: [f64; 3]) -> (Vec<SkyRegion>, Vec<String>) {
         let mut notes = Vec::new();
         if self.irregular_count > 0 {

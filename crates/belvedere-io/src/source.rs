@@ -1,4 +1,4 @@
-//! Where input comes from: a file, an address of the web, bytes in memory, or any reader.
+//! Sources of input: a file, an address of the web, bytes in memory, or any reader.
 
 use std::fs::File;
 use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
@@ -10,7 +10,7 @@ use super::announced::Announced;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
 
-/// What a [`Source`] can read from. Implemented for everything that reads, seeks and may move to another thread.
+/// Reader that a [`Source`] can use. Implemented for everything that reads, seeks and may move to another thread.
 pub trait ReadSeek: Read + Seek + Send {}
 impl<T: Read + Seek + Send> ReadSeek for T {}
 
@@ -20,9 +20,9 @@ const BUFFER_BYTES: usize = 1 << 12;
 
 /// One input with a name. The extension of the name selects the format; messages about the input begin with the name.
 ///
-/// Paths become sources by themselves: wherever a source is expected, a path will do. So will the address of a file on
-/// a web server (`https://…`, `http://…`), of which only those parts are transferred that are read, as far as the
-/// server gives parts of files (HTTP ranges).
+/// Paths become sources by themselves: a path is accepted wherever a source is expected. So is the address of a file on
+/// a web server (`https://…`, `http://…`). Only the parts that are read are transferred, if the server gives parts of
+/// files (HTTP ranges).
 ///
 /// ```
 /// use belvedere_io::{ReadOptions, Source, read_cloud};
@@ -42,19 +42,19 @@ pub struct Source<'a> {
     pub(crate) likely_rows: Option<Vec<Range<u64>>>,
     /// The system of a source that names none, where a catalogue gives it.
     pub(crate) system: Option<SystemBeside>,
-    /// What a hierarchy or a catalogue says of its points.
+    /// Description of its points by a hierarchy or a catalogue.
     #[cfg(feature = "las")]
     pub(crate) announced: Option<Announced>,
 }
 
-/// What stands beside a file about its reference system.
+/// Reference system from a file beside it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SystemBeside {
     /// A system, and the file that names it.
     Known {
         /// The system.
         crs: Crs,
-        /// Where it was found, such as "tile.prj".
+        /// Name of that file, such as "tile.prj".
         found_in: String,
     },
     /// A file that should name a system, which cannot be read.
@@ -101,10 +101,10 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The same, of which it is known that the points of a window ([`crate::ReadOptions::within`]) lie in `rows` only:
-    /// ranges of rows from 0, in their order and without a row in two of them. Of LAS and LAZ files the pieces and
-    /// chunks without such rows are then not read; other formats, and COPC, which has a hierarchy, know better or are
-    /// read whole. Points beside the window are left out as ever.
+    /// Adds the rows that may hold points of a window ([`crate::ReadOptions::within`]): ranges of rows from 0, in their
+    /// order and without a row in two of them. Pieces and chunks of LAS and LAZ files without such rows are then not
+    /// read. Other formats, and COPC, which has a hierarchy, have better means or are read whole. Points beside the
+    /// window are left out as always.
     #[must_use]
     pub fn with_likely_rows(mut self, rows: Vec<Range<u64>>) -> Self {
         self.likely_rows = Some(rows);
@@ -123,7 +123,7 @@ impl<'a> Source<'a> {
         extension(&self.name)
     }
 
-    /// What a hierarchy or a catalogue says of its points, as text that differs where that does.
+    /// Returns the description of its points by a hierarchy or a catalogue, as text that changes with it.
     #[must_use]
     pub fn announced_in_words(&self) -> String {
         #[cfg(feature = "las")]
@@ -217,8 +217,8 @@ pub struct OpenSource<'a> {
     pub reader: Box<dyn ReadSeek + 'a>,
     /// Size, bytes.
     pub size: u64,
-    /// What changes with its content: when a file was changed last, nanoseconds since 1970, or what a server calls its
-    /// version. `None` where that is not known.
+    /// Version that changes with its content: the time of the last change of a file, nanoseconds since 1970, or the
+    /// version named by a server. `None` if that is not known.
     pub version: Option<String>,
 }
 
@@ -235,8 +235,8 @@ pub(crate) struct Input<'a> {
 const UTF8_MARK: &[u8] = b"\xef\xbb\xbf";
 
 impl<'a> Input<'a> {
-    /// The same as UTF-8 where it is UTF-16, which spreadsheets call "Unicode text": with a byte order mark, or with a
-    /// zero in each of the first characters, which no text has.
+    /// Converts UTF-16, which spreadsheets call "Unicode text", to UTF-8. It has a byte order mark, or a zero in each
+    /// of the first characters, which no text has.
     pub(crate) fn into_utf8(mut self) -> Result<Self> {
         let mut start = Vec::new();
         (&mut self.reader).take(4).read_to_end(&mut start).map_err(Error::io(&self.name))?;
@@ -260,7 +260,7 @@ impl<'a> Input<'a> {
     }
 }
 
-/// Where a file lies that a catalogue in `folder` names; either may be an address.
+/// Returns the path of a file that a catalogue in `folder` names; either may be an address.
 pub(crate) fn place_in(folder: &Path, path: &str) -> PathBuf {
     if web_address(Path::new(path)).is_some() {
         return PathBuf::from(path);
@@ -282,8 +282,8 @@ pub(crate) fn folder_and_query(file: &Path) -> (PathBuf, &str) {
     (folder.to_owned(), query)
 }
 
-/// Where a file lies that another one names with `path`, in the `folder` and with the `query` of that one. What names
-/// another server, or has a query itself, gets none.
+/// Returns the path of a file that another one names with `path`, in the `folder` and with the `query` of that one. A
+/// path to another server, or with a query of its own, gets none.
 pub(crate) fn place_beside((folder, query): &(PathBuf, &str), path: &str) -> PathBuf {
     let place = place_in(folder, path);
     match web_address(&place) {

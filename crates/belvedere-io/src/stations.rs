@@ -5,8 +5,9 @@ use crate::table::read_table;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
 
-/// Reads where a scanner stood from a table (.csv .txt) with the columns station (the point source id of its points),
-/// x, y and z in the coordinates of the cloud's file, whose system is `crs`: ids and positions, metres in that system.
+/// Reads the positions of a scanner from a table (.csv .txt) with the columns station (the point source id of its
+/// points), x, y and z. Coordinates are those of the cloud's file, whose system is `crs`. Returns ids and positions,
+/// metres in that system.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`], [`Error::Malformed`] for missing columns, empty cells, ids that are no whole number up to

@@ -170,7 +170,7 @@ impl TableCells<'_> {
     }
 }
 
-/// What parts the cells of a table of that name.
+/// Returns the separator of the cells of a table of that name.
 pub(crate) fn separator_of(path: &Path) -> char {
     if ["txt", "xyz"].contains(&extension(path).as_str()) { ' ' } else { ',' }
 }

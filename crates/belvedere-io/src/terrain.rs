@@ -12,15 +12,16 @@ use std::path::Path;
 /// Heights of the ground, metres: the shore of the Dead Sea is at -430 m, Mount Everest at 8849 m.
 const HEIGHTS: RangeInclusive<f64> = -500.0..=9000.0;
 
-/// The terrain of a GeoTIFF raster in the local coordinates of `frame`: heights of the ground (DTM) in the middles of
-/// its cells. The raster must be in the reference system of the frame, or name none, which is then taken as that of the
-/// frame, or be in degrees (WGS 84, ETRS89, NAD83; heights in metres): it is then projected, with bilinear heights. Its
-/// rows must run from north to south.
+/// Reads the terrain from a GeoTIFF raster in the local coordinates of `frame`: heights of the ground (DTM) in the
+/// middles of its cells. The raster must be in the reference system of the frame, or name none, which is then taken as
+/// that of the frame. A raster in degrees (WGS 84, ETRS89, NAD83; heights in metres) is projected, with bilinear
+/// heights. Its rows must run from north to south.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`] for what is no raster of one band, has no place on the map, is turned, has no
-/// heights, or heights that no ground has, and for results of Belvedere that are no heights; [`Error::UnusableCrs`] for
-/// another system, with a conversion to run first.
+/// - [`Error::Io`].
+/// - [`Error::Malformed`] for a file that is no raster of one band, has no position, is turned, has no heights, or
+///   heights that no ground has. Also for results of Belvedere that are no heights.
+/// - [`Error::UnusableCrs`] for another system, with a conversion to run first.
 pub fn read_terrain<'a>(source: impl Into<Source<'a>>, frame: &Frame) -> Result<ElevationGrid> {
     let source = source.into();
     let name = source.name().to_owned();

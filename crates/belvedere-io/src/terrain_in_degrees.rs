@@ -11,19 +11,19 @@ const LIKE_WGS_84: [u32; 4] = [4326, 4979, 4258, 4269];
 const STEP: usize = 16;
 /// Places on each side of the raster whose projections give its extent.
 const PLACES: usize = 32;
-/// Most degrees that a raster may span: a zone of UTM, some 400 km. Formulas of projections err far from their area,
+/// Maximum extent of a raster, degrees: a zone of UTM, some 400 km. Formulas of projections err far from their area,
 /// without a word.
 const MAX_DEGREES: f64 = 6.0;
-/// Most cells of the result, as for rasters that need no projection.
+/// Maximum number of cells of the result, as for rasters that need no projection.
 const MAX_CELLS: f64 = 67e6;
 
-/// Whether a raster in this system can be projected.
+/// Returns true if a raster in this system can be projected.
 pub(crate) fn is_like_wgs_84(code: Option<u32>) -> bool {
     code.is_some_and(|code| LIKE_WGS_84.contains(&code))
 }
 
-/// The terrain of `raster`, heights in metres at longitudes and latitudes in degrees, in the plane of `frame`: cells as
-/// large as those of the raster in its middle, with bilinear heights.
+/// Projects the terrain of `raster`, heights in metres at longitudes and latitudes in degrees, into the plane of
+/// `frame`. Cells are as large as those of the raster in its middle, with bilinear heights.
 ///
 /// # Errors
 /// [`Error::Malformed`] for a raster that does not fit into the plane, or needs too many cells; those of

@@ -5,7 +5,6 @@ use std::borrow::Cow;
 use crate::columns::{Column, check_lengths};
 use crate::columns::{ExtraColumn, to_column};
 use crate::output::Output;
-use crate::rows::role_of;
 use crate::table::{TableCells, quoted, separator_of};
 use belvedere_data::{Error, Result};
 
@@ -15,7 +14,7 @@ pub struct TextRows {
     names: Vec<String>,
     /// All cells, row after row.
     text: String,
-    /// Where each cell ends.
+    /// End of each cell.
     ends: Vec<usize>,
 }
 
@@ -45,12 +44,6 @@ impl TextRows {
         self.ends.len().checked_div(self.names.len()).unwrap_or(0)
     }
 
-    /// Names of columns that no attribute of a cloud has, and that only tables can therefore carry.
-    #[must_use]
-    pub fn names_without_role(&self) -> Vec<&str> {
-        self.names.iter().map(String::as_str).filter(|name| role_of(name).is_none()).collect()
-    }
-
     fn cell(&self, row: usize, column: usize) -> &str {
         let index = row * self.names.len() + column;
         let start = index.checked_sub(1).and_then(|before| self.ends.get(before)).copied().unwrap_or(0);
@@ -65,9 +58,9 @@ impl TextRows {
     }
 }
 
-/// The columns of a table of `results` for rows that were `read` from a table ([`TextRows::columns`]). Results that are
-/// among the `given` names are written as they were read, with their number only where nothing was; the other columns
-/// read follow behind them, unless a result has their name.
+/// Combines the columns of a table of `results` with rows that were `read` from a table ([`TextRows::columns`]).
+/// Results that are among the `given` names are written as they were read, with their number only where nothing was.
+/// The other columns read follow behind them, unless a result has their name.
 #[must_use]
 pub fn with_columns_read<'a>(
     read: &'a [(&'a str, Vec<&'a str>)],

@@ -10,7 +10,7 @@ use belvedere_data::{Error, Result};
 /// Bytes of an SBET record: 17 little-endian f64, of which time, latitude, longitude and altitude come first.
 const SBET_RECORD_BYTES: usize = 17 * 8;
 
-/// What was found in, and left out of, a trajectory file.
+/// Counts of a trajectory file: records and what was left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TrajectoryReport {
     /// Records in the file.
@@ -22,16 +22,19 @@ pub struct TrajectoryReport {
 /// The trajectory in a file, in the metres of the cloud's reference system and increasing in time, and what was left
 /// out.
 ///
-/// `.sbet` and `.out` hold 136-byte records with latitude and longitude in radians, which are projected; their altitude
-/// is kept as it is, above the ellipsoid (tens of metres off the cloud's heights, harmless for the signs of normals).
-/// `.csv` and `.txt` hold time, x, y, z in the unit of the cloud's file: columns are found by a heading (time, gpstime
+/// `.sbet` and `.out` hold 136-byte records with latitude and longitude in radians, which are projected. Their altitude
+/// is unchanged, above the ellipsoid (tens of metres off the cloud's heights, harmless for the signs of normals).
+///
+/// `.csv` and `.txt` hold time, x, y, z in the unit of the cloud's file. Columns are found by a heading (time, gpstime
 /// or t; x or easting; y or northing; z, alt or height), without one the first four count. Commas, semicolons, tabs and
-/// blanks separate; lines that begin with # are passed over.
+/// blanks separate; lines that begin with # are skipped.
 ///
 /// # Errors
-/// [`Error::Io`] where the file cannot be read, [`Error::UnknownFormat`] for other extensions, [`Error::UnusableCrs`]
-/// where SBET is to be projected but the cloud's system is unknown, [`Error::Malformed`] for values that are not
-/// finite, a size that is no multiple of 136, missing columns, and fewer than two different times.
+/// - [`Error::Io`] if the file cannot be read.
+/// - [`Error::UnknownFormat`] for other extensions.
+/// - [`Error::UnusableCrs`] if SBET is to be projected but the cloud's system is unknown.
+/// - [`Error::Malformed`] for values that are not finite, a size that is no multiple of 136, missing columns, and fewer
+///   than two different times.
 ///
 /// # Source
 /// Field order of SBET: PDAL, `io/SbetCommon.hpp`.
@@ -83,7 +86,7 @@ fn sbet_records(path: &Path, bytes: &[u8], cloud_crs: &Crs) -> Result<Vec<(f64, 
     Ok(records)
 }
 
-/// Which column holds time, x, y and z.
+/// Columns of time, x, y and z.
 type ColumnIndices = [usize; 4];
 
 fn table_records(path: &Path, bytes: &[u8], cloud_crs: &Crs) -> Result<Vec<(f64, [f64; 3])>> {

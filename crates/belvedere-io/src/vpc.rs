@@ -18,7 +18,7 @@ use belvedere_data::{Error, Result};
 /// Largest catalogue that is read, bytes: a million tiles, and far below the memory of any machine.
 const MAX_BYTES: u64 = 1 << 30;
 
-/// What is read of a catalogue: no more of it is held, whatever else it says of a tile.
+/// Part of a catalogue that is read and held.
 #[derive(Deserialize)]
 struct Catalogue {
     features: Option<Vec<Item>>,

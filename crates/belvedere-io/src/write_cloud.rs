@@ -17,16 +17,17 @@ pub(crate) const SUPPORTED: &str = ".las .laz .ply .csv .xyz .txt .npy";
 /// from the extension (.las .laz .ply .csv .xyz .txt .npy). Coordinates are those of the reference system and unit of
 /// the cloud's file.
 ///
-/// LAS and LAZ files hold every attribute. Where the points come from LAS and LAZ files
-/// ([`belvedere_data::CloudFiles`]), their records are copied: extra bytes, further fields, records of the header,
-/// point format, and steps of coordinates stay; of several files what all of them have. What is lost is reported. PLY
-/// files and tables hold scan angles in degrees (`scan_angle_deg`) and colours in 8 bits; tables have a header row. NPY
-/// files hold (N, 3) f64 coordinates and nothing else.
+/// LAS and LAZ files hold every attribute. If the points come from LAS and LAZ files ([`belvedere_data::CloudFiles`]),
+/// their records are copied. Extra bytes, further fields, records of the header, point format, and steps of coordinates
+/// stay; of several files those that all of them have. Losses are reported. PLY files and tables hold scan angles in
+/// degrees (`scan_angle_deg`) and colours in 8 bits; tables have a header row. NPY files hold (N, 3) f64 coordinates
+/// and nothing else.
 ///
 /// # Errors
-/// [`Error::UnknownFormat`] for other extensions, [`Error::LengthMismatch`] when a column does not have one value per
-/// point, [`Error::InvalidParameter`] when the format has no place for extra columns or a column's name is unusable,
-/// [`Error::MissingFeature`] and [`Error::Io`]. An existing file is replaced only by a complete one.
+/// - [`Error::UnknownFormat`] for other extensions.
+/// - [`Error::LengthMismatch`] for a column that does not have one value per point.
+/// - [`Error::InvalidParameter`] if the format has no place for extra columns or a column's name is unusable.
+/// - [`Error::MissingFeature`] and [`Error::Io`]. An existing file is replaced only by a complete one.
 pub fn write_cloud<'a>(
     output: impl Into<Output<'a>>,
     cloud: &PointCloud,

@@ -25,7 +25,7 @@ const POINTS_PER_SLAB: usize = 1 << 20;
 const DEGREES_PER_SCAN_STEP: f64 = 0.006;
 /// Names of the columns that readers look for normals in.
 const NORMALS: [&str; 3] = ["NormalX", "NormalY", "NormalZ"];
-/// Most letters of the name of a column.
+/// Maximum number of letters of the name of a column.
 const MAX_NAME: usize = 31;
 /// Coarsest step between coordinates, metres.
 const MAX_STEP: f64 = 0.001;
@@ -33,9 +33,9 @@ const MAX_STEP: f64 = 0.001;
 /// Writes `cloud` with its attributes, `extra` columns as extra bytes, and `records` as further variable length
 /// records; compressed where the extension is `laz`.
 ///
-/// Where the points come from LAS files, their records are copied with the columns as further extra bytes. Otherwise
-/// attributes beyond the standard fields (normals, scanner index) become extra bytes, and where the cloud has no return
-/// numbers, each point is the only return of its pulse and the file says that these numbers are synthetic.
+/// If the points come from LAS files, their records are copied with the columns as further extra bytes. Otherwise
+/// attributes beyond the standard fields (normals, scanner index) become extra bytes. If the cloud has no return
+/// numbers, each point is the only return of its pulse and the file marks these numbers as synthetic.
 pub(crate) fn write(
     output: Output<'_>,
     cloud: &PointCloud,
@@ -73,7 +73,7 @@ pub(crate) fn write(
             if let Some(bytes) = bytes {
                 output.write(|name, output| output.write_all(bytes.get_ref()).map_err(Error::io(name)))?;
             }
-            Ok(WriteReport { point_count: cloud.len(), left_out: copy.lost(), clamped_count: 0 })
+            Ok(WriteReport { point_count: cloud.len(), left_out: copy.lost_fields(), clamped_count: 0 })
         }
         // the files are not those any more that were read: what is known of their points is written
         Err(_) if has_changed => write_anew(output, cloud, extra, records),
@@ -211,7 +211,7 @@ fn encode<W: WriteSeek + Send + Sync + 'static>(
     latched.inner.into_inner().map_err(|e| Error::io(name)(e.into_error()))
 }
 
-/// A writer that keeps its first error and swallows what follows: the LAS writer closes itself when it is dropped and
+/// Writer that keeps its first error and ignores what follows. The LAS writer closes itself when it is dropped and
 /// panics when that fails, as it would on a full disk.
 struct Latched<W: Write> {
     inner: BufWriter<W>,
@@ -252,8 +252,8 @@ impl<W: WriteSeek> Seek for Latched<W> {
     }
 }
 
-/// Steps and offsets in the unit of the file: a power of ten of at most a millimetre and at most a millionth of the
-/// extent, so that small objects keep their detail, but coarse enough for 32-bit integers.
+/// Returns steps and offsets in the unit of the file. The step is a power of ten of at most a millimetre and at most a
+/// millionth of the extent, so that small objects keep their detail. It is coarse enough for 32-bit integers.
 fn transforms(cloud: &PointCloud) -> Vector<Transform> {
     let Bounds { low, high } = cloud.bounds().unwrap_or_default();
     let extent = (0..3).map(|i| f64::from(high[i]) - f64::from(low[i])).fold(0.0, f64::max);

@@ -8,7 +8,7 @@ use crate::output::Output;
 use crate::write_npy::write_array;
 use belvedere_data::{Error, Result};
 
-/// What to put into the folder; each array that is present becomes a file named like its field, `.npy`.
+/// Contents of the folder; each array that is present becomes a file named like its field, `.npy`.
 ///
 /// Coordinates are f32 as in the `coords.npy` that belongs to the folder. Every array has one row per point.
 #[derive(Clone, Copy, Debug, Default)]
@@ -27,7 +27,7 @@ pub struct MasbcppFolder<'a> {
     pub ma_qidx_out: Option<&'a [i32]>,
     /// Local feature size, (N).
     pub lfs: Option<&'a [f32]>,
-    /// Which points a decimation keeps, (N), 0 or 1.
+    /// Mask of the points that a decimation keeps, (N), 0 or 1.
     pub decimate_lfs: Option<&'a [u8]>,
 }
 

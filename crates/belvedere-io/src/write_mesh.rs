@@ -9,9 +9,9 @@ use belvedere_data::{Error, Mesh, Parameter, Result};
 /// Colour of faces without a value.
 const NO_VALUE: [u8; 3] = [128; 3];
 
-/// Writes `mesh` as binary PLY in the unit of its file, which `metres_per_unit` (x, y, z) tells, with a colour for each
-/// of `values`, (T), dark violet at the first of `range` over green to yellow at its second, and the value itself as
-/// the property `name`; grey and NaN where a value is not finite.
+/// Writes `mesh` as binary PLY in the unit of its file, which `metres_per_unit` (x, y, z) gives. Each of `values`, (T),
+/// is the property `name` and has a colour: dark violet at the first of `range` over green to yellow at its second.
+/// Values that are not finite are grey and NaN.
 ///
 /// Every triangle has three vertices of its own, which bear its colour and value: many programs know neither of faces.
 ///

@@ -7,13 +7,13 @@ use belvedere_data::crs::{Crs, GeographicProjection};
 use belvedere_data::trajectory::{ADJUSTED_STANDARD_S, MAX_GAP_S, Trajectory, TrajectorySample, WEEK_S};
 use belvedere_data::{Error, GpsTimeKind, Result};
 
-/// Where the vehicle points.
+/// Heading of the vehicle.
 #[derive(Clone, Copy, Debug, Default)]
 pub enum VehicleHeading<'a> {
-    /// Where it moves to; north while it stands.
+    /// Direction of motion; north while it stands.
     #[default]
     Course,
-    /// At each position, radians clockwise from the north of the grid, (M).
+    /// Heading at each position, radians clockwise from the north of the grid, (M).
     Given(&'a [f64]),
 }
 
@@ -24,16 +24,19 @@ pub enum VehicleHeading<'a> {
 ///
 /// `.sbet` and `.out` get 17 little-endian f64 a record: time, latitude and longitude (radians, WGS 84), altitude,
 /// velocities along x, y and z, roll, pitch, heading, wander angle, accelerations and angular rates. The wander angle
-/// is 0, so that x points to true north, y west and z up. Times count from the start of the GPS week of the first
-/// position, and on beyond the end of that week; where they already do (`kind`), they stay. Altitudes stay as they are,
-/// above the vertical datum of the system rather than the ellipsoid. Velocities are differences between neighbouring
-/// records (0 where none is near), headings are turned to true north. Roll, pitch, accelerations and rates are not
-/// known here and 0. [`crate::read_trajectory`] brings back times and positions.
+/// is 0, so that x points to true north, y west and z up.
+///
+/// Times count from the start of the GPS week of the first position, and on beyond the end of that week; times that
+/// already do (`kind`) are unchanged. Altitudes are unchanged, above the vertical datum of the system instead of the
+/// ellipsoid. Velocities are differences between neighbouring records (0 if none is near); headings are turned to true
+/// north. Roll, pitch, accelerations and rates are not known here and 0. [`crate::read_trajectory`] reads times and
+/// positions back.
 ///
 /// # Errors
-/// [`Error::UnknownFormat`] for other extensions, [`Error::LengthMismatch`] where positions or headings are not as many
-/// as times, [`Error::UnusableCrs`] where SBET is requested in a system that gives no latitude and longitude, and
-/// [`Error::Io`]. An existing file is replaced only by a complete one.
+/// - [`Error::UnknownFormat`] for other extensions.
+/// - [`Error::LengthMismatch`] if positions or headings are not as many as times.
+/// - [`Error::UnusableCrs`] for SBET in a system that gives no latitude and longitude.
+/// - [`Error::Io`]. An existing file is replaced only by a complete one.
 ///
 /// # Source
 /// Field order of SBET: PDAL, `io/SbetCommon.hpp`.

@@ -4,7 +4,7 @@
 use std::io::BufRead;
 use std::path::Path;
 
-use super::part::FilePart;
+use super::file_part::FilePart;
 use super::read_options::Reading;
 use super::rows::{Role, Row, Rows, contradict_twice, roles_of};
 use super::source::{Input, Source};
@@ -148,8 +148,8 @@ pub(super) fn read_text(input: Input<'_>) -> Result<TextRows> {
     Ok(rows)
 }
 
-/// Whether a text file is a table of something else than points: its first line has names, but not of x, y and z; or,
-/// `beside_scans`, another name before these, as `time,x,y,z` of a trajectory and `station,x,y,z`.
+/// Returns true if a text file is a table of something else than points: its first line has names, but not of x, y and
+/// z. With `beside_scans`, also if another name precedes these, as in `time,x,y,z` of a trajectory and `station,x,y,z`.
 pub(super) fn is_another_table(input: Input<'_>, beside_scans: bool) -> bool {
     let Input { name, reader: mut file, .. } = input;
     let mut lines = XyzLines { path: &name, file: &mut file, number: 0, bytes: Vec::new(), announced: None };
@@ -157,17 +157,17 @@ pub(super) fn is_another_table(input: Input<'_>, beside_scans: bool) -> bool {
     is_names(&line) && header(&line).is_none_or(|(columns, _)| beside_scans && columns.first() != Some(&Some(Role::X)))
 }
 
-/// Whether a first line is that of an ESRI ASCII grid, whose files have the extension `.asc` as text clouds have.
+/// Returns true if a first line is that of an ESRI ASCII grid, whose files share the extension `.asc` with text clouds.
 fn is_grid(line: &str) -> bool {
     line.split_ascii_whitespace().next().is_some_and(|word| word.eq_ignore_ascii_case("ncols"))
 }
 
-/// Whether a first line has names of columns.
+/// Returns true if a first line has names of columns.
 fn is_names(line: &str) -> bool {
     line.contains(|c: char| c.is_ascii_alphabetic()) && !is_numeric(line)
 }
 
-/// What the first lines tell.
+/// Contents of the first lines.
 struct Start {
     separator: Separator,
     columns: Vec<Option<Role>>,
@@ -209,7 +209,7 @@ impl<R: BufRead> XyzLines<'_, R> {
         Ok(None)
     }
 
-    /// Whether a line is the count of another scan of a PTS file.
+    /// Returns true if a line is the count of another scan of a PTS file.
     fn takes_count(&mut self, line: &str) -> bool {
         let sum = self.announced.and_then(|sum| sum.checked_add(line.parse().ok()?));
         self.announced = sum.or(self.announced);
@@ -329,7 +329,7 @@ fn refuse_decimal_comma(path: &Path, number: usize, line: &str, separator: Separ
     Ok(())
 }
 
-/// What nameless columns are, from their number and values.
+/// Guesses the meanings of nameless columns, from their number and values.
 fn guess_columns(part: &mut FilePart, separator: Separator, ahead: &[(usize, String)]) -> Vec<Option<Role>> {
     let values: Vec<Vec<f64>> = ahead
         .iter()

@@ -1,12 +1,12 @@
-//! Where cameras cover most.
+//! Placement of cameras for maximum coverage.
 
 use crate::arrays::{to_1d, to_2d};
 use crate::errors::wrong;
 use crate::remarks::remarks_of;
 use crate::scene::{PyScene, unproven_as};
-use crate::sights::earth;
 use crate::sun::SiteKeywords;
 use crate::targets::{Grid, RequestedTargets, grid_of, ground_points};
+use crate::visibility::earth;
 use crate::work::run;
 use belvedere::Frame;
 use belvedere::apps::ask::{
@@ -175,7 +175,7 @@ fn columns<'py>(py: Python<'py>, found: &CamerasResults, frame: &Frame) -> PyRes
     Ok(cameras)
 }
 
-/// What is proven of the choice.
+/// Returns the proven properties of the selection.
 fn whole<'py>(py: Python<'py>, found: &CamerasResults) -> PyResult<Bound<'py, PyDict>> {
     let placed = &found.placed;
     let whole = PyDict::new(py);

@@ -19,6 +19,24 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// Passes the columns of attributes that have a number for each point to a macro.
+macro_rules! scalar_columns {
+    ($apply:ident) => {
+        $apply!(
+            classification,
+            gps_time,
+            return_number,
+            return_count,
+            scan_angle,
+            point_source_id,
+            scanner_channel,
+            flags,
+            intensity,
+            scanner_index
+        )
+    };
+}
+
 /// A point cloud.
 #[pyclass(frozen, module = "belvedere._core")]
 pub(crate) struct Cloud(pub(crate) Arc<PointCloud>);
@@ -198,7 +216,7 @@ impl Cloud {
         Ok(to_2d(py, &self.0.scanner_positions)?.into_any())
     }
 
-    /// What pulses of the scanners saw of the sky.
+    /// Returns the regions of the sky that pulses of the scanners saw.
     #[getter]
     fn sky_regions(&self) -> Vec<SkyState> {
         let state = |region: &SkyRegion| {
@@ -224,17 +242,13 @@ impl Cloud {
         let dict = PyDict::new(py);
         let of = &self.0.attributes;
         macro_rules! add {
-            ($make:ident: $($name:ident),*) => {$(
+            ($($name:ident),*) => {$(
                 if let Some(values) = &of.$name {
-                    dict.set_item(stringify!($name), $make(py, values))?;
+                    dict.set_item(stringify!($name), to_1d(py, values.clone()).into_any())?;
                 }
             )*};
         }
-        fn one<'py, T: numpy::Element + Copy>(py: Python<'py>, values: &[T]) -> Bound<'py, PyAny> {
-            to_1d(py, values.to_vec()).into_any()
-        }
-        add!(one: classification, gps_time, return_number, return_count, scan_angle, point_source_id);
-        add!(one: scanner_channel, flags, intensity, scanner_index);
+        scalar_columns!(add);
         if let Some(values) = &of.normals {
             dict.set_item("normals", to_2d(py, values)?)?;
         }
@@ -319,18 +333,7 @@ fn columns(given: &Bound<'_, PyDict>, adjusted_gps_time: bool) -> PyResult<Attri
                 }
             };
         }
-        take!(
-            classification,
-            gps_time,
-            return_number,
-            return_count,
-            scan_angle,
-            point_source_id,
-            scanner_channel,
-            flags,
-            intensity,
-            scanner_index
-        );
+        scalar_columns!(take);
     }
     Ok(attributes)
 }

@@ -5,7 +5,7 @@ use belvedere::{Error, Parameter, Result};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// What `device` names: `auto`, `cpu`, `gpu`, or the number of a device.
+/// Returns the backend that `device` names: `auto`, `cpu`, `gpu`, or the number of a device.
 pub(crate) fn backend(device: &str) -> Result<Arc<dyn Backend>> {
     if device == "cpu" { Ok(Arc::new(Cpu)) } else { of_gpu(device) }
 }

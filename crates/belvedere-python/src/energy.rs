@@ -18,7 +18,7 @@ use pyo3::types::PyDict;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Where radiation comes from and how it is summed; what is not given is the library's default.
+/// Source and summation of radiation; missing keywords have the library's defaults.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct RadiationKeywords {

@@ -1,4 +1,4 @@
-//! From where a landmark is seen, how much of it, and how high one may build before it.
+//! Views of a landmark, its visible part, and building heights before it.
 
 use crate::arrays::to_1d;
 use crate::mesh::PyMesh;
@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// What the landmark is.
+/// Choice of the landmark.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct LandmarkKeywords {
@@ -92,7 +92,7 @@ impl PyScene {
         Ok((answers.measures.into_iter().map(column).collect(), grid, remarks))
     }
 
-    /// Greatest heights above the ground and of the file, their grid, and remarks.
+    /// Returns the maximum heights above the ground and of the file, their grid, and remarks.
     fn protected_view<'py>(
         &self,
         py: Python<'py>,

@@ -19,7 +19,6 @@ mod raster;
 mod remarks;
 mod scene;
 mod shadow;
-mod sights;
 mod simulate;
 mod sky;
 mod sun;
@@ -28,12 +27,13 @@ mod system;
 mod targets;
 mod trees;
 mod viewshed;
+mod visibility;
 mod windows;
 mod work;
 
 use pyo3::prelude::*;
 
-/// What the package is made of.
+/// Defines the native module of the package.
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     if std::env::var("BELVEDERE_AVX2").is_ok_and(|text| text == "off") {

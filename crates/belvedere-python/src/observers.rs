@@ -1,11 +1,11 @@
-//! Who looks: places of eyes, with or without their height.
+//! Observers: positions of eyes, with or without their height.
 
 use crate::errors::wrong;
 use belvedere::apps::ask::{self, Standing};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
-/// Where observers stand; at least one.
+/// Returns the positions of observers; at least one.
 pub(crate) fn standing_observers(array: &PyReadonlyArray2<'_, f64>, scene: &ask::Scene) -> PyResult<Vec<Standing>> {
     let standing = standing(array, "observers", scene)?;
     if standing.is_empty() { Err(wrong("observers", "empty", "give at least one")) } else { Ok(standing) }

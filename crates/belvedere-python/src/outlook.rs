@@ -1,12 +1,12 @@
-//! What observers see around themselves: horizons, isovists.
+//! Horizons and isovists of observers.
 
 use crate::arrays::{to_1d, to_2d};
 use crate::observers::standing_observers;
 use crate::remarks::remarks_of;
 use crate::scene::PyScene;
-use crate::sights::earth;
 use crate::sun::SiteKeywords;
 use crate::targets::ground_points;
+use crate::visibility::earth;
 use crate::work::run;
 use belvedere::apps::ask::{self, BelowLevel};
 use belvedere::query::EarthParams;
@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// How observers look over cells.
+/// Parameters of observers over cells.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct LookingKeywords {
@@ -49,9 +49,9 @@ type Described<'py> = (Bound<'py, PyDict>, Vec<Bound<'py, PyAny>>, Vec<Bound<'py
 
 #[pymethods]
 impl PyScene {
-    /// Elevations of the horizon, degrees, a row for each observer and a column for each azimuth, NaN for those
-    /// skipped, each with the ends of its interval behind it where these are wanted; the number of azimuths; and
-    /// remarks.
+    /// Returns elevations of the horizon, degrees, with a row for each observer and a column for each azimuth, NaN for
+    /// skipped observers. Each is followed by the ends of its interval if these are wanted. Also returns the number of
+    /// azimuths, and remarks.
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn horizon<'py>(
         &self,

@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// From where a picture is taken.
+/// Position and projection of a picture.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct PictureCamera {
@@ -40,7 +40,7 @@ fn to_array<T: numpy::Element + Copy>(py: Python<'_>, raster: Raster<T>) -> PyRe
 }
 
 impl PictureCamera {
-    /// From where the picture is taken, azimuths being from the north that `place` says.
+    /// Returns the position and projection of the picture; azimuths are from the north of `place`.
     fn from(&self, scene: &ask::Scene, place: &SiteKeywords) -> belvedere::Result<ViewFrom> {
         let (low, high) = scene.model().bounds().corners();
         let pixel = self.pixel.unwrap_or_else(|| default_pixel_size(low, high));

@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// What comfort is about.
+/// Places of comfort.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Walks {
@@ -30,7 +30,7 @@ pub(crate) struct Walks {
     ground: Option<String>,
 }
 
-/// What an envelope protects, and what it bounds.
+/// Protected objects and bounds of an envelope.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct EnvelopeKeywords {

@@ -34,8 +34,7 @@ use std::sync::Arc;
 #[pyclass(frozen, module = "belvedere._core", name = "Scene")]
 pub(crate) struct PyScene(pub(crate) Arc<ask::Scene>);
 
-/// What to make of targets that nothing blocks but that are not proven visible.
-/// How sure to say answers are.
+/// Request for the certainty of answers.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct HowSureKeywords {
@@ -64,14 +63,14 @@ pub(crate) fn unproven_choice(text: &str) -> PyResult<Option<UnprovenAs>> {
 }
 
 /// The value of a library's type that has a name.
-fn named<T: Copy>(what: &'static str, name: &str, all: &[T], name_of: fn(T) -> &'static str) -> PyResult<T> {
+fn parse_name<T: Copy>(what: &'static str, name: &str, all: &[T], name_of: fn(T) -> &'static str) -> PyResult<T> {
     all.iter().copied().find(|&value| name_of(value) == name).ok_or_else(|| {
         let names: Vec<String> = all.iter().map(|&value| format!("'{}'", name_of(value))).collect();
         wrong(what, &format!("'{name}'"), &format!("use {}", names.join(", ")))
     })
 }
 
-/// Where each station stood: a table, or the point source ids and places in the coordinates of the file.
+/// Position of each station: a table, or the point source ids and positions in the coordinates of the file.
 #[derive(FromPyObject)]
 enum StationKeywords {
     Table(PathBuf),
@@ -90,7 +89,7 @@ impl StationKeywords {
     }
 }
 
-/// How balls are made; what is not given is the library's default.
+/// Construction of balls; missing keywords have the library's defaults.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Choices {
@@ -113,7 +112,7 @@ pub(crate) struct Choices {
     cache: CacheKeyword,
 }
 
-/// Whether and where scenes are kept.
+/// Choice to keep scenes, and the folder.
 #[derive(FromPyObject)]
 enum CacheKeyword {
     Whether(bool),
@@ -180,10 +179,10 @@ impl Choices {
         params.initial_radius = self.initial_radius.unwrap_or(params.initial_radius);
         params.max_radius = self.max_radius.unwrap_or(params.max_radius);
         if let Some(name) = self.trees.as_deref() {
-            params = params.with_trees(named("trees", name, &Trees::ALL, Trees::name)?);
+            params = params.with_trees(parse_name("trees", name, &Trees::ALL, Trees::name)?);
         }
         for name in &self.without {
-            params = params.without(named("without", name, &Rule::ALL, Rule::name)?);
+            params = params.without(parse_name("without", name, &Rule::ALL, Rule::name)?);
         }
         Ok(params)
     }
@@ -249,7 +248,7 @@ impl PyScene {
         Ok((Self(Arc::new(scene)), json(&report)?, remarks))
     }
 
-    /// How reliable answers on the survey of a cloud are, as JSON, and remarks.
+    /// Measures the reliability of answers on the survey of a cloud; returns JSON, and remarks.
     #[staticmethod]
     fn calibrate<'py>(
         py: Python<'py>,
@@ -388,7 +387,7 @@ impl PyScene {
         self.0.model().backend().and_then(|backend| backend.device())
     }
 
-    /// What the processor had to do instead of the device, and why, a line each.
+    /// Returns one line for each piece of work that fell to the processor, with the reason.
     #[getter]
     fn device_notes(&self) -> Vec<String> {
         self.0.model().backend().map_or_else(Vec::new, |backend| backend.notes())

@@ -22,12 +22,12 @@ pub(crate) struct DaysKeywords {
     step: Option<f64>,
     /// Degrees.
     min_sun_elevation: Option<f64>,
-    /// Most angle between a sun and its direction, degrees.
+    /// Maximum angle between a sun and its direction, degrees.
     tolerance: Option<f64>,
 }
 
 impl DaysKeywords {
-    /// What was given, as the layer of questions takes it.
+    /// Converts the keywords for the layer of questions.
     pub(crate) fn chosen(&self) -> ask::Days {
         ask::Days {
             dates: self.dates.clone(),
@@ -39,7 +39,7 @@ impl DaysKeywords {
     }
 }
 
-/// How the sky is parted, as Python gives it.
+/// Returns the division of the sky from keywords.
 pub(crate) fn sky_parts(directions: Option<usize>, patches: Option<&str>) -> PyResult<SkyParts> {
     match patches {
         None => Ok(directions.map_or_else(SkyParts::default, SkyParts::Even)),

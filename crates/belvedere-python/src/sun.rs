@@ -1,4 +1,4 @@
-//! Where the sun stands.
+//! Position of the sun.
 
 use crate::errors::{exception, wrong};
 use belvedere::apps::ask::{self, North, SunPositionQuestion, Suns};
@@ -6,7 +6,7 @@ use belvedere::apps::sun::Refraction;
 use belvedere::control::Control;
 use pyo3::prelude::*;
 
-/// Where on earth a scene lies, how clocks run there, and how azimuths are counted.
+/// Location of a scene on earth, its clock, and the north of azimuths.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct SiteKeywords {
@@ -14,14 +14,14 @@ pub(crate) struct SiteKeywords {
     location: Option<[f64; 2]>,
     zone: Option<String>,
     grid_north: bool,
-    /// Whether the sun is where geometry has it, or lifted by the air.
+    /// True for the geometric sun, false for the sun refracted by the air.
     geometric: bool,
     /// Pressure, hPa, and temperature, degrees Celsius.
     air: Option<[f64; 2]>,
 }
 
 impl SiteKeywords {
-    /// What was given, as the layer of questions takes it.
+    /// Converts the keywords for the layer of questions.
     pub(crate) fn chosen(&self) -> PyResult<ask::SunPlace> {
         Ok(ask::SunPlace {
             location: self.location,

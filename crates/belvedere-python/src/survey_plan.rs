@@ -1,12 +1,12 @@
-//! Where to scan again.
+//! Survey plan: stations for another scan.
 
 use crate::arrays::{to_1d, to_2d};
 use crate::errors::wrong;
 use crate::observers::standing;
 use crate::remarks::remarks_of;
 use crate::scene::PyScene;
-use crate::sights::EndKeywords;
 use crate::targets::ground_points;
+use crate::visibility::EndKeywords;
 use crate::work::run;
 use belvedere::apps::ask::{self, Candidates, GivenCamera, GridCells, PlannedStation, Suns, SurveyPlanQuestion};
 use numpy::PyReadonlyArray2;

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 #[derive(Clone, PartialEq)]
 pub(crate) struct System(pub(crate) Crs);
 
-/// What a system is made of, for pickling.
+/// State of a system, for pickling.
 type CrsState = (Option<String>, Option<u32>, Option<u32>, f64, f64, u8, Option<String>);
 
 const KINDS: [CrsKind; 5] =

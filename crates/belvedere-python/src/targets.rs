@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// What Python asks about.
+/// Targets in Python.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct RequestedTargets<'py> {
@@ -30,13 +30,13 @@ pub(crate) struct RequestedTargets<'py> {
     ground: Option<String>,
 }
 
-/// What a question is about, and the mesh whose faces that are.
+/// Places of a question, and the mesh whose faces they are.
 pub(crate) struct Chosen {
     pub(crate) places: ask::Places,
     mesh: Option<Arc<Mesh>>,
 }
 
-/// Which points are ground.
+/// Returns the source of ground points.
 pub(crate) fn ground_points(text: Option<&str>) -> PyResult<GroundPoints> {
     match text {
         None | Some("auto") => Ok(GroundPoints::Auto),

@@ -20,7 +20,7 @@ enum LightShare {
 }
 
 impl Through {
-    /// What was given, as the layer of questions takes it.
+    /// Converts the keywords for the layer of questions.
     pub(crate) fn chosen(&self) -> PyResult<ThroughTrees> {
         let refused = |what: &str, value: &str, advice: &str| Err(wrong(what, &format!("'{value}'"), advice));
         let by_season = matches!(&self.share, Some(LightShare::Name(name)) if name == "seasons");

@@ -1,4 +1,4 @@
-//! What observers see of cells, and from where a target is seen.
+//! Cells that observers see, or from which a target is visible.
 
 use crate::arrays::to_1d;
 use crate::errors::{exception, wrong};

@@ -31,7 +31,7 @@ pub(crate) fn given(rows: &[WindowRow], frame: &Frame) -> GivenWindows {
     GivenWindows::Each(rows.iter().map(window).collect())
 }
 
-/// Which windows, and what the classes of points mean.
+/// Choice of windows, and meanings of the classes of points.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Facades {

@@ -9,10 +9,10 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// How often signals are looked for and progress is reported.
+/// Interval of checks for signals and of reports of progress.
 const POLL: Duration = Duration::from_millis(50);
-/// How long work that was cancelled may take to notice. Decoders of other libraries cannot be interrupted: they are
-/// left behind, and what they return is thrown away.
+/// Time that cancelled work may take to notice. Decoders of other libraries cannot be interrupted: they are abandoned,
+/// and their results are discarded.
 const PATIENCE: Duration = Duration::from_millis(100);
 
 #[derive(Default)]
@@ -52,7 +52,7 @@ impl Watch {
     }
 }
 
-/// Most threads, as the program has it.
+/// Maximum number of threads, as in the program.
 const MAX_THREADS: u64 = 1024;
 
 /// Refuses a number of threads in the environment that no computer needs.

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 /// Side of a square, metres: 16 bits then part it in steps of 2 mm.
 const SIDE: f32 = 128.0;
-/// Most points of a chunk, so that pictures appear while others are on their way.
+/// Maximum number of points of a chunk, so that pictures appear while others are on their way.
 const MAX: usize = 250_000;
 /// Points of the first chunk of a square with many: these come before all others, so that the whole cloud is seen at
 /// once.
@@ -27,7 +27,7 @@ pub(crate) struct PointChunk {
     pub(crate) low: [f32; 3],
     /// Length of a step along each axis, metres.
     pub(crate) step: [f32; 3],
-    /// Which of the points sent.
+    /// Range of the points sent.
     pub(crate) points: Range<usize>,
 }
 
@@ -105,7 +105,7 @@ impl Chunks {
         &self.rows
     }
 
-    /// At most so many points, the same share of each chunk.
+    /// Returns at most `max` points, the same share of each chunk.
     pub(crate) fn sample(self, max: usize) -> Self {
         if self.rows.len() <= max {
             return self;

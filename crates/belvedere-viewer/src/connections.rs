@@ -6,16 +6,16 @@ use std::time::{Duration, Instant};
 use tokio::sync::Notify;
 use tokio::task::AbortHandle;
 
-/// How long a connection must rest before it makes room for another: a new one has its request read by then.
+/// Minimum idle time of a connection before it makes room for another: a new one has its request read by then.
 const MIN_REST: Duration = Duration::from_millis(40);
-/// How often it is looked for one.
+/// Interval of the search for one.
 const POLL: Duration = Duration::from_millis(5);
 
 /// The open connections of a server.
 #[derive(Default)]
 pub(crate) struct Connections {
     open: Mutex<OpenConnections>,
-    /// Whether one ended or began to rest.
+    /// Notified when a connection ends or becomes idle.
     changed: Notify,
 }
 
@@ -27,11 +27,11 @@ struct OpenConnections {
 }
 
 struct OpenConnection {
-    /// What ends it; `None` until its task runs.
+    /// Handle that ends it; `None` until its task runs.
     task: Option<AbortHandle>,
     /// Requests that are being answered.
     requests: usize,
-    /// When it began to rest.
+    /// Time at which it became idle.
     rests_since: Instant,
 }
 

@@ -21,14 +21,14 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
-/// Most points of a file: it then has 35 MB, which browsers open in a second.
+/// Maximum number of points of a file: it then has 35 MB, which browsers open in a second.
 const MAX_POINTS: usize = 3_000_000;
 const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// What a file shows.
+/// Content of a file.
 #[derive(Clone, Debug)]
 pub struct ExportParams {
-    /// What the page is called.
+    /// Title of the page.
     pub title: String,
     /// The scene in the command lines that the page shows.
     pub scene: SceneText,
@@ -38,7 +38,7 @@ pub struct ExportParams {
     pub viewpoints: Vec<[f64; 3]>,
 }
 
-/// What is in a file.
+/// Counts of the content of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct ExportReport {
     /// Points in the file.
@@ -164,14 +164,14 @@ fn viewpoints(
             "blocked": counts.blocked,
             "unproven": counts.unproven,
             "tells_unproven": blockers.proof().is_some(),
-            "command": params.scene.seen(place, HowSure::default()),
+            "command": params.scene.seen_points(place, HowSure::default()),
             "answers": base64(&packed(&seen.answers, 2, |&answer| (answer as u8).min(Answer::OutsideView as u8))),
         }))
     };
     eyes.iter().zip(&params.viewpoints).map(of_eye).collect()
 }
 
-/// So many bits for each value, lowest bits first.
+/// Packs values into `width` bits each, lowest bits first.
 fn packed<T>(values: &[T], width: usize, code: impl Fn(&T) -> u8) -> Vec<u8> {
     let byte = |some: &[T]| (0..).step_by(width).zip(some).fold(0, |byte, (shift, value)| byte | code(value) << shift);
     values.chunks(8 / width).map(byte).collect()

@@ -1,8 +1,8 @@
-//! Who may ask: requests that know the token, name this server as their host, and come from its own page.
+//! Access control: requests must know the token, name this server as their host, and come from its own page.
 
 use axum::http::{HeaderMap, StatusCode, header};
 
-/// What a request must know.
+/// Token and port that a request must know.
 #[derive(Debug)]
 pub(crate) struct Guard {
     /// The first part of every path.
@@ -18,7 +18,7 @@ impl Guard {
         Ok(Self { token: bytes.iter().map(|byte| format!("{byte:02x}")).collect(), port })
     }
 
-    /// What the page is opened with.
+    /// Returns the address that opens the page.
     pub(crate) fn url(&self) -> String {
         format!("http://127.0.0.1:{}/{}/", self.port, self.token)
     }

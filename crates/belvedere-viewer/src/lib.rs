@@ -1,8 +1,8 @@
 //! A local page in the browser: it shows a point cloud and asks the library what is seen, lit and shaded there.
 //!
 //! The server listens on 127.0.0.1 alone. It answers requests that know its token, name it as their host, and come from
-//! its own page (`guard`). It computes nothing itself: each question is one file in `questions` that calls the library
-//! as the command line does, and every answer comes with the command line that gives the same.
+//! its own page (`guard`). It computes nothing itself. Each question is one file in `questions` that calls the library
+//! as the command line does. Every answer comes with the command line that gives the same.
 //!
 //! The page is embedded in the program. Its sources and the script that bundles them are in `page/`.
 //!

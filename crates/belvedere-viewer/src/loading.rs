@@ -1,4 +1,4 @@
-//! What happens to the files while the page is open already: reading, building, and what the page shows of it.
+//! Loading of files while the page is open already: reading, building, and their progress.
 
 use crate::results::{PointsOf, ResultFile};
 use crate::scene::{PageScene, ShownCloud};
@@ -22,7 +22,7 @@ impl std::fmt::Debug for Loading {
     }
 }
 
-/// What there is so far.
+/// Parts loaded so far.
 #[derive(Clone, Default)]
 pub(crate) struct LoadingState {
     pub(crate) stages: OpenStages,
@@ -32,10 +32,10 @@ pub(crate) struct LoadingState {
     pub(crate) meshes: Vec<Arc<[u8]>>,
     /// Results of other commands.
     pub(crate) results: Vec<Arc<ResultFile>>,
-    /// What must be known of the files and the scene, beside every answer.
+    /// Remarks on the files and the scene, shown beside every answer.
     pub(crate) remarks: Vec<Value>,
     pub(crate) failure: Option<String>,
-    /// Whether a page has read it.
+    /// True once a page has read it.
     is_failure_read: bool,
 }
 
@@ -117,7 +117,7 @@ impl Loading {
         self.state().failure = Some(message);
     }
 
-    /// Whether a page has read why nothing can be shown.
+    /// Returns true if a page has read why nothing can be shown.
     #[must_use]
     pub fn is_failure_read(&self) -> bool {
         self.state().is_failure_read
@@ -139,7 +139,8 @@ impl Loading {
     }
 }
 
-/// Whether a file that `open` opens holds results of another command rather than a cloud. What cannot be read does not.
+/// Returns true if a file that `open` opens holds results of another command and no cloud. False for an unreadable
+/// file.
 pub fn are_results<'a>(open: impl Fn() -> Source<'a>) -> bool {
     match open().extension().as_str() {
         "tif" | "tiff" | "geojson" => true,

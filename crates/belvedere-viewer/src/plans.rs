@@ -1,4 +1,4 @@
-//! What if: plans that were drawn on the page, and the scenes with them.
+//! Scenarios: plans that were drawn on the page, and the scenes with them.
 
 use crate::replies::Refusal;
 use crate::scene::PageScene;
@@ -21,7 +21,7 @@ const MAX_MESHES: usize = 16;
 const BUILDINGS: &str = "planned.obj";
 const AREAS: &str = "cleared.geojson";
 
-/// What was drawn, in the coordinates of the file.
+/// Drawn plan, in the coordinates of the file.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct DrawnPlan {
@@ -33,7 +33,7 @@ pub(crate) struct DrawnPlan {
 }
 
 impl DrawnPlan {
-    /// Whether there are areas without what stands there now.
+    /// Returns true if it clears areas.
     pub(crate) fn is_clearing(&self) -> bool {
         !self.clear.is_empty()
     }
@@ -78,7 +78,7 @@ struct KeptPlans {
 impl Plans {
     /// The plan of a number, if it is still kept.
     pub(crate) fn get(&self, number: usize) -> Result<Arc<Planned>, Refusal> {
-        let found = self.kept().plans.iter().find(|planned| planned.number == number).cloned();
+        let found = self.lock_kept().plans.iter().find(|planned| planned.number == number).cloned();
         found.ok_or_else(|| {
             Refusal::Unanswerable("The plan is not kept any more: change it, or load the page again.".to_owned())
         })
@@ -95,7 +95,7 @@ impl Plans {
         let reader = WatchedBytes { bytes: Cursor::new(bytes), control };
         let (mesh, _) = read_mesh_in(Source::reader(name, reader), &frame.crs)?;
         control.check()?;
-        let mut kept = self.kept();
+        let mut kept = self.lock_kept();
         if kept.meshes.len() >= MAX_MESHES {
             return Err(Refusal::Unanswerable(format!(
                 "No more than {MAX_MESHES} meshes can be loaded: start the program again."
@@ -113,7 +113,7 @@ impl Plans {
         text: &SceneText,
         control: &Control<'_>,
     ) -> Result<Arc<Planned>, Refusal> {
-        if let Some(planned) = self.kept().plans.iter().find(|planned| planned.plan == plan) {
+        if let Some(planned) = self.lock_kept().plans.iter().find(|planned| planned.plan == plan) {
             return Ok(Arc::clone(planned));
         }
         if !plan.clear.is_empty() {
@@ -134,7 +134,7 @@ impl Plans {
             files.push((BUILDINGS, obj));
         }
         for &number in &plan.meshes {
-            let mesh = self.kept().meshes.get(number).cloned();
+            let mesh = self.lock_kept().meshes.get(number).cloned();
             meshes.push(
                 mesh.ok_or_else(|| Refusal::Unanswerable("The mesh is not kept any more: load it again.".to_owned()))?,
             );
@@ -144,7 +144,7 @@ impl Plans {
         }
         let (scene, report) = scene.planned(&areas, &meshes, control)?;
         let scene = Arc::new(scene);
-        let mut kept = self.kept();
+        let mut kept = self.lock_kept();
         kept.made += 1;
         let planned = Arc::new(Planned {
             number: kept.made,
@@ -164,7 +164,7 @@ impl Plans {
         Ok(planned)
     }
 
-    fn kept(&self) -> MutexGuard<'_, KeptPlans> {
+    fn lock_kept(&self) -> MutexGuard<'_, KeptPlans> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -297,7 +297,7 @@ mod tests {
         assert_eq!(load(5), (false, 0));
         let (is_loaded, left) = load(100);
         assert!(is_loaded && left < 95, "{left}");
-        assert_eq!(plans.kept().meshes.len(), 1);
+        assert_eq!(plans.lock_kept().meshes.len(), 1);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-/// What a question is answered with.
+/// Reply to a question.
 pub(crate) struct QuestionReply {
     /// Named values.
     pub(crate) head: Value,

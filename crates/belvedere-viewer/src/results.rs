@@ -16,10 +16,10 @@ const STEPS: f32 = 65_535.0;
 const NONE: u8 = 255;
 /// Byte of the greatest value.
 const GREATEST: f32 = 253.0;
-/// Most cells of a raster that are sent; of larger ones every second, third … row and column is.
+/// Maximum number of cells of a raster that are sent; larger rasters are thinned to every second, third … row and
+/// column.
 const MAX_CELLS: usize = 4_000_000;
-/// How far above the ground cells are drawn, metres: high enough for points that scatter around it. Lines are drawn
-/// above cells.
+/// Height above the ground at which cells are drawn, metres: above the scatter of points. Lines are drawn above cells.
 const ABOVE: f64 = 0.15;
 const LINES_ABOVE: f64 = 0.6;
 /// Piece of a line that follows the ground, metres, and most of them.
@@ -28,7 +28,7 @@ const MAX_PIECES: f64 = 1e4;
 /// Height of a pin that marks a point, metres.
 const PIN: f64 = 4.0;
 
-/// Which points have results.
+/// Points that have results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PointsOf {
     /// The cloud that is shown: its columns can be chosen.
@@ -37,7 +37,7 @@ pub enum PointsOf {
     Other,
 }
 
-/// What a file of results holds, local metres on the map.
+/// Contents of a file of results, local metres in plan.
 pub(crate) enum ResultsFile {
     Points { positions: Vec<[f32; 3]>, columns: Vec<(String, Vec<f32>)> },
     Cells(PlacedRaster),
@@ -48,7 +48,7 @@ pub(crate) enum ResultsFile {
 pub(crate) struct ResultFile {
     name: String,
     results: ResultsFile,
-    /// Whether it is shown before anybody chooses it.
+    /// True if it is shown before anybody chooses it.
     is_shown_first: bool,
 }
 
@@ -67,7 +67,7 @@ impl ResultFile {
         let local = |&place: &[f64; 3]| to_local(frame.local_from_file(place), [0.0; 3]);
         let positions = results.places.iter().map(local).collect();
         let results = ResultsFile::Points { positions, columns: results.columns };
-        Ok(Self { name: named(path), results, is_shown_first: points == PointsOf::Other })
+        Ok(Self { name: name_of(path), results, is_shown_first: points == PointsOf::Other })
     }
 
     /// A raster that lies on the map.
@@ -83,7 +83,7 @@ impl ResultFile {
         let size = [raster.values.width(), raster.values.height()];
         let all = (0..size[1]).flat_map(|row| (0..size[0]).map(move |column| [column, row]));
         check_places(path, all.map(|cell| center(place, cell, frame)).map(|[x, y]| [x, y, 0.0]), bounds)?;
-        Ok(Self { name: named(path), results: ResultsFile::Cells(raster), is_shown_first: true })
+        Ok(Self { name: name_of(path), results: ResultsFile::Cells(raster), is_shown_first: true })
     }
 
     /// Shapes in absolute metres.
@@ -103,10 +103,10 @@ impl ResultFile {
             FeatureShape::Polygon(rings) => rings.concat(),
         });
         check_places(path, corners.map(|corner| std::array::from_fn(|i| corner[i] - frame.origin[i])), bounds)?;
-        Ok(Self { name: named(path), results: ResultsFile::Shapes(shapes), is_shown_first: false })
+        Ok(Self { name: name_of(path), results: ResultsFile::Shapes(shapes), is_shown_first: false })
     }
 
-    /// What the menu of the page needs.
+    /// Describes it for the menu of the page.
     pub(crate) fn describe(&self) -> Value {
         let columns: Vec<&str> = match &self.results {
             ResultsFile::Points { columns, .. } => columns.iter().map(|(name, _)| name.as_str()).collect(),
@@ -155,7 +155,7 @@ fn center(place: &Georeference, cell: [usize; 2], frame: &Frame) -> [f64; 2] {
     [x, y]
 }
 
-fn named(path: &Path) -> String {
+fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 

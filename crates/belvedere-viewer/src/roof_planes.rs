@@ -11,7 +11,7 @@ use belvedere::ground::{Ground, GroundParams, MapGrid};
 
 /// Cells of the ground that roofs are separated from, metres: those of the command line.
 const GROUND_CELL: f64 = 1.0;
-/// How far a clicked place may lie from the nearest point of a plane, metres.
+/// Maximum distance of a clicked place from the nearest point of a plane, metres.
 const REACH: f64 = 1.0;
 
 /// The planes of all roofs, and what sun and sky send in a year.

@@ -1,4 +1,4 @@
-//! What can be requested below the token: the page, its points, and questions.
+//! Routes below the token: the page, its points, and questions.
 
 use crate::guard::Guard;
 use crate::page;
@@ -18,18 +18,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use tokio::sync::Semaphore;
 
-/// Most bytes of a question: a polygon with a thousand corners.
+/// Maximum number of bytes of a question: a polygon with a thousand corners.
 const MAX_BYTES: usize = 65_536;
-/// Most bytes of a mesh that is loaded.
+/// Maximum number of bytes of a mesh that is loaded.
 const MAX_MESH_BYTES: usize = 32 << 20;
-/// How long the rest of a request may take.
+/// Maximum time for the rest of a request.
 const PATIENCE: Duration = Duration::from_secs(10);
 /// Questions that wait or are answered; more are refused.
 const MAX_QUESTIONS: usize = 24;
 /// The page may load what is its own, and nothing else; nobody may show it in a frame.
 const POLICY: &str = "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 
-/// What all requests share.
+/// State shared by all requests.
 struct ServerState {
     session: Session,
     /// One question at a time has all threads.
@@ -105,7 +105,7 @@ fn refused(status: StatusCode, message: &str) -> Response {
     (status, [(header::CONTENT_TYPE, "application/json")], json!({ "error": message }).to_string()).into_response()
 }
 
-/// What a thread gave for an answer.
+/// Converts the result of a thread into a response.
 fn replied(reply: Result<Result<Vec<u8>, Refusal>, tokio::task::JoinError>) -> Response {
     match reply {
         Ok(Ok(bytes)) => ([(header::CONTENT_TYPE, "application/octet-stream")], Body::from(bytes)).into_response(),
@@ -125,7 +125,7 @@ fn failed() -> Response {
     refused(StatusCode::INTERNAL_SERVER_ERROR, "Belvedere failed in a way that it should not; please report this")
 }
 
-/// Whether anybody still waits for an answer.
+/// True while anybody waits for an answer.
 #[derive(Default)]
 struct Waiting(AtomicBool);
 
@@ -153,7 +153,7 @@ async fn ask(State(shared): State<Arc<ServerState>>, request: Request) -> Respon
     }
 }
 
-/// What is drawn of a file of results.
+/// Sends the drawing of a file of results.
 async fn results(State(shared): State<Arc<ServerState>>, request: Request) -> Response {
     in_turn(&shared, below_token(&request), Bytes::new()).await
 }

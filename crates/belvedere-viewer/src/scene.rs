@@ -1,4 +1,4 @@
-//! What is shown, and what questions are about. What takes long to make is made once.
+//! Displayed cloud and scene of the questions. Slow parts are made once.
 
 use crate::chunks::Chunks;
 use crate::roof_planes::RoofPlanes;
@@ -20,7 +20,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub(crate) struct ShownCloud {
     pub(crate) cloud: Arc<PointCloud>,
     pub(crate) chunks: Chunks,
-    /// What the page must know before it draws.
+    /// Description that the page needs before it draws.
     pub(crate) description: Value,
 }
 
@@ -184,7 +184,7 @@ impl PageScene {
         }
     }
 
-    /// What the page must know before it asks.
+    /// Describes the scene for the page.
     pub(crate) fn describe(&self) -> Value {
         let bounds: Bounds = self.model().bounds();
         let site = self.site().ok();
@@ -201,7 +201,7 @@ impl PageScene {
         })
     }
 
-    /// What blocks lines of sight. Pulses are left out where they make no difference.
+    /// Returns the obstacles to lines of sight. Pulses are left out if they make no difference.
     pub(crate) fn blockers(&self, unproven: UnprovenAs, control: &Control<'_>) -> Result<Arc<MedialScene>> {
         self.inner.blockers(unproven, control)
     }
@@ -239,7 +239,7 @@ impl PageScene {
         self.roofs.get(|| RoofPlanes::of(self, control))
     }
 
-    /// Where the scene lies on earth.
+    /// Returns the location of the scene on earth.
     pub(crate) fn site(&self) -> Result<Site> {
         Ok(SunPlace::default().site_of(self.inner.frame(), &self.model().bounds(), None)?.0)
     }
@@ -275,7 +275,7 @@ fn rows_there(cloud: &PointCloud, kept: &PointCloud) -> Vec<u32> {
     cloud.positions.iter().map(row).collect()
 }
 
-/// Which points of the cloud are targets.
+/// Choice of the points of the cloud that are targets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum PointChoice {

@@ -32,8 +32,8 @@ impl SceneText {
         self.command("shadow", &format!("--time {time} --zone {zone} {points}{trees}{sure} -o shadow.laz"))
     }
 
-    /// What an eye sees of the points of the cloud.
-    pub(crate) fn seen(&self, eye: &[f64], how_sure: HowSure) -> String {
+    /// Returns the command for the view of an eye over the points of the cloud.
+    pub(crate) fn seen_points(&self, eye: &[f64], how_sure: HowSure) -> String {
         let sure = sure_in_words(how_sure);
         self.command_on_ground("viewshed", &format!("--observer {}{sure} -o seen.laz", typed(eye)))
     }
@@ -50,7 +50,7 @@ pub(crate) fn in_words(trees: ThroughTrees) -> String {
     }
 }
 
-/// How sure answers are wanted, as it is typed.
+/// Returns the flags for the wanted certainty of answers.
 fn sure_in_words(how_sure: HowSure) -> String {
     let probability = if how_sure.probability { " --probability" } else { "" };
     let certain = how_sure.certain.map_or_else(String::new, |certain| format!(" --certain {certain}"));

@@ -18,7 +18,7 @@ use tokio::runtime::Runtime;
 
 /// Connections at once: a browser opens six for each tab. For others, those that rest are ended.
 const MAX_CONNECTIONS: usize = 256;
-/// How long the head of a request may take, and a connection may rest before the next.
+/// Maximum time for the head of a request, and maximum idle time of a connection.
 const PATIENCE: Duration = Duration::from_secs(15);
 /// Threads that serve; questions have their own.
 const THREADS: usize = 2;
@@ -30,7 +30,7 @@ pub struct ViewerParams {
     pub port: u16,
     /// The scene in the command lines that the page shows.
     pub scene: SceneText,
-    /// What the page is called.
+    /// Title of the page.
     pub title: String,
 }
 
@@ -66,7 +66,7 @@ impl PageServer {
         self.guard.url()
     }
 
-    /// What takes the scene.
+    /// Returns the handle that takes the scene.
     #[must_use]
     pub fn loading(&self) -> Loading {
         self.loading.clone()

@@ -1,5 +1,5 @@
-//! The scene of a page and all that a page asks of it, wherever the page is answered: by the server of this crate, or
-//! by the same code inside the browser (`belvedere-web`).
+//! Scene of a page, and answers to all its requests. The page is answered by the server of this crate, or by the same
+//! code inside the browser (`belvedere-web`).
 
 use crate::loading::Loading;
 use crate::plans::Plans;
@@ -29,19 +29,20 @@ impl Session {
         Self { loading: Loading::default(), text, title, plans: Arc::default() }
     }
 
-    /// What takes the scene.
+    /// Returns the handle that takes the scene.
     #[must_use]
     pub fn loading(&self) -> Loading {
         self.loading.clone()
     }
 
-    /// Whether what is at this path takes long: one at a time has all threads, and [`Session::ask`] answers it.
+    /// Returns true if the answer at this path takes long: one at a time has all threads, and [`Session::ask`] answers
+    /// it.
     #[must_use]
     pub fn is_question(path: &str) -> bool {
         ["ask/", "plans/", "plan-meshes/", "results/"].iter().any(|first| path.starts_with(first))
     }
 
-    /// How far the scene is prepared, as JSON.
+    /// Returns the progress of preparing the scene, as JSON.
     #[must_use]
     pub fn state(&self) -> Vec<u8> {
         let now = self.loading.read();
@@ -80,11 +81,11 @@ impl Session {
         part.ok_or(Refusal::Missing("there is no such part of the cloud"))
     }
 
-    /// Answers a question: `ask/NAME` of the scene as it is, `plans/N/ask/NAME` of that with a plan, both with the
-    /// question as JSON; `results/N` for a file of results; `plan-meshes/NAME` takes a mesh file for plans.
+    /// Answers a question. `ask/NAME` is about the scene as it is, `plans/N/ask/NAME` about that with a plan, both with
+    /// the question as JSON. `results/N` is a file of results; `plan-meshes/NAME` takes a mesh file for plans.
     ///
-    /// The reply is the length of the head in 4 bytes, little endian, the head as JSON filled up with blanks to a
-    /// multiple of 4 bytes, and a value for each of many places.
+    /// The reply has three parts: the length of the head in 4 bytes, little endian; the head as JSON, padded with
+    /// blanks to a multiple of 4 bytes; and a value for each of many places.
     ///
     /// # Errors
     /// [`Refusal`], in words for people.
@@ -131,8 +132,8 @@ impl Session {
         Ok(bytes.into_inner())
     }
 
-    /// Indexes the pulses that prove lines of sight free: what threads of the pool that computes must find made where
-    /// they cannot start threads of their own to make it, as in a browser. Not on a thread of that pool.
+    /// Indexes the pulses that prove lines of sight free. Threads of the computing pool must find the index made if
+    /// they cannot start threads of their own, as in a browser. Must not run on a thread of that pool.
     pub fn index_proof(&self) {
         if let Some(scene) = self.loading.now().scene {
             scene.index_proof();

@@ -10,13 +10,13 @@ use belvedere::{PointCloud, Result};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Most points of a sample: their lines of sight take two threads 20 to 70 ms. The standard error of a share of all
-/// points is at most 0.3 %.
+/// Maximum number of points of a sample: their lines of sight take two threads 20 to 70 ms. The standard error of a
+/// share of all points is at most 0.3 %.
 pub(crate) const SAMPLE: usize = 30_000;
 
 /// Targets of questions, and which of them answers for each point that is shown.
 pub(crate) struct TargetPoints {
-    /// As targets of the sun, local metres.
+    /// Targets of the sun, local metres.
     pub(crate) targets: Arc<Targets>,
     /// Ordered for viewers.
     pub(crate) tree: TargetTree,

@@ -1,4 +1,4 @@
-//! From files to a scene and from questions to replies, for a host that may be a browser.
+//! Opens files as a scene and answers questions, for a host that may be a browser.
 
 use belvedere::apps::ask::{remark_on_faces, remark_on_mesh, remarks_on_reading};
 use belvedere::cache::CloudKey;
@@ -16,9 +16,9 @@ use std::io::{Read, Seek};
 use std::path::Path;
 use std::sync::Arc;
 
-/// What an engine needs of whoever runs it.
+/// Interface that the host of an engine provides.
 pub trait Host: Sync {
-    /// What reads a file.
+    /// Reader of a file.
     type File: Read + Seek + Send + 'static;
     /// A file at its first byte.
     fn open(&self, file: &OpenedFile) -> Self::File;
@@ -34,13 +34,13 @@ pub trait Host: Sync {
 pub struct OpenedFile {
     /// Its name, or its address; the extension tells its format.
     pub name: String,
-    /// What the host knows it by.
+    /// Identifier of the file at the host.
     pub id: u32,
     /// Bytes.
     pub size: u64,
 }
 
-/// What to open.
+/// Files to open.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OpenRequest {
@@ -145,7 +145,7 @@ impl Engine {
     }
 }
 
-/// What the headers of files announce together.
+/// Summary of the headers of files.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Announced {
     /// Number of points.
@@ -157,7 +157,7 @@ pub struct Announced {
 }
 
 impl Announced {
-    /// From the headers, where all files have headers that tell.
+    /// Summarises the headers, if all files have complete ones.
     pub fn of<H: Host>(files: &[OpenedFile], host: &H) -> Option<Self> {
         let mut all: Option<Self> = None;
         for file in Chosen::of(files, host).clouds {
@@ -309,7 +309,7 @@ mod tests {
 
     const MESH: &str = "v 155002 463002 0\nv 155003 463002 0\nv 155002 463003 2\nf 1 2 3\n";
 
-    /// Where the floor begins, in a system of the Netherlands.
+    /// West edge of the floor, in a system of the Netherlands.
     const WEST: f64 = 155_000.0;
     const SOUTH: f64 = 463_000.0;
 

@@ -1,4 +1,4 @@
-//! What JavaScript calls, and what it must provide: plain functions of numbers. The only `unsafe` of this crate.
+//! Border to JavaScript: exported and imported plain functions of numbers. The only `unsafe` of this crate.
 //!
 //! Texts and bytes are handed over as an address and a length. [`take`] gives room for what comes in. What goes out is
 //! given to `reply` before the call returns. A call returns 0 after a reply, and 1 after a refusal, whose text is the
@@ -96,11 +96,11 @@ impl Seek for HostFile {
     }
 }
 
-/// What JavaScript wrote.
+/// Returns the bytes that JavaScript wrote.
 ///
 /// # Safety
 /// `length` bytes from `from` on were given by [`take`] and written to.
-unsafe fn given<'a>(from: *const u8, length: usize) -> &'a [u8] {
+unsafe fn written_bytes<'a>(from: *const u8, length: usize) -> &'a [u8] {
     // SAFETY: as promised
     unsafe { std::slice::from_raw_parts(from, length) }
 }
@@ -166,7 +166,7 @@ extern "C" fn progress() -> *const u32 {
 #[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 unsafe extern "C" fn announced(from: *const u8, length: usize) -> u32 {
     // SAFETY: as promised
-    let files = parsed::<Vec<OpenedFile>>(unsafe { given(from, length) });
+    let files = parsed::<Vec<OpenedFile>>(unsafe { written_bytes(from, length) });
     answered(files.map(|files| serde_json::json!(Announced::of(&files, &Browser)).to_string().into_bytes()))
 }
 
@@ -177,7 +177,7 @@ unsafe extern "C" fn announced(from: *const u8, length: usize) -> u32 {
 #[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 unsafe extern "C" fn tiles(from: *const u8, length: usize) -> u32 {
     // SAFETY: as promised
-    let tiles = parsed::<OpenedFile>(unsafe { given(from, length) }).and_then(|file| tiles_of(&file, &Browser));
+    let tiles = parsed::<OpenedFile>(unsafe { written_bytes(from, length) }).and_then(|file| tiles_of(&file, &Browser));
     answered(tiles.map(|tiles| serde_json::json!(tiles).to_string().into_bytes()))
 }
 
@@ -188,7 +188,7 @@ unsafe extern "C" fn tiles(from: *const u8, length: usize) -> u32 {
 #[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 unsafe extern "C" fn open(from: *const u8, length: usize) -> u32 {
     // SAFETY: as promised
-    let request = parsed::<OpenRequest>(unsafe { given(from, length) });
+    let request = parsed::<OpenRequest>(unsafe { written_bytes(from, length) });
     let opened = request.and_then(|request| Engine::open(&request, &Browser));
     answered(opened.map(|engine| {
         let state = engine.session().state();
@@ -219,7 +219,7 @@ extern "C" fn build() -> u32 {
 #[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 unsafe extern "C" fn build_from(from: *const u8, length: usize) -> u32 {
     // SAFETY: as promised
-    let kept = parsed::<OpenedFile>(unsafe { given(from, length) });
+    let kept = parsed::<OpenedFile>(unsafe { written_bytes(from, length) });
     with_engine(|engine| {
         engine.build_from(&kept?, &Browser)?;
         Ok(engine.session().state())
@@ -257,7 +257,7 @@ extern "C" fn prepare() -> u32 {
 #[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 unsafe extern "C" fn ask(path: *const u8, path_length: usize, body: *const u8, body_length: usize) -> u32 {
     // SAFETY: as promised
-    let (path, body) = unsafe { (given(path, path_length), given(body, body_length)) };
+    let (path, body) = unsafe { (written_bytes(path, path_length), written_bytes(body, body_length)) };
     with_engine(|engine| {
         let path = std::str::from_utf8(path).map_err(|_| Refusal::Missing("there is nothing at this address"))?;
         let session = engine.session();

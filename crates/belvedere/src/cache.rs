@@ -28,13 +28,13 @@ pub struct BuiltScene {
     pub model: SceneModel,
     /// The report on building it, as JSON: that of [`SceneModel::build`].
     pub report: Map<String, Value>,
-    /// Where it comes from.
+    /// Source of the model.
     pub origin: SceneOrigin,
     /// The contents of its cloud, where a cache was given.
     pub cloud: Option<CloudKey>,
 }
 
-/// Where a model comes from.
+/// Source of a model.
 #[derive(Debug)]
 pub enum SceneOrigin {
     /// It was found in the cache.

@@ -85,7 +85,7 @@ pub mod cache;
 #[cfg(all(feature = "apps", feature = "tiff"))]
 pub mod results;
 
-/// What most programs need: `use belvedere::prelude::*`.
+/// Items that most programs need: `use belvedere::prelude::*`.
 pub mod prelude {
     #[cfg(feature = "apps")]
     pub use crate::apps::shadow::{ShadowSun, shadow};

@@ -17,13 +17,13 @@ use belvedere_data::report::rounded;
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 
-/// What routes and windows get of sun and sky.
+/// Sun and sky along routes and at windows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ComfortQuestion {
     /// The days.
     pub days: Days,
-    /// Where on earth, how clocks run, and which north the azimuths of windows and suns count from.
+    /// Location on earth, clock, and the north of azimuths of windows and suns.
     pub place: SunPlace,
     /// The directions of the sky.
     pub sky: SkyParts,
@@ -33,11 +33,11 @@ pub struct ComfortQuestion {
     pub target_height: Option<f64>,
     /// Longest side of the pieces that windows of a mesh are cut into, metres, above 0; `None` for 0.5.
     pub spacing: Option<f64>,
-    /// From which the places on these pieces are drawn.
+    /// Seed of the places on these pieces.
     pub seed: u64,
-    /// Whether the share of each route in shade is kept for each sun. Each sun then has a direction of its own.
+    /// True to keep the share of each route in shade for each sun. Each sun then has a direction of its own.
     pub shade: ShadeAtEachSun,
-    /// Which points are ground.
+    /// Source of ground points.
     #[serde(skip)]
     pub ground: GroundPoints,
     /// The routes or windows.
@@ -45,7 +45,7 @@ pub struct ComfortQuestion {
     pub along: RoutesOrWindows,
 }
 
-/// Where sun and sky are looked for.
+/// Places at which sun and sky are evaluated.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RoutesOrWindows {
     /// The corners of each route, local metres; a height that is NaN follows from the ground.
@@ -60,14 +60,14 @@ impl Default for RoutesOrWindows {
     }
 }
 
-/// What was found along routes or at windows.
+/// Results along routes or at windows.
 #[derive(Clone, Debug)]
 pub struct ComfortResults {
     /// The places, a group for each route or window.
     pub targets: Targets,
-    /// Whether each is near the edge of the cloud; `None` where that is not known.
+    /// True near the edge of the cloud; `None` if that is not known.
     pub near_edge: Vec<Option<bool>>,
-    /// What each gets, and how the value of a whole route or window follows.
+    /// Exposure of each place, and the aggregate of a whole route or window.
     pub exposure: Exposure,
     /// The routes, at their height above the ground; empty for windows.
     pub routes: Vec<Route>,
@@ -81,10 +81,10 @@ pub struct ComfortResults {
     pub grid_north: f64,
 }
 
-/// What routes or windows get, for reports.
+/// Exposure of routes or windows, for reports.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ExposureSection {
-    /// How many routes or windows there are.
+    /// Number of routes or windows.
     #[serde(flatten)]
     groups: NamedValues<usize>,
     targets: usize,

@@ -15,14 +15,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct DepthMapQuestion {
-    /// From where the picture is taken; whoever reads a question from text gives it.
+    /// Position and projection of the picture; must be set by whoever reads a question from text.
     #[serde(skip)]
     pub from: Option<ViewFrom>,
-    /// Whether to keep which ball each pixel shows. Default: not.
+    /// True to keep the index of the ball in each pixel. Default: false.
     pub ball_ids: bool,
 }
 
-/// From where a picture is taken.
+/// Position and projection of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ViewFrom {
     /// One view.
@@ -73,7 +73,7 @@ pub struct PictureSection {
 }
 
 impl ViewFrom {
-    /// Where the eye is, local metres; `None` for parallel views.
+    /// Returns the position of the eye, local metres; `None` for parallel views.
     #[must_use]
     pub fn eye(&self) -> Option<[f64; 3]> {
         match self {
@@ -82,13 +82,13 @@ impl ViewFrom {
         }
     }
 
-    /// What to know of its eye.
+    /// Returns a remark on its eye.
     #[must_use]
     pub fn remark(&self, coverage: Option<&Coverage>) -> Option<Remark> {
         self.eye().and_then(|eye| remark_on_eye(coverage, eye))
     }
 
-    /// What it is, for reports.
+    /// Describes it for reports.
     #[must_use]
     pub fn section(&self) -> ViewSection {
         match self {

@@ -22,17 +22,17 @@ use std::sync::Arc;
 
 /// Ground made around the parcel and what is protected, metres.
 const MARGIN: f64 = 5.0;
-/// Most suns and places that are named as those that limit the envelope.
+/// Maximum number of suns and places that are named as those that limit the envelope.
 const MAX_LIMITING: usize = 3;
 const SUN_EXPECTED: &str = "azimuth and elevation in degrees, the elevation above 0 and at most 90";
 
-/// How high one may build on a parcel without taking protected sun from others.
+/// Maximum building height on a parcel that keeps the protected sun of others.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct EnvelopeQuestion {
     /// The suns that are protected.
     pub suns: ProtectedSuns,
-    /// Where on earth, how clocks run, and which north azimuths count from.
+    /// Location on earth, clock, and the north of azimuths.
     pub place: SunPlace,
     /// Height of a fence on protected lines and points, up to which they may be in shade, metres, 0 or more. Default 0.
     pub fence_height: f64,
@@ -40,20 +40,20 @@ pub struct EnvelopeQuestion {
     pub spacing: Option<f64>,
     /// Side of a column, metres, above 0; `None` for 0.5.
     pub cell: Option<f64>,
-    /// What bounds the envelope besides the sun.
+    /// Bounds of the envelope besides the sun.
     pub params: EnvelopeParams,
-    /// Whether sun that the scene takes already needs no protection. Default: no.
+    /// True if sun that the scene already takes needs no protection. Default: false.
     pub credit_shade: bool,
-    /// Which points are ground.
+    /// Source of ground points.
     #[serde(skip)]
     pub ground: GroundPoints,
-    /// From which places on protected meshes are drawn.
+    /// Seed of the places on protected meshes.
     #[serde(skip)]
     pub seed: u64,
     /// Rings of the parcel, local metres on the map.
     #[serde(skip)]
     pub parcel: Vec<Vec<[f64; 2]>>,
-    /// What keeps its sun.
+    /// Objects that keep their sun.
     #[serde(skip)]
     pub protect: Vec<Protected>,
 }
@@ -64,7 +64,7 @@ pub struct EnvelopeQuestion {
 pub enum ProtectedSuns {
     /// Azimuths, clockwise from north, and elevations above 0 up to 90, degrees.
     Directions(Vec<[f64; 2]>),
-    /// Those of days.
+    /// Suns of days.
     Days {
         /// The days.
         #[serde(default)]
@@ -84,13 +84,13 @@ impl Default for ProtectedSuns {
 /// Something that keeps its sun.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Protected {
-    /// What reports call it.
+    /// Name in reports.
     pub name: String,
-    /// Where it is.
+    /// Shape and position.
     pub shape: ProtectedShape,
 }
 
-/// Where something that keeps its sun is; a height that is NaN follows from the ground.
+/// Shape of an object that keeps its sun; a height of NaN follows from the ground.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ProtectedShape {
     /// A point, local metres.
@@ -144,11 +144,11 @@ struct NamedSuns {
     names: Vec<String>,
 }
 
-/// What keeps its sun, in pieces.
+/// Objects that keep their sun, in pieces.
 #[derive(Default)]
 struct Land {
     pieces: Vec<ProtectedPiece>,
-    /// What each source of pieces is called.
+    /// Name of each source of pieces.
     names: Vec<String>,
     /// Parts without known ground.
     unknown: usize,
@@ -216,7 +216,7 @@ impl EnvelopeQuestion {
         Ok([wide, narrow])
     }
 
-    /// What keeps its sun: the pieces of faces first, then points and lines on the ground.
+    /// Returns the objects that keep their sun: the pieces of faces first, then points and lines on the ground.
     fn land(&self, ground: &Ground, scene: &Scene, control: &Control<'_>) -> Result<Land> {
         let mut land = Land::default();
         let mut on_ground = Vec::new();
@@ -414,7 +414,7 @@ impl EnvelopeQuestion {
     }
 }
 
-/// What limits the largest areas.
+/// Lists the sources that limit the largest areas.
 fn ranked(areas: &[f64], names: &[String]) -> Vec<String> {
     let mut order: Vec<(&f64, &String)> = areas.iter().zip(names).filter(|(area, _)| **area > 0.0).collect();
     order.sort_by(|(a, _), (b, _)| b.total_cmp(a));

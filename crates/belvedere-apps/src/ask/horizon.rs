@@ -24,21 +24,21 @@ const OVERHEAD_DEG: f64 = 89.999;
 pub struct HorizonQuestion {
     /// Height above the ground of eyes without one, metres, 0 or more; `None` for 1.7.
     pub observer_height: Option<f64>,
-    /// Which points are ground.
+    /// Source of ground points.
     pub ground: GroundPoints,
     /// Angle between azimuths, degrees, a divisor of 360; `None` for 1.
     pub angle_step_deg: Option<f64>,
-    /// How lines of sight run over the earth.
+    /// Curvature of the earth on lines of sight.
     pub earth: EarthParams,
-    /// Which north azimuths count from, at the first observer.
+    /// North of azimuths, at the first observer.
     pub north: North,
-    /// What elevations below the horizontal plane through the observer become.
+    /// Treatment of elevations below the horizontal plane through the observer.
     pub below: BelowLevel,
-    /// Whether to say between which elevations the sky begins nine times in ten; needs pulses. Default: not.
+    /// True to give the interval of elevations that holds the horizon in 90 % of cases; needs pulses. Default: false.
     pub interval: bool,
 }
 
-/// What elevations below the horizontal plane through the observer become.
+/// Treatment of elevations below the horizontal plane through the observer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum BelowLevel {
@@ -52,7 +52,7 @@ pub enum BelowLevel {
 /// Horizons.
 #[derive(Clone, Debug)]
 pub struct HorizonResults {
-    /// Who looks.
+    /// Observers.
     pub eyes: Eyes,
     /// Azimuths of each, equally far apart, clockwise from north.
     pub azimuth_count: usize,
@@ -62,7 +62,7 @@ pub struct HorizonResults {
     pub intervals_deg: Option<Vec<Vec<[f64; 2]>>>,
 }
 
-/// How high horizons are.
+/// Statistics of horizons.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HorizonsSection {
     azimuths: usize,

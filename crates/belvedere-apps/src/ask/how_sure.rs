@@ -1,4 +1,4 @@
-//! How sure answers are: a probability with each, and which of them are uncertain.
+//! Certainty of answers: a probability for each, and the uncertain ones.
 
 use super::scene::Scene;
 use super::{Context, Remark, ThroughTrees};
@@ -19,23 +19,23 @@ pub const UNCERTAIN: &str = "uncertain";
 /// Name of the measure of the expected number of observers.
 pub const EXPECTED: &str = "expected";
 
-/// What [`PROBABILITY`] is.
+/// Description of [`PROBABILITY`].
 pub const BEING_FREE: &str = "probability of being free";
-/// What [`EXPECTED`] is.
+/// Description of [`EXPECTED`].
 pub const EXPECTED_OBSERVERS: &str = "expected number of observers";
 
-/// Whether to say how sure answers are. Needs pulses.
+/// Request for the certainty of answers. Needs pulses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct HowSure {
-    /// Whether to give the probability, 0 to 1, that a target is visible or lit. Default: not.
+    /// True to give the probability, 0 to 1, that a target is visible or lit. Default: false.
     pub probability: bool,
     /// The least probability, above 0.5 and at most 1, of what is more likely, below which an answer is uncertain; so
     /// are unproven answers. `None` to leave that out.
     pub certain: Option<f64>,
 }
 
-/// How sure answers are, for reports.
+/// Certainty of answers, for reports.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct CertaintySection {
     /// Number of answers.
@@ -53,7 +53,7 @@ pub struct CertaintySection {
 }
 
 impl HowSure {
-    /// Whether probabilities are needed.
+    /// Returns true if probabilities are needed.
     #[must_use]
     pub fn is_wanted(&self) -> bool {
         self.probability || self.certain.is_some()
@@ -82,7 +82,7 @@ impl HowSure {
         self.certain.map(Certainty::new).transpose()
     }
 
-    /// What blocks, with the pulses that probabilities need; `None` where these are not wanted.
+    /// Returns the obstacles, with the pulses that probabilities need; `None` if these are not wanted.
     pub(super) fn blockers(
         &self,
         scene: &Scene,
@@ -98,8 +98,8 @@ impl HowSure {
         Ok(Some(blockers))
     }
 
-    /// Whether each answer is uncertain, by its probability and by whether it is unproven; NaN without a probability.
-    /// `None` where that is not wanted.
+    /// Flags the uncertain answers, by their probability and by whether they are unproven; NaN without a probability.
+    /// `None` if that is not wanted.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a least probability out of range.
@@ -138,7 +138,8 @@ impl HowSure {
         likely.into_iter().chain(uncertain).collect()
     }
 
-    /// How sure answers with these probabilities of being visible or lit are, of which some are unproven.
+    /// Summarises the certainty of answers with these probabilities of being visible or lit, of which some are
+    /// unproven.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a least probability out of range.
@@ -233,9 +234,8 @@ pub fn check_interval(is_wanted: bool, trees: &ThroughTrees) -> Result<()> {
     })
 }
 
-/// Whether it is known how far sums of a scene may be from the truth: that of pulses from the air. The errors that
-/// intervals follow from are those of balls that such pulses carved; for scanners on the ground three truths in four
-/// would lie outside.
+/// Returns true if the error of sums of a scene is known: the scene has pulses from the air. Intervals follow from
+/// errors of balls that such pulses carved. For scanners on the ground three truths in four would lie outside.
 ///
 /// # Errors
 /// Those of [`Scene::blockers`].

@@ -1,4 +1,4 @@
-//! What was found of cells in parts, such as tile by tile, in the words and figures of one answer.
+//! Results of cells in parts, such as tile by tile, in the words and figures of one answer.
 
 use super::scene::Whereabouts;
 use super::sections::{MeasuresSection, PlacesReport};
@@ -27,7 +27,7 @@ pub fn summarise_parts(
     let answers = &measures[..measures.iter().position(says_how_sure).unwrap_or(measures.len())];
     let title = match question {
         Question::Shadow(about) => {
-            let suns = about.suns.over(&about.place, whereabouts, &mut aside)?;
+            let suns = about.suns.resolve(&about.place, whereabouts, &mut aside)?;
             shadow::summarise(&suns, answers, &places, context);
             about.how_sure.summarise_measures(measures, ["lit", "in shadow"], context);
             listed = &answers[..answers.len().min(MAX_LISTED_SUNS)];
@@ -62,7 +62,7 @@ pub fn summarise_parts(
     Ok(title)
 }
 
-/// Whether a measure says how sure others are; it comes after these.
+/// Returns true if a measure gives the certainty of others; it comes after these.
 fn says_how_sure(measure: &Measure) -> bool {
     [PROBABILITY, UNCERTAIN, EXPECTED].iter().any(|name| measure.name.starts_with(name))
 }

@@ -1,15 +1,14 @@
 //! Irradiance: the energy that sun and sky send to places, and to the planes of roofs.
 
 use super::how_sure::{check_interval, check_interval_scene};
-use super::light::{Light, OnTargets};
 use super::scene::Whereabouts;
 use super::sections::{LinesSection, MeasuresSection, PlacesReport, RadiationSection, RoofsSection};
 use super::sun::SunPlace;
+use super::sun_and_sky::{Light, OnTargets};
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::irradiance::{
-    CLEAR_SKY_YEAR, ClearSky, IrradianceParams, PARTS, PeriodReport, RadiationSource, RoofIrradiation, RoofsReport,
-    SeasonRadiation, Surroundings, clock_contradiction, look_count, period_seasons, roof_irradiation,
-    season_irradiation,
+    ClearSky, IrradianceParams, PeriodReport, RadiationSource, RoofIrradiation, RoofsReport, SeasonRadiation,
+    Surroundings, clock_contradiction, look_count, period_seasons, roof_irradiation, season_irradiation,
 };
 use crate::roof_planes::{GROUND_CELL, RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
 use crate::rows::Obstacles;
@@ -26,35 +25,35 @@ use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Least number of cells of a plane that is listed.
+/// Minimum number of cells of a plane that is listed.
 const MIN_CELLS: usize = 10;
 /// Distance from which on a weather file counts as that of another place, metres.
 const FAR: f64 = 50_000.0;
 
-/// How much energy sun and sky send to places and roofs over a period.
+/// Energy of sun and sky at places and on roofs over a period.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct IrradianceQuestion {
-    /// Where the radiation comes from.
+    /// Source of the radiation.
     pub radiation: Radiation,
-    /// How it is gathered.
+    /// Parameters of gathering it.
     #[serde(default)]
     pub params: IrradianceParams,
-    /// Where on earth.
+    /// Location on earth.
     #[serde(default)]
     pub place: SunPlace,
-    /// What gets through trees.
+    /// Light through trees.
     #[serde(default)]
     pub trees: ThroughTrees,
     /// The planes of roofs that are wanted beside places.
     #[serde(default)]
     pub roofs: Option<Roofs>,
-    /// Whether to say how far energies may be from the truth: the expected value and an interval that holds 90 %. Only
-    /// where trees are opaque. Default: not.
+    /// True to give the expected value of energies and an interval that holds 90 %. Only for opaque trees. Default:
+    /// false.
     #[serde(default)]
     pub interval: bool,
 }
 
-/// Where radiation comes from.
+/// Source of radiation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Radiation {
@@ -70,7 +69,7 @@ pub enum Radiation {
     },
     /// A year without clouds.
     ClearSky {
-        /// What it sends.
+        /// Clear-sky model.
         clear_sky: ClearSky,
         /// The year.
         year: i16,
@@ -99,10 +98,10 @@ pub struct Roofs {
     pub min_area: Option<f64>,
     /// Side of a panel, metres; `None` for the default of [`RoofPlaneParams`].
     pub panel: Option<f64>,
-    /// Least number of cells of a plane that is listed; smaller ones are counted. `None` for 10: the panels of the
+    /// Minimum number of cells of a plane that is listed; smaller ones are counted. `None` for 10: the panels of the
     /// smallest plant that is worth its inverter.
     pub min_cells: Option<usize>,
-    /// Which points are ground.
+    /// Source of ground points.
     #[serde(skip)]
     pub ground: GroundPoints,
 }
@@ -113,15 +112,15 @@ impl Default for Roofs {
     }
 }
 
-/// What was found of places and roofs.
+/// Results for places and roofs.
 pub struct IrradianceResults {
     /// The places; `None` where only roofs are wanted.
     pub on: Option<OnTargets>,
     /// The roofs; `None` where they are not wanted.
     pub roofs: Option<RoofsResults>,
-    /// Where on earth the scene lies.
+    /// Location of the scene on earth.
     pub site: Site,
-    /// What blocks.
+    /// Obstacles.
     pub blockers: Arc<MedialScene>,
 }
 
@@ -136,18 +135,6 @@ pub struct RoofsResults {
 }
 
 impl Radiation {
-    /// Rows of weather in their usual number of parts.
-    #[must_use]
-    pub fn of_weather(file: String, weather: Weather) -> Self {
-        Self::Weather { file, weather: Some(Arc::new(weather)), parts: PARTS }
-    }
-
-    /// A clear sky in its usual year.
-    #[must_use]
-    pub fn of_clear_sky(clear_sky: ClearSky) -> Self {
-        Self::ClearSky { clear_sky, year: CLEAR_SKY_YEAR }
-    }
-
     fn source(&self) -> Result<RadiationSource<'_>> {
         match self {
             Self::Weather { weather: Some(weather), parts, .. } => {
@@ -173,7 +160,7 @@ impl Radiation {
 }
 
 impl IrradianceQuestion {
-    /// What a period sends to a site, in parts by what crowns let through, with what is known of it.
+    /// Gathers the radiation of a period at a site, in parts by the transmissivity of crowns, and reports it.
     fn gather(
         &self,
         site: &Site,
@@ -214,7 +201,7 @@ impl IrradianceQuestion {
     }
 }
 
-/// What a user must know of radiation that was gathered for a site, from weather or from a clear sky.
+/// Adds remarks on radiation that was gathered for a site, from weather or from a clear sky.
 pub fn remark_on_radiation(weather: Option<&Weather>, site: &Site, report: &PeriodReport, context: &mut Context) {
     if let Some(weather) = weather {
         remark_on(weather, site, context);
@@ -235,7 +222,7 @@ pub fn remark_on_radiation(weather: Option<&Weather>, site: &Site, report: &Peri
     }
 }
 
-/// What a user must know of weather.
+/// Adds remarks on weather.
 fn remark_on(weather: &Weather, site: &Site, context: &mut Context) {
     let rows = weather.left_out_count + weather.steps.len();
     let so = "of the weather have no radiation and are left out";
@@ -333,7 +320,7 @@ impl Ask for IrradianceQuestion {
                 let directions: Vec<[f64; 3]> =
                     seasons.iter().flat_map(|season| season.radiation.directions()).collect();
                 let light =
-                    Light::on(places, &directions, (&self.trees, UnprovenAs::Visible), scene, context, control)?;
+                    Light::resolve(places, &directions, (&self.trees, UnprovenAs::Visible), scene, context, control)?;
                 let looks = light.targets.len() * look_count(&light.obstacles(), &seasons);
                 let energies = control.stage("testing sun and sky", looks, || {
                     season_irradiation(light.obstacles(), &light.targets, &seasons, intervals, control)

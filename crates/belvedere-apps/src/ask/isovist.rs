@@ -20,9 +20,9 @@ use serde::{Deserialize, Serialize};
 pub struct IsovistsQuestion {
     /// Height above the ground of eyes without one, metres, 0 or more; `None` for 1.7.
     pub observer_height: Option<f64>,
-    /// Which points are ground.
+    /// Source of ground points.
     pub ground: GroundPoints,
-    /// Which north azimuths count from, in the middle of the scene.
+    /// North of azimuths, in the middle of the scene.
     pub north: North,
     /// Range at which sight ends where nothing blocks, metres, above 0; `None` for 100.
     pub max_distance: Option<f64>,
@@ -30,16 +30,17 @@ pub struct IsovistsQuestion {
     pub angle_step_deg: Option<f64>,
     /// Smallest jump in range that is an edge of the plan, metres, above 0; `None` for 0.25.
     pub min_jump: Option<f64>,
-    /// Whether to say between which areas and volumes what is seen lies nine times in ten; needs pulses. Default: not.
+    /// True to give the intervals of areas and volumes that hold the truth in 90 % of cases; needs pulses. Default:
+    /// false.
     pub interval: bool,
 }
 
 /// Isovists.
 #[derive(Clone, Debug)]
 pub struct IsovistsResults {
-    /// Who looks.
+    /// Observers.
     pub eyes: Eyes,
-    /// What each sees; `None` for an eye that cannot look.
+    /// Isovist of each; `None` for an eye that cannot look.
     pub isovists: Vec<Option<Isovist>>,
     /// Azimuth of grid north from the north that azimuths count from, radians.
     pub grid_north: f64,

@@ -20,12 +20,12 @@ use belvedere_data::{Error, Mesh, Parameter, PointCloud, Result};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// From where a landmark is seen, and how much of it.
+/// Views of a landmark, with its visible part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LandmarkQuestion {
     /// The landmark.
     pub shape: LandmarkShape,
-    /// Who looks; `None` for an observer in the middle of each cell of a grid over the scene.
+    /// Observers; `None` for one in the middle of each cell of a grid over the scene.
     #[serde(skip)]
     pub observers: Option<Vec<Standing>>,
     /// Height of observers above the ground, metres, 0 or more; `None` for 1.7.
@@ -34,28 +34,27 @@ pub struct LandmarkQuestion {
     /// Side of the cells that observers stand in, metres, above 0; `None` for 2, doubled up to at most 40 000 cells.
     #[serde(default)]
     pub cell: Option<f64>,
-    /// Which points are ground.
+    /// Source of ground points.
     #[serde(default)]
     pub ground: GroundPoints,
-    /// Greatest distance to the landmark, metres, above 0; `None` for no limit.
+    /// Maximum distance to the landmark, metres, above 0; `None` for no limit.
     #[serde(default)]
     pub max_distance: Option<f64>,
-    /// What to make of faces that are turned away from the observer.
+    /// Treatment of faces that are turned away from the observer.
     #[serde(default)]
     pub back_faces: BackFaces,
-    /// How lines of sight run over the earth.
+    /// Curvature of the earth on lines of sight.
     #[serde(default)]
     pub earth: EarthParams,
-    /// What to make of parts whose view pulses do not prove; `None` to report them where pulses are known.
+    /// Treatment of unproven parts; `None` to report them if pulses are known.
     #[serde(default)]
     pub unproven: Option<UnprovenAs>,
-    /// Whether to tell which share of it is expected to be seen, by how likely each part is visible; needs pulses.
-    /// Default: not.
+    /// True to give the expected visible share, from the probability of each part; needs pulses. Default: false.
     #[serde(default)]
     pub probability: bool,
 }
 
-/// What a landmark is.
+/// Shape of a landmark.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LandmarkShape {
@@ -64,7 +63,8 @@ pub enum LandmarkShape {
         /// The mesh; whoever reads a question from text reads it from its file.
         #[serde(skip)]
         mesh: Option<Arc<Mesh>>,
-        /// Longest side of the pieces that it is cut into, metres, above 0; `None` for about 1000, 0.25 at least.
+        /// Longest side of the pieces that it is cut into, metres, above 0; `None` for about 1000 pieces, at least
+        /// 0.25.
         spacing: Option<f64>,
         /// Seed of the places on them.
         seed: u64,
@@ -96,11 +96,11 @@ impl PartialEq for LandmarkShape {
     }
 }
 
-/// What was seen of a landmark.
+/// Views of a landmark.
 pub struct LandmarkResults {
-    /// What each observer sees.
+    /// View of each observer.
     pub views: Vec<LandmarkView>,
-    /// Where each observer stands, local metres; NaN where nobody can stand in a cell.
+    /// Position of each observer, local metres; NaN for a cell in which nobody can stand.
     pub places: Vec<[f64; 3]>,
     /// The ground; its grid is that of the observers unless they were given.
     pub ground: Arc<KnownGround>,
@@ -121,7 +121,7 @@ pub struct LandmarkSection {
     area_m2: f64,
 }
 
-/// Those who look at a landmark.
+/// Observers of a landmark.
 struct Lookers {
     places: Vec<[f64; 3]>,
     /// NaN for those who cannot look.
@@ -205,7 +205,7 @@ impl LandmarkQuestion {
     }
 
     /// The observers that were given.
-    fn given(
+    fn given_observers(
         &self,
         standing: &[Standing],
         (blockers, ground): (&Arc<MedialScene>, &Ground),
@@ -274,7 +274,7 @@ impl Ask for LandmarkQuestion {
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         let ground = &known.ground;
         let Lookers { places, eyes, inside } = match &self.observers {
-            Some(standing) => self.given(standing, (&blockers, ground), scene, context, control)?,
+            Some(standing) => self.given_observers(standing, (&blockers, ground), scene, context, control)?,
             None => self.in_cells((&blockers, ground), scene, context, control)?,
         };
         let params = self.params();

@@ -6,8 +6,8 @@ use super::scene::Scene;
 use super::sections::{LinesSection, PairsSection};
 use super::{Answers, Ask, Context, GridCells, Places, Remark, remark_on_inside};
 use crate::profile::{SightProfile, sight_profile};
-use crate::targets::Measure;
-use crate::viewshed::{OBSERVER_HEIGHT, TARGET_HEIGHT};
+use crate::targets::{Measure, TARGET_LIFT};
+use crate::viewshed::OBSERVER_HEIGHT;
 use belvedere_core::ground::GroundPoints;
 use belvedere_core::query::{
     Answer, Blocker, EarthParams, LineOfSight, MedialScene, Obstruction, RadioWave, UnprovenAs,
@@ -22,7 +22,7 @@ const OUTSIDE_CLOUD: &str = "have an end outside the cloud, where nothing is kno
 const OUTSIDE_CLOUD_AND_TERRAIN: &str =
     "have an end outside the cloud and the terrain, or below the cloud, where nothing is known, and no answer";
 
-/// Whether the observers of pairs see their targets.
+/// Visibility of the targets of pairs from their observers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct LinesOfSightQuestion {
@@ -30,15 +30,15 @@ pub struct LinesOfSightQuestion {
     pub observer_height: Option<f64>,
     /// Height above the ground of targets without one, metres, 0 or more; `None` for 0.1.
     pub target_height: Option<f64>,
-    /// Which points are ground.
+    /// Source of ground points.
     pub ground: GroundPoints,
-    /// How lines of sight run over the earth.
+    /// Curvature of the earth on lines of sight.
     pub earth: EarthParams,
     /// Frequency of a radio link, GHz, 0.001 to 1000, to test its first Fresnel zone too; `None` for the line alone.
     pub frequency_ghz: Option<f64>,
-    /// What unproven answers count as; `None` to report them where pulses are known.
+    /// Treatment of unproven answers; `None` to report them if pulses are known.
     pub unproven: Option<UnprovenAs>,
-    /// How sure to say answers are.
+    /// Request for the certainty of answers.
     pub how_sure: HowSure,
     /// Also the profile, of a single line.
     pub profile: Option<ProfileRows>,
@@ -52,35 +52,35 @@ pub struct ProfileRows {
     pub step: Option<f64>,
 }
 
-/// What is known of the line of sight of each pair.
+/// Results for the line of sight of each pair.
 #[derive(Clone, Debug)]
 pub struct SightsResults {
     /// Observer and target of each, local metres; a height is NaN where it is not known.
     pub pairs: Vec<[[f64; 3]; 2]>,
     /// The answers, with unproven ones taken for what they are to be.
     pub answers: Vec<Answer>,
-    /// What is known of each line; `None` where the ends make no line.
+    /// Result of each line; `None` if the ends make no line.
     pub sights: Vec<Option<LineOfSight>>,
     /// The free share of the first Fresnel zone of each, 0 to 1, for a radio link.
     pub fresnel: Option<Vec<f64>>,
-    /// Whether pulses were tested.
+    /// True if pulses were tested.
     pub is_proof_tested: bool,
-    /// How sure answers are, where that was wanted: measures of the pairs.
+    /// Certainty of answers, if wanted: measures of the pairs.
     pub sure: Vec<Measure>,
     /// The profile that was wanted.
     pub profile: Option<SightProfile>,
 }
 
-/// What is known of lines of sight, a column for each thing: what tables hold.
+/// Results of lines of sight in columns, for tables.
 #[derive(Clone, Debug)]
 pub struct SightColumns<'a> {
     /// Distance from the observer to what blocks first, metres; NaN where nothing does.
     pub ranges: Vec<f64>,
-    /// How much of a line that nothing blocks no pulse came near to, metres, where pulses were tested.
+    /// Length of a free line that no pulse came near to, metres, if pulses were tested.
     pub unproven: Option<Vec<f64>>,
-    /// How much of the first Fresnel zone is free, of a radio link.
+    /// Free percentage of the first Fresnel zone, for radio links.
     pub fresnel_free_percent: Option<Vec<f64>>,
-    /// Where lines are blocked first, in the coordinates of the file.
+    /// First blocked place of each line, in the coordinates of the file.
     pub places: Vec<[f64; 3]>,
     /// The row of the ball that blocks first.
     pub balls: Vec<Option<usize>>,
@@ -88,10 +88,10 @@ pub struct SightColumns<'a> {
     pub sources: Vec<Option<u32>>,
     /// The name of the mesh that blocks first, empty where none does, where meshes were added.
     pub meshes: Option<Vec<&'a str>>,
-    /// What surface of the survey blocks first (roof, wall, parapet, inside), empty where none does, where any is
-    /// known.
+    /// Surface of the survey that blocks first (roof, wall, parapet, inside), empty if none does; `None` if no surfaces
+    /// are known.
     pub surfaces: Option<Vec<&'static str>>,
-    /// Whether far terrain blocks first, where there is any; `None` where nothing blocks.
+    /// True if far terrain blocks first, if there is any; `None` if nothing blocks.
     pub is_terrain: Option<Vec<Option<bool>>>,
 }
 
@@ -138,7 +138,7 @@ impl LinesOfSightQuestion {
         if pairs.iter().flatten().all(|end| !end[2].is_nan()) {
             return Ok(pairs);
         }
-        let usual = [self.observer_height.unwrap_or(OBSERVER_HEIGHT), self.target_height.unwrap_or(TARGET_HEIGHT)];
+        let usual = [self.observer_height.unwrap_or(OBSERVER_HEIGHT), self.target_height.unwrap_or(TARGET_LIFT)];
         let standing = |(end, usual): (&Standing, f64)| Standing { height: end.height.or(Some(usual)), ..*end };
         let standing: Vec<Standing> = given.iter().flat_map(|ends| ends.iter().zip(usual)).map(standing).collect();
         let ends = stand(&standing, (OBSERVER_HEIGHT, self.ground), scene, context, control)?;
@@ -170,7 +170,7 @@ impl LinesOfSightQuestion {
         Ok(Some(made))
     }
 
-    /// How sure `answers` are, where that is wanted.
+    /// Computes the certainty of `answers`, if wanted.
     fn sure_of(
         &self,
         pairs: &[[[f64; 3]; 2]],
@@ -290,7 +290,7 @@ impl Ask for LinesOfSightQuestion {
 }
 
 impl SightsResults {
-    /// What blocks the line of that row first.
+    /// Returns the first obstacle on the line of that row.
     #[must_use]
     pub fn block(&self, row: usize) -> Option<Obstruction> {
         self.sights.get(row).copied().flatten()?.first_block
@@ -330,12 +330,12 @@ fn mesh_name(scene: &Scene, blocker: Blocker) -> Option<&str> {
     scene.model().added()?.names().get(blocker.mesh()?).map(String::as_str)
 }
 
-/// What a surface of the survey that blocks is a part of.
+/// Returns the kind of a surface of the survey that blocks.
 fn surface_name(blocker: Blocker) -> Option<&'static str> {
     blocker.patch().map(PatchKind::name)
 }
 
-/// How many observers, and how many targets, of lines that are inside an obstacle are so themselves.
+/// Counts the observers and the targets inside an obstacle, on lines with that answer.
 fn ends_inside(
     blockers: &MedialScene,
     pairs: &[[[f64; 3]; 2]],

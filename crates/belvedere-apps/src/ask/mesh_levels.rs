@@ -1,12 +1,12 @@
-//! What a model knows that contradicts what it was given: what was found while it was built, and meshes that were added
-//! at a level that is not that of the ground.
+//! Contradictions between a model and its input: findings of its construction, and added meshes off the level of the
+//! ground.
 
 use super::{Remark, remark_on_axis};
 use belvedere_core::model::SceneModel;
 use belvedere_data::contradiction::{FoundContradiction, MESH_FLOATS, MESH_SINKS};
 use belvedere_data::report::rounded;
 
-/// How far around a mesh the ground is looked for, metres.
+/// Radius around a mesh within which ground counts, metres.
 const AROUND: f64 = 10.0;
 /// Fewer places show no ground.
 const MIN_PLACES: usize = 20;
@@ -15,7 +15,7 @@ const LOWEST: f64 = 0.05;
 const GROUND: f64 = 0.3;
 /// Meshes lower than this are no buildings, metres: paths, decks, roofs on their own.
 const MIN_HEIGHT: f64 = 2.0;
-/// What stands on a roof has this share of the places below it at its base, within a tolerance in metres.
+/// Minimum share of the places below it at the base of a mesh that stands on a roof, within a tolerance in metres.
 const MIN_SUPPORT: f64 = 0.02;
 const SUPPORT: f64 = 1.0;
 
@@ -59,7 +59,7 @@ fn is_around([low, high]: &MeshBox, place: [f64; 2], by: f64) -> bool {
     (0..2).all(|axis| (low[axis] - by..=high[axis] + by).contains(&place[axis]))
 }
 
-/// What is wrong with the level of a mesh, by places on surfaces below and around it.
+/// Returns the contradiction between the level of a mesh and places on surfaces below and around it.
 fn level_of_mesh(own: &MeshBox, mut tops: Vec<[f64; 3]>, name: &str) -> Option<FoundContradiction> {
     let [base, top] = own.map(|corner| corner[2]);
     if tops.len() < MIN_PLACES || top - base < MIN_HEIGHT {
@@ -104,8 +104,9 @@ mod tests {
         on_ground.map(place).collect()
     }
 
-    /// What is said of a building of 12 by 12 m and 10 m, with its base at a height above the lowest ground below it.
-    fn said(slope: f64, west: f64, rise: f64) -> Option<(&'static str, f64)> {
+    /// Returns the contradiction for a building of 12 by 12 m and 10 m, with its base at a height above the lowest
+    /// ground below it.
+    fn contradiction(slope: f64, west: f64, rise: f64) -> Option<(&'static str, f64)> {
         let base = slope * west + rise;
         let own = [[west, 15.0, base], [west + 12.0, 27.0, base + 10.0]];
         let tops = places(slope).into_iter().filter(|p| is_around(&own, [p[0], p[1]], AROUND)).collect();
@@ -118,18 +119,18 @@ mod tests {
         for slope in [0.0, 0.05, 0.15] {
             // on the ground, dug in, and on a cellar
             for rise in [0.0, 0.5, -1.0, -3.0] {
-                assert_eq!(said(slope, 15.0, rise), None, "{slope} {rise}");
+                assert_eq!(contradiction(slope, 15.0, rise), None, "{slope} {rise}");
             }
-            assert_eq!(said(slope, 15.0, 6.0).map(|found| found.0), Some("mesh-floats"), "{slope}");
-            assert_eq!(said(slope, 15.0, -8.0).map(|found| found.0), Some("mesh-sinks"), "{slope}");
+            assert_eq!(contradiction(slope, 15.0, 6.0).map(|found| found.0), Some("mesh-floats"), "{slope}");
+            assert_eq!(contradiction(slope, 15.0, -8.0).map(|found| found.0), Some("mesh-sinks"), "{slope}");
         }
-        assert_eq!(said(0.0, 15.0, 3.0), Some(("mesh-floats", 3.0)));
-        assert_eq!(said(0.0, 15.0, -12.0), Some(("mesh-sinks", 12.0)));
+        assert_eq!(contradiction(0.0, 15.0, 3.0), Some(("mesh-floats", 3.0)));
+        assert_eq!(contradiction(0.0, 15.0, -12.0), Some(("mesh-sinks", 12.0)));
     }
 
     #[test]
     fn storeys_on_a_roof_float_over_the_street_and_stand_on_the_roof() {
-        assert_eq!(said(0.0, 39.0, 9.0), None);
-        assert_eq!(said(0.0, 39.0, 14.0).map(|found| found.0), Some("mesh-floats"));
+        assert_eq!(contradiction(0.0, 39.0, 9.0), None);
+        assert_eq!(contradiction(0.0, 39.0, 14.0).map(|found| found.0), Some("mesh-floats"));
     }
 }

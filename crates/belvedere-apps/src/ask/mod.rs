@@ -25,7 +25,6 @@ mod in_parts;
 mod irradiance;
 mod isovist;
 mod landmark;
-mod light;
 mod line_of_sight;
 mod mesh_levels;
 pub mod north;
@@ -42,6 +41,7 @@ mod shared;
 mod single_places;
 mod sky_view;
 pub mod sun;
+mod sun_and_sky;
 mod sun_hours;
 mod sun_position;
 mod survey;
@@ -69,7 +69,6 @@ pub use in_parts::summarise_parts;
 pub use irradiance::{IrradianceQuestion, IrradianceResults, Radiation, Roofs, RoofsResults, remark_on_radiation};
 pub use isovist::{IsovistColumn, IsovistsQuestion, IsovistsResults};
 pub use landmark::{LandmarkQuestion, LandmarkResults, LandmarkSection, LandmarkShape};
-pub use light::OnTargets;
 pub use line_of_sight::{LinesOfSightQuestion, ProfileRows, SightColumns, SightsResults};
 pub use mesh_levels::remarks_on_model;
 pub use north::North;
@@ -85,7 +84,8 @@ pub use shared::SharedObject;
 pub use single_places::{HeightFrom, PlaceSection, position_on_map};
 pub use sky_view::{SkyParts, SkyViewQuestion};
 pub use sun::{Days, NamedSun, SunPlace, SunRange, Suns, check_sun, remark_on_sun};
-pub use sun_hours::{PreparedSun, SunHoursQuestion, rules};
+pub use sun_and_sky::OnTargets;
+pub use sun_hours::{SunHoursQuestion, rules};
 pub use sun_position::{SunPositionQuestion, SunStands};
 pub use survey::remarks_on_survey;
 pub use survey_plan::{PlannedStation, SurveyPlanQuestion, SurveyPlanResults};
@@ -117,83 +117,83 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Question {
-    /// Which places the sun reaches.
+    /// Places in the sun.
     Shadow(ShadowQuestion),
-    /// How long the sun reaches places.
+    /// Hours of sun at places.
     SunHours(SunHoursQuestion),
-    /// How much of the sky places see.
+    /// Visible part of the sky.
     SkyView(SkyViewQuestion),
-    /// How much energy sun and sky send.
+    /// Energy of sun and sky.
     Irradiance(IrradianceQuestion),
-    /// Where the sun stands.
+    /// Position of the sun.
     SunPosition(SunPositionQuestion),
-    /// Whether observers see targets, pair by pair.
+    /// Visibility between observers and targets, pair by pair.
     LineOfSight(LinesOfSightQuestion),
     /// Above which elevation the sky is free.
     Horizon(HorizonQuestion),
     /// The space that observers see.
     Isovist(IsovistsQuestion),
-    /// What observers see, or from where a target is seen.
+    /// Places visible from observers, or from which a target is visible.
     Viewshed(ViewshedQuestion),
-    /// From where a landmark is seen, and how much of it.
+    /// Views of a landmark, with its visible part.
     Landmark(LandmarkQuestion),
-    /// What is seen from windows.
+    /// Views from windows.
     WindowViews(WindowViewsQuestion),
-    /// How high one may build without entering the view of a landmark.
+    /// Maximum building height outside the view of a landmark.
     ProtectedView(ProtectedViewQuestion),
-    /// Which of many possible cameras to put up.
+    /// Selection of cameras to install.
     Cameras(CamerasQuestion),
-    /// Where to scan again.
+    /// Stations for another scan.
     SurveyPlan(SurveyPlanQuestion),
     /// The distance to the first surface for each pixel of a view.
     DepthMap(DepthMapQuestion),
-    /// What routes and windows get of sun and sky.
+    /// Sun and sky along routes and at windows.
     Comfort(ComfortQuestion),
-    /// How high one may build without taking protected sun.
+    /// Maximum building height that keeps protected sun.
     Envelope(EnvelopeQuestion),
 }
 
-/// What was found, of any question.
+/// Results of any question.
 #[non_exhaustive]
 pub enum QuestionResults {
-    /// Of [`Question::Shadow`].
+    /// Results of [`Question::Shadow`].
     Shadow(ShadowResults),
-    /// Of [`Question::SunHours`] and [`Question::SkyView`].
+    /// Results of [`Question::SunHours`] and [`Question::SkyView`].
     OnTargets(OnTargets),
-    /// Of [`Question::Irradiance`].
+    /// Results of [`Question::Irradiance`].
     Irradiance(IrradianceResults),
-    /// Of [`Question::SunPosition`].
+    /// Results of [`Question::SunPosition`].
     SunPosition(Vec<SunStands>),
-    /// Of [`Question::LineOfSight`].
+    /// Results of [`Question::LineOfSight`].
     LineOfSight(SightsResults),
-    /// Of [`Question::Horizon`].
+    /// Results of [`Question::Horizon`].
     Horizon(HorizonResults),
-    /// Of [`Question::Isovist`].
+    /// Results of [`Question::Isovist`].
     Isovist(IsovistsResults),
-    /// Of [`Question::Viewshed`].
+    /// Results of [`Question::Viewshed`].
     Viewshed(Box<ViewshedResults>),
-    /// Of [`Question::Landmark`].
+    /// Results of [`Question::Landmark`].
     Landmark(LandmarkResults),
-    /// Of [`Question::WindowViews`].
+    /// Results of [`Question::WindowViews`].
     WindowViews(WindowViewsResults),
-    /// Of [`Question::ProtectedView`].
+    /// Results of [`Question::ProtectedView`].
     ProtectedView(ProtectedViewResults),
-    /// Of [`Question::Cameras`].
+    /// Results of [`Question::Cameras`].
     Cameras(CamerasResults),
-    /// Of [`Question::SurveyPlan`].
+    /// Results of [`Question::SurveyPlan`].
     SurveyPlan(SurveyPlanResults),
-    /// Of [`Question::DepthMap`].
+    /// Results of [`Question::DepthMap`].
     DepthMap(DepthMapResults),
-    /// Of [`Question::Comfort`].
+    /// Results of [`Question::Comfort`].
     Comfort(Box<ComfortResults>),
-    /// Of [`Question::Envelope`].
+    /// Results of [`Question::Envelope`].
     Envelope(EnvelopeResults),
 }
 
 /// The answers to a question.
 #[derive(Clone, Debug)]
 pub struct Answers<F = QuestionResults> {
-    /// What was found beside measures.
+    /// Results beside measures.
     pub found: F,
     /// A value for each target, of each thing that was measured.
     pub measures: Vec<Measure>,
@@ -205,7 +205,7 @@ pub struct Answers<F = QuestionResults> {
     pub report: Report,
 }
 
-/// What is gathered on the way to an answer.
+/// Report, headline and remarks gathered on the way to an answer.
 #[derive(Clone, Debug, Default)]
 pub struct Context {
     /// All figures.
@@ -216,7 +216,7 @@ pub struct Context {
 
 /// A question.
 pub trait Ask {
-    /// What is found beside measures.
+    /// Type of the results beside measures.
     type Found;
 
     /// Checks all that does not depend on a scene: hours of work may go into one.
@@ -262,7 +262,7 @@ pub fn ask<Q: Ask>(scene: &Scene, question: &Q, places: &Places, control: &Contr
 }
 
 impl<F> Answers<F> {
-    /// What was found, without what [`Context`] gathered.
+    /// Creates answers without what [`Context`] gathered.
     fn new(found: F, measures: Vec<Measure>) -> Self {
         Self { found, measures, headline: Vec::new(), remarks: Vec::new(), report: Report::default() }
     }
@@ -292,7 +292,7 @@ impl Context {
         self.headline.push(line);
     }
 
-    /// What was gathered, as answers without anything else.
+    /// Converts the report, headline and remarks into answers without anything else.
     #[must_use]
     pub fn into_answers(self) -> Answers<()> {
         Answers::new((), Vec::new()).with(self)
@@ -332,10 +332,6 @@ fn remark_on_shift(shift: &GroundShift, frame: &Frame) -> Remark {
         ShiftEvidence::Strips { shifted, other } => {
             format!("(point source {shifted}) {lie} those of point source {other} where the two meet")
         }
-        ShiftEvidence::OtherReturns if rise < 0.0 => {
-            format!("{lie} a layer of other returns that continues the ground around")
-        }
-        ShiftEvidence::OtherReturns => format!("{lie} the lowest other returns at the same places"),
     };
     let text = format!(
         "{point_count} points of class 2 {which}, between {west}, {south} and {east}, {north}: heights of the ground \
@@ -419,7 +415,7 @@ impl Ask for Question {
     }
 }
 
-/// How values are spread, in words, such as "mean 5.3 hours (0 to 11.2)"; those that are not finite do not count.
+/// Describes the statistics of values, such as "mean 5.3 hours (0 to 11.2)"; values that are not finite do not count.
 fn spread(values: &[f32], digits: i32, unit: &str) -> String {
     let known = || values.iter().filter(|value| value.is_finite()).map(|&value| f64::from(value));
     let count = known().count();

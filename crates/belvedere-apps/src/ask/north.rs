@@ -1,11 +1,11 @@
-//! From which north azimuths count: true north, or grid north where that is wanted or true north is unknown.
+//! North of azimuths: true north, or grid north if that is wanted or true north is unknown.
 
 use super::Remark;
 use super::scene::Scene;
 use belvedere_data::report::rounded;
 use serde::{Deserialize, Serialize};
 
-/// Which north azimuths count from.
+/// North of azimuths: true or grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum North {

@@ -1,5 +1,4 @@
-//! Who looks, and what is looked at: places on the ground become eyes, and those that cannot look are skipped and
-//! named.
+//! Observers and observed places: places on the ground become eyes, and those that cannot look are skipped and named.
 
 use super::places::Places;
 use super::scene::Scene;
@@ -16,11 +15,12 @@ use belvedere_data::{Error, Parameter, Result};
 use serde::Serialize;
 use std::sync::Arc;
 
-/// Most eyes that are named one by one in remarks.
+/// Maximum number of eyes that are named one by one in remarks.
 const MAX_NAMED: usize = 5;
-/// How far around a place its ground is compared, metres.
+/// Radius around a place within which its ground is compared, metres.
 const FOOTING_RADIUS: f64 = 10.0;
-/// How far the ground below a place may lie from that around it, metres: more than steps, ramps and moats.
+/// Maximum height difference between the ground below a place and that around it, metres: more than steps, ramps and
+/// moats.
 const MAX_STEP: f64 = 2.0;
 
 /// A place where somebody stands, or that is looked at.
@@ -35,11 +35,11 @@ pub struct Standing {
 /// Eyes of which some cannot look.
 #[derive(Clone, Debug)]
 pub struct Eyes {
-    /// Where each stands, local metres.
+    /// Position of each, local metres.
     pub places: Vec<[f64; 3]>,
     /// The eyes, local metres; NaN for one that cannot look, so that others keep their rows.
     pub eyes: Vec<[f64; 3]>,
-    /// How many cannot look, and why.
+    /// Number that cannot look, with the reasons.
     pub report: EyesReport,
 }
 
@@ -49,7 +49,7 @@ pub(super) struct Observers {
     pub(super) blockers: Arc<MedialScene>,
 }
 
-/// How far lines of sight may run.
+/// Extent of lines of sight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
     /// Within the cloud.
@@ -58,16 +58,16 @@ pub enum Reach {
     FarTerrain,
 }
 
-/// Those who cannot look, for reports.
+/// Observers that cannot look, for reports.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ObserversSection {
-    /// How many cannot look, and why.
+    /// Number that cannot look, with the reasons.
     #[serde(flatten)]
     pub eyes: EyesReport,
-    /// Where the only one looks from, in the coordinates of the file.
+    /// Eye of a single observer, in the coordinates of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub eye: Option<[f64; 3]>,
-    /// How far that is above the ground.
+    /// Height of that eye above the ground, metres.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub above_ground_m: Option<f64>,
 }

@@ -18,11 +18,11 @@ use std::sync::Arc;
 pub(super) const EDGE_WARNING_PERCENT: f64 = 1.0;
 const NEAR_EDGE: &str = "are near the edge of the cloud: objects beyond it, as high as its highest point, could take some of their sun or sky";
 
-/// What a question is about.
+/// Places of a question.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Places {
-    /// Nothing but the scene as a whole.
+    /// The scene as a whole.
     Scene,
     /// The cells of a grid.
     Cells(GridCells),
@@ -44,7 +44,7 @@ pub enum Places {
     Pairs(Vec<[Standing; 2]>),
 }
 
-/// What points are turned to.
+/// Orientation of points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Turned {
     /// The zenith. Default.
@@ -59,11 +59,11 @@ pub enum Turned {
 pub struct GridCells {
     /// Side, metres; `None` for 0.5 m, doubled until there are at most 4 million cells.
     pub cell: Option<f64>,
-    /// What they stand on.
+    /// Level of the cells.
     pub level: CellLevel,
     /// Height of the target above that, metres; `None` for the default of [`CellParams`].
     pub height: Option<f64>,
-    /// Which points are ground.
+    /// Source of ground points.
     pub ground: GroundPoints,
     /// Rings of an area on the map, local metres: cells whose middle lies beside it are no targets. Empty for all
     /// cells.
@@ -234,8 +234,8 @@ impl GridCells {
     }
 }
 
-/// Whether each target is near the edge of the cloud for light from `directions`, which is reported, and warned of
-/// where many are.
+/// Flags the targets near the edge of the cloud for light from `directions`. Reports their number, with a warning if
+/// they are many.
 pub(super) fn test_edge(
     scene: &Scene,
     targets: &Targets,

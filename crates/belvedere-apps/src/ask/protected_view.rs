@@ -15,25 +15,25 @@ use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Most viewpoints that the report lists one by one.
+/// Maximum number of viewpoints that the report lists one by one.
 const MAX_LISTED: usize = 10;
 
-/// How high one may build on cells of the ground ([`Places::Cells`]) without entering the view of a landmark.
+/// Maximum building height on cells of the ground ([`Places::Cells`]) outside the view of a landmark.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ProtectedViewQuestion {
     /// The landmark.
     #[serde(skip)]
     pub landmark: Option<SharedObject<SurfacePieces>>,
-    /// From where it is seen today.
+    /// Positions from which it is visible today.
     #[serde(skip)]
     pub observers: Vec<Standing>,
     /// Height of observers above the ground, metres. Default 1.7.
     pub observer_height: f64,
-    /// Greatest distance from an observer to the landmark, metres, above 0; `None` for no limit.
+    /// Maximum distance from an observer to the landmark, metres, above 0; `None` for no limit.
     pub max_distance: Option<f64>,
-    /// What lines count as that nothing blocks but that are not proven: reported, the default, and visible ones are
-    /// protected. What is given needs pulses.
+    /// Treatment of unproven lines that nothing blocks: reported, the default, and visible ones are protected. A given
+    /// value needs pulses.
     pub unproven: Option<UnprovenAs>,
 }
 
@@ -44,19 +44,19 @@ impl Default for ProtectedViewQuestion {
     }
 }
 
-/// How high one may build.
+/// Height limits of buildings.
 pub struct ProtectedViewResults {
-    /// Greatest heights above the ground, metres; NaN where no protected view passes and where no ground is known.
+    /// Maximum heights above the ground, metres; NaN where no protected view passes and where no ground is known.
     pub heights: Raster<f32>,
     /// The same in the vertical system of the file.
     pub tops: Raster<f32>,
     /// The cells.
     pub ground: Arc<KnownGround>,
-    /// Who looks.
+    /// Observers.
     pub eyes: Eyes,
 }
 
-/// What is protected, and how much that limits.
+/// Protected lines and their limits.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ProtectedViewSection {
     lines_protected: usize,

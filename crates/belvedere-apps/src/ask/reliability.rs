@@ -1,4 +1,4 @@
-//! How reliable answers on a survey are, in words, and in the scene that keeps it.
+//! Reliability of answers on a survey, in words, and in the scene that keeps it.
 
 use super::{Answers, Context, Remark};
 use crate::resampling::Interval;
@@ -8,7 +8,7 @@ use belvedere_data::control::Control;
 use belvedere_data::model::ModelParts;
 use belvedere_data::{PointCloud, Result};
 
-/// What the names of the numbers of [`kept_reliability`] begin with where a scene keeps them.
+/// Prefix of the names of [`kept_reliability`] in a scene.
 const KEPT_UNDER: &str = "reliability_";
 /// Fewer tiles than this give no interval worth its name.
 const MIN_TILES: usize = 10;
@@ -121,7 +121,7 @@ pub fn with_reliability(parts: ModelParts, found: &SurveyReliability) -> ModelPa
     kept_numbers(found).into_iter().fold(parts, keep)
 }
 
-/// What was measured on the survey of a scene, if it keeps that.
+/// Returns a remark on the reliability measured on the survey of a scene, if the scene keeps it.
 pub(super) fn remark_on_reliability(parts: &ModelParts) -> Option<Remark> {
     let number = |name: &str| parts.provenance.get(&format!("{KEPT_UNDER}{name}"))?.parse::<f64>().ok();
     let (blocked, visible) = (number(NUMBERS[0])?, number(NUMBERS[3])?);

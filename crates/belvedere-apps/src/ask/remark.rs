@@ -1,4 +1,4 @@
-//! What a user must know to read an answer rightly, and what is worth knowing beside it.
+//! Remarks: what a user must know to read an answer correctly, and further notes.
 
 use belvedere_data::contradiction::{FoundContradiction, Outcome};
 use belvedere_data::report::percent;
@@ -7,7 +7,7 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use std::path::Path;
 
-/// How much a remark matters.
+/// Severity of a remark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
@@ -22,7 +22,7 @@ pub enum Severity {
 pub struct Remark {
     /// Its name, which stays the same from version to version: lower case, words joined by hyphens.
     pub key: &'static str,
-    /// How much it matters.
+    /// Severity.
     pub severity: Severity,
     /// Its numbers by name.
     #[serde(serialize_with = "as_map", skip_serializing_if = "Vec::is_empty")]
@@ -87,7 +87,7 @@ impl Remark {
     }
 }
 
-/// What a user must know of the written file `output`: `names` what the input has and the file has not.
+/// Warns that the written file `output` lacks attributes of the input, `names`.
 #[must_use]
 pub fn remark_on_left_out(output: &Path, names: &[String]) -> Option<Remark> {
     let text = || format!("{} does not have what the input has: {}", ShownPath(output), names.join(", "));

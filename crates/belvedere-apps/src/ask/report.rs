@@ -1,4 +1,4 @@
-//! What is known of how answers came about. Sections that a question does not have are left out.
+//! Report of how answers were found. Sections that a question does not have are left out.
 
 use super::cameras::CamerasReport;
 use super::comfort::ExposureSection;
@@ -27,10 +27,10 @@ use serde::Serialize;
 /// The sections of all questions.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
-    /// Where on earth the scene lies.
+    /// Location of the scene on earth.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub location: Option<LocationSection>,
-    /// From which north azimuths count.
+    /// North of azimuths.
     #[serde(flatten)]
     pub north: Option<NorthReport>,
     /// The days.
@@ -39,7 +39,7 @@ pub struct Report {
     /// The suns.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sun: Option<SunSection>,
-    /// What sun and sky send.
+    /// Radiation of sun and sky.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radiation: Option<RadiationSection>,
     /// The landmark.
@@ -54,79 +54,79 @@ pub struct Report {
     /// The windows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub windows: Option<WindowsSection>,
-    /// What became of the places.
+    /// Counts of places by outcome.
     #[serde(flatten)]
     pub places: PlacesReport,
-    /// The single places.
+    /// Single places that were asked about.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub at: Vec<PlaceSection>,
-    /// Who looks.
+    /// Observers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub observers: Option<ObserversSection>,
-    /// What is looked at from all cells.
+    /// Target that is observed from all cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub target: Option<ObserversSection>,
-    /// Which of the given observers of a landmark cannot look.
+    /// Given observers of a landmark that cannot look.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub observers_given: Option<EyesReport>,
-    /// What observers see of a landmark.
+    /// Views of a landmark.
     #[serde(rename = "observers", skip_serializing_if = "Option::is_none")]
     pub landmark_views: Option<LandmarkReport>,
-    /// What blocks.
+    /// Obstacles.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lines_of_sight: Option<LinesSection>,
-    /// How sure answers are.
+    /// Certainty of answers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certainty: Option<CertaintySection>,
-    /// How reliable answers on a survey are.
+    /// Reliability of answers on a survey.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reliability: Option<SurveyReliability>,
     /// A single line of sight.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub line: Option<LineSection>,
-    /// How high horizons are.
+    /// Statistics of horizons.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub horizons: Option<HorizonsSection>,
     /// The numbers of a single isovist.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub isovist: Option<NamedValues<f64>>,
-    /// What is seen of cells.
+    /// Visibility of cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cells: Option<SeenSection>,
-    /// What is seen of points.
+    /// Visibility of points.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cloud_points: Option<SeenSection>,
-    /// What is seen of the terrain beyond the cloud.
+    /// Visibility of the terrain beyond the cloud.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub far_cells: Option<SeenSection>,
-    /// What trees let through.
+    /// Light through trees.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trees: Option<TreesSection>,
-    /// What windows see.
+    /// Views from windows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub views: Option<ViewsSection>,
-    /// What views of a landmark protect.
+    /// Protection of views of a landmark.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub protected_view: Option<ProtectedViewSection>,
-    /// Which cameras were chosen.
+    /// Selected cameras.
     #[serde(flatten)]
     pub cameras: Option<CamerasReport>,
-    /// Where to scan again.
+    /// Stations for another scan.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub survey_plan: Option<SurveyPlanSection>,
     /// The view of a picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view: Option<ViewSection>,
-    /// What a picture shows.
+    /// Content of a picture.
     #[serde(flatten)]
     pub picture: Option<PictureSection>,
-    /// What routes or windows get of sun and sky.
+    /// Sun and sky along routes or at windows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exposure: Option<ExposureSection>,
-    /// How high one may build.
+    /// Height limits of an envelope.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub envelope: Option<EnvelopeSection>,
-    /// How measures are spread.
+    /// Statistics of measures.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measures: Option<MeasuresSection>,
 }

@@ -32,14 +32,14 @@ pub struct Scene {
     ground_store: Option<Arc<dyn GroundStore>>,
 }
 
-/// Where a scene lies: all that suns and norths need to know of it.
+/// Location of a scene, as suns and norths need it.
 #[derive(Clone, Copy, Debug)]
 pub struct Whereabouts<'a> {
-    /// Where local coordinates lie.
+    /// Frame of local coordinates.
     pub frame: &'a Frame,
     /// The box around the points.
     pub bounds: Bounds,
-    /// Whether terrain beyond the cloud counts.
+    /// True if terrain beyond the cloud counts.
     pub has_far_terrain: bool,
 }
 
@@ -77,7 +77,7 @@ impl Whereabouts<'_> {
         }));
     }
 
-    /// What titles say where far terrain counts.
+    /// Returns the addition to titles if far terrain counts.
     pub(super) fn far_in_words(&self) -> &'static str {
         if self.has_far_terrain { ", with far terrain" } else { "" }
     }
@@ -94,14 +94,14 @@ pub struct KnownGround {
     pub report: GroundReport,
 }
 
-/// Most cells of a ground that is not made from the whole cloud once more: 25 times what one place needs.
+/// Maximum number of cells of a ground that is not made from the whole cloud once more: 25 times what one place needs.
 const FEW_CELLS: usize = 40_000;
 
 /// The ground that was made so far.
 #[derive(Default)]
 struct MadeGround {
     last: Option<(MapGrid, GroundPoints, Arc<KnownGround>)>,
-    /// Whether a ground of few cells was made: the next one finds all that shows it sorted.
+    /// True if a ground of few cells was made: the next one finds all its input sorted.
     has_few: bool,
     by_squares: Option<GroundBySquares>,
 }
@@ -154,7 +154,7 @@ impl Scene {
         Self::of_fitted(model, cloud)
     }
 
-    /// As [`Scene::new`], for the cloud of another scene, whose heights are fitted already.
+    /// Creates a scene as [`Scene::new`], for the cloud of another scene, whose heights are fitted already.
     #[must_use]
     pub fn of_fitted(model: SceneModel, cloud: Arc<PointCloud>) -> Self {
         Self {
@@ -232,7 +232,7 @@ impl Scene {
         Ok(&self.ground_cloud)
     }
 
-    /// Where local coordinates lie. A scene that knows no reference system takes that of the cloud that shows its
+    /// Returns the frame of local coordinates. A scene without a reference system has that of the cloud that shows its
     /// ground.
     #[must_use]
     pub fn frame(&self) -> &Frame {
@@ -240,13 +240,13 @@ impl Scene {
         if frame.crs.kind == CrsKind::Unknown { &self.ground_cloud.frame } else { frame }
     }
 
-    /// How balls block.
+    /// Returns the rule by which balls block.
     #[must_use]
     pub fn rule(&self) -> &BlockRule {
         &self.rule
     }
 
-    /// What blocks lines of sight. Pulses are left out where nothing depends on them.
+    /// Returns the obstacles to lines of sight. Pulses are left out if nothing depends on them.
     ///
     /// # Errors
     /// Those of [`SceneModel::scene`].
@@ -255,7 +255,7 @@ impl Scene {
         kept.get(|| self.model.scene(&self.rule, unproven, control))
     }
 
-    /// What blocks lines of sight beside vegetation.
+    /// Returns the obstacles to lines of sight without vegetation.
     ///
     /// # Errors
     /// Those of [`SceneModel::scene_without_vegetation`].
@@ -280,7 +280,7 @@ impl Scene {
                 Some(kept) => kept,
                 None => control.stage("computing ground", 0, || GroundBySquares::new(cloud, &params, control))?,
             };
-            let (ground, report) = made.by_squares.insert(by_squares).on(grid, control)?;
+            let (ground, report) = made.by_squares.insert(by_squares).make(grid, control)?;
             return Ok(Arc::new(KnownGround { ground, report }));
         }
         let store = self.ground_store.as_deref();
@@ -339,7 +339,7 @@ impl Scene {
         balls.centers.iter().zip(&balls.radii).map(top)
     }
 
-    /// Where it lies.
+    /// Returns its location.
     #[must_use]
     pub fn whereabouts(&self) -> Whereabouts<'_> {
         let has_far_terrain = !self.model.far_terrain().is_empty();

@@ -32,7 +32,7 @@ impl<T: Serialize> Serialize for NamedValues<T> {
     }
 }
 
-/// What became of the places that a question is about.
+/// Counts of the places of a question by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct PlacesReport {
     /// Cells on the ground under a cover, which have no answer.
@@ -49,7 +49,7 @@ pub struct PlacesReport {
     pub edge: Option<EdgeReport>,
 }
 
-/// Where on earth a scene lies.
+/// Location of a scene on earth.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LocationSection {
     latitude_deg: f64,
@@ -88,7 +88,7 @@ pub struct PeriodSection {
     pub(super) max_direction_error_deg: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) rms_direction_error_deg: Option<f64>,
-    /// What each rule says.
+    /// Description of each rule.
     #[serde(flatten)]
     pub(super) rules: NamedValues<String>,
 }
@@ -130,7 +130,7 @@ impl PeriodSection {
 /// Single suns.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SunSection {
-    /// Where the sun stands at each instant, of a few.
+    /// Position of the sun at each instant, if there are few.
     #[serde(flatten)]
     pub(super) instants: NamedValues<SunAt>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -140,14 +140,14 @@ pub struct SunSection {
     pub(super) suns_below_horizon: Option<usize>,
 }
 
-/// Where the sun stands.
+/// Position of the sun.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct SunAt {
     pub(super) azimuth_deg: f64,
     pub(super) elevation_deg: f64,
 }
 
-/// What sun and sky send over a period.
+/// Radiation of sun and sky over a period.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct RadiationSection {
     pub(super) source: String,
@@ -184,7 +184,7 @@ fn is_zero(count: &usize) -> bool {
 }
 
 impl GroundSection {
-    /// What is known of it.
+    /// Describes a ground.
     #[must_use]
     pub fn of(known: &KnownGround) -> Self {
         let grid = known.ground.grid;
@@ -216,7 +216,7 @@ pub struct RoofsSection {
     pub(super) small_planes_area_m2: f64,
 }
 
-/// What lines of sight meet.
+/// Obstacles to lines of sight.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LinesSection {
     /// Answers of pairs.
@@ -255,7 +255,7 @@ impl LinesSection {
     }
 }
 
-/// What trees let through.
+/// Light through trees.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TreesSection {
     vegetation_balls: usize,
@@ -271,7 +271,7 @@ pub struct TreesSection {
     /// Mean extinction in them, per metre.
     #[serde(skip_serializing_if = "Option::is_none")]
     mean_extinction: Option<f64>,
-    /// By what their optical depth is multiplied without leaves.
+    /// Factor of their optical depth without leaves.
     #[serde(skip_serializing_if = "Option::is_none")]
     depth_without_leaves: Option<f64>,
 }
@@ -304,7 +304,7 @@ impl TreesSection {
     }
 }
 
-/// How measures are spread over targets.
+/// Statistics of measures over targets.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MeasuresSection {
     /// Targets with an answer.
@@ -319,14 +319,14 @@ impl MeasuresSection {
         Self::of_count(targets.target_count(), measures)
     }
 
-    /// Of so many targets.
+    /// Creates the section for a number of targets.
     pub(super) fn of_count<'a>(targets: usize, measures: impl IntoIterator<Item = &'a Measure>) -> Self {
         let spread = measures.into_iter().map(|measure| (measure.name.clone(), measure.rounded_statistics()));
         Self { targets, spread: NamedValues(spread.collect()) }
     }
 }
 
-/// How many pairs have which answer.
+/// Number of pairs for each answer.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct PairsSection {
     pairs: usize,

@@ -1,9 +1,9 @@
 //! Shadow: what of one or more suns reaches places.
 
 use super::how_sure::HowSure;
-use super::light::{Light, OnTargets};
 use super::sections::{MeasuresSection, PlacesReport};
 use super::sun::{MAX_LISTED_SUNS, NamedSun, SunPlace, Suns};
+use super::sun_and_sky::{Light, OnTargets};
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::shadow::{
     Edges, LIT, ShadowSun, half_or_more, lit_probabilities, scene_shadow, sun_directions, unproven_light,
@@ -16,24 +16,24 @@ use belvedere_data::report::percent;
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 
-/// Which places the sun reaches.
+/// Places in the sun.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShadowQuestion {
     /// The suns.
     pub suns: Suns,
-    /// Where on earth, and how clocks run.
+    /// Location on earth, and clock.
     #[serde(default)]
     pub place: SunPlace,
-    /// Whether the sun is a point, or a disc of which places see a share.
+    /// Shape of the sun: a point, or a disc of which places see a share.
     #[serde(default)]
     pub edges: Edges,
-    /// What gets through trees.
+    /// Light through trees.
     #[serde(default)]
     pub trees: ThroughTrees,
-    /// What to make of light that pulses do not prove; `None` to report it where one sun with hard edges allows that.
+    /// Treatment of unproven light; `None` to report it if one sun with hard edges allows that.
     #[serde(default)]
     pub unproven: Option<UnprovenAs>,
-    /// How sure to say answers are; for suns with hard edges among opaque trees.
+    /// Request for the certainty of answers; for suns with hard edges among opaque trees.
     #[serde(default)]
     pub how_sure: HowSure,
 }
@@ -51,7 +51,7 @@ pub struct ShadowResults {
 pub const UNPROVEN: &str = "unproven";
 
 impl ShadowQuestion {
-    /// Whether pulses are tested: of one sun that is a point; of many it would take long.
+    /// Returns whether pulses are tested: for one sun that is a point. For many suns it would take long.
     fn proof(&self, suns: usize) -> Result<UnprovenAs> {
         let is_possible = suns == 1 && self.edges == Edges::Hard;
         match self.unproven {
@@ -68,11 +68,11 @@ impl ShadowQuestion {
     }
 }
 
-/// How likely each target is lit, and whether that is uncertain.
+/// Probability that each target is lit, and flags of the uncertain ones.
 type Sureness = (Vec<f32>, Option<Vec<f32>>);
 
 impl ShadowQuestion {
-    /// How sure the answers of each sun are; empty where that is not wanted. `doubts` are of a single sun.
+    /// Computes the certainty of the answers of each sun; empty if not wanted. `doubts` are of a single sun.
     fn sureness(
         &self,
         suns: &[ShadowSun],
@@ -118,14 +118,14 @@ impl Ask for ShadowQuestion {
         control: &Control<'_>,
     ) -> Result<Answers<ShadowResults>> {
         self.how_sure.check_scene(scene)?;
-        let suns = self.suns.over(&self.place, &scene.whereabouts(), context)?;
+        let suns = self.suns.resolve(&self.place, &scene.whereabouts(), context)?;
         let kinds: Vec<ShadowSun> = suns.iter().map(|sun| sun.sun).collect();
         let directions: Vec<[f64; 3]> = kinds.iter().flat_map(|sun| sun_directions(sun.to_sun, self.edges)).collect();
         let unproven = self.proof(suns.len())?;
         if self.unproven.is_some_and(|unproven| unproven != UnprovenAs::Visible) {
             scene.check_proof()?;
         }
-        let light = Light::on(places, &directions, (&self.trees, unproven), scene, context, control)?;
+        let light = Light::resolve(places, &directions, (&self.trees, unproven), scene, context, control)?;
         let mut lit = control.stage("testing sun", light.steps(), || {
             scene_shadow(light.obstacles(), &light.targets, &kinds, self.edges, control)
         })?;

@@ -1,9 +1,9 @@
 //! Sky view: how much of the sky places see.
 
 use super::how_sure::{check_interval, check_interval_scene};
-use super::light::{Light, OnTargets};
 use super::scene::Whereabouts;
 use super::sections::{MeasuresSection, PlacesReport};
+use super::sun_and_sky::{Light, OnTargets};
 use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
 use crate::sky_view::{SKY_DIRECTIONS, SkyDirections, scene_sky_view};
 use crate::sum_errors::Intervals;
@@ -13,24 +13,23 @@ use belvedere_data::Result;
 use belvedere_data::control::Control;
 use serde::{Deserialize, Serialize};
 
-/// How much of the sky places see.
+/// Visible part of the sky.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SkyViewQuestion {
     /// The directions of the sky.
     pub sky: SkyParts,
-    /// What gets through trees.
+    /// Light through trees.
     pub trees: ThroughTrees,
-    /// Whether to say how far values may be from the truth: the expected value and an interval that holds 90 %. Only
-    /// where trees are opaque. Default: not.
+    /// True to give the expected value and an interval that holds 90 %. Only for opaque trees. Default: false.
     pub interval: bool,
 }
 
-/// How the sky is parted.
+/// Division of the sky.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SkyParts {
-    /// So many directions, evenly spread, 1 to 100 000. Default 577.
+    /// Number of directions, evenly spread, 1 to 100 000. Default 577.
     Even(usize),
     /// The middles of 145 patches (Tregenza 1987).
     Tregenza,
@@ -75,7 +74,8 @@ impl Ask for SkyViewQuestion {
     ) -> Result<Answers<OnTargets>> {
         check_interval_scene(self.interval, scene, control)?;
         let sky = self.sky.directions()?;
-        let light = Light::on(places, &sky.directions, (&self.trees, UnprovenAs::Visible), scene, context, control)?;
+        let light =
+            Light::resolve(places, &sky.directions, (&self.trees, UnprovenAs::Visible), scene, context, control)?;
         let seen = control.stage("testing sky", light.steps(), || {
             scene_sky_view(light.obstacles(), &light.targets, &sky, Intervals::wanted(self.interval), control)
         })?;

@@ -1,4 +1,4 @@
-//! Where on earth a scene lies, how clocks run there, and which suns and days a user chooses.
+//! Location of a scene on earth, its clock, and the suns and days that a user chooses.
 
 use super::north::North;
 use super::scene::{Scene, Whereabouts};
@@ -18,7 +18,7 @@ use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::fmt::{Display, Formatter};
 
-/// Most suns of which the report says where they stand.
+/// Maximum number of suns whose positions are in the report.
 pub const MAX_LISTED_SUNS: usize = 5;
 
 /// A place on earth, its clocks and its air.
@@ -30,9 +30,9 @@ pub struct SunPlace {
     /// Zone of times and days, such as Europe/Amsterdam or +02:00; `None` for that of a given time, else mean solar
     /// time.
     pub zone: Option<String>,
-    /// By how much the air lifts the sun.
+    /// Refraction of the sun by the air.
     pub refraction: Refraction,
-    /// Which north azimuths count from.
+    /// North of azimuths.
     pub north: North,
 }
 
@@ -93,9 +93,9 @@ pub struct Days {
 /// A sun with its names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedSun {
-    /// Where it stands, and when.
+    /// Position of the sun, and its time.
     pub sun: ShadowSun,
-    /// What tells it from other suns in names, such as `20260621_1500`, or `235_30` for a direction.
+    /// Label that separates it from other suns in names, such as `20260621_1500`, or `235_30` for a direction.
     pub label: String,
     /// Name of its column, such as `lit_20260621_1500`.
     pub column: String,
@@ -103,10 +103,10 @@ pub struct NamedSun {
     pub title: String,
 }
 
-/// Where a sun may stand.
+/// Permitted positions of a sun.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SunRange {
-    /// At any elevation; nothing is lit by one below the horizon.
+    /// Any elevation; a sun below the horizon lights nothing.
     AnyElevation,
     /// On the horizon or above it.
     NotBelowHorizon,
@@ -143,8 +143,8 @@ pub fn check_sun([azimuth, elevation]: [f64; 2], range: SunRange) -> Result<()> 
 /// The greatest declination of the sun, degrees, and what air, grids and rounded numbers add.
 const MAX_DECLINATION: f64 = 25.0;
 
-/// What to know of a sun, azimuth and elevation in degrees, that never stands there over `site`, where that is known: a
-/// warning where it would, were the two swapped.
+/// Returns a remark on a sun, azimuth and elevation in degrees, that never stands there over `site`, if that is known.
+/// It is a warning if the sun would stand there with both swapped.
 #[must_use]
 pub fn remark_on_sun(site: Option<Site>, [azimuth, elevation]: [f64; 2]) -> Option<Remark> {
     let site = site.filter(|_| elevation > 0.0)?;
@@ -181,7 +181,8 @@ impl SunPlace {
         Ok(anywhere)
     }
 
-    /// Where the middle of a scene lies on earth: as given, else as its reference system says, else `elsewhere`.
+    /// Returns the location of the middle of a scene on earth: as given, else by its reference system, else
+    /// `elsewhere`.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] where nothing says it, for a given location that is far from what the reference
@@ -203,7 +204,7 @@ impl SunPlace {
             } if given.is_none() => unknown(format!("unknown ({} at {value})", frame.crs.describe())),
             other => Err(other),
         })?;
-        match self.beside(frame, bounds) {
+        match self.distance_from_crs(frame, bounds) {
             Some(beside) if beside.distance > CONTRADICTION_DISTANCE => {
                 let expected = "near the scene, or left out; where the reference system is wrong, give the right one with its override";
                 refused(Parameter::Location, beside.to_string(), expected)
@@ -212,8 +213,8 @@ impl SunPlace {
         }
     }
 
-    /// How far the given location is from what the reference system says.
-    fn beside(&self, frame: &Frame, bounds: &Bounds) -> Option<LocationBeside> {
+    /// Returns the distance between the given location and that of the reference system.
+    fn distance_from_crs(&self, frame: &Frame, bounds: &Bounds) -> Option<LocationBeside> {
         let given = self.location?;
         let (by_crs, _) = Site::of_scene(frame, bounds, None, None).ok()?;
         let by_crs = [by_crs.latitude, by_crs.longitude];
@@ -227,7 +228,7 @@ impl SunPlace {
         self.site_at(&scene.whereabouts(), context, elsewhere)
     }
 
-    /// Where on earth a scene lies, which is reported.
+    /// Returns the location of a scene on earth, and reports it.
     ///
     /// # Errors
     /// Those of [`SunPlace::site_of`].
@@ -238,7 +239,8 @@ impl SunPlace {
         elsewhere: Option<[f64; 2]>,
     ) -> Result<Site> {
         let found = self.site_of(whereabouts.frame, &whereabouts.bounds, elsewhere)?;
-        let beside = self.beside(whereabouts.frame, &whereabouts.bounds).filter(|beside| beside.distance > NEAR);
+        let beside =
+            self.distance_from_crs(whereabouts.frame, &whereabouts.bounds).filter(|beside| beside.distance > NEAR);
         context.add(beside.map(|beside| {
             let text = format!("the location is {beside}");
             Remark::warning("location-far-away", text).with("distance_km", rounded(beside.distance / 1000.0, 1))
@@ -252,7 +254,8 @@ impl SunPlace {
         self.zone.as_deref().map(Zone::parse).transpose()
     }
 
-    /// How clocks run at a site: as given, else as in the first of the `times` that says so, else by the sun.
+    /// Returns the time zone of a site: as given, else that of the first of the `times` that has one, else mean solar
+    /// time.
     ///
     /// # Errors
     /// Those of [`Zone::parse`].
@@ -271,7 +274,7 @@ impl SunPlace {
 }
 
 impl Days {
-    /// Whether there is no day.
+    /// Returns true if there is no day.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.dates.is_empty() && self.between.is_none()
@@ -282,7 +285,7 @@ impl Days {
         self.between.iter().flatten()
     }
 
-    /// How days are parted.
+    /// Returns the parameters of the division of days.
     #[must_use]
     pub fn params(&self, place: &SunPlace) -> DayParams {
         let usual = DayParams::default();
@@ -401,7 +404,7 @@ impl Suns {
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for times and days that cannot be, and a scene that lies nowhere on earth.
-    pub fn over(
+    pub fn resolve(
         &self,
         place: &SunPlace,
         whereabouts: &Whereabouts<'_>,

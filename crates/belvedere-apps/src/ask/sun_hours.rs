@@ -1,26 +1,24 @@
 //! Sun hours: how long the sun reaches places on days, and whether rules of daylight are met.
 
 use super::how_sure::{check_interval, check_interval_scene, knows_intervals};
-use super::light::{Light, OnTargets};
 use super::scene::Whereabouts;
 use super::sections::{MeasuresSection, NamedValues, PeriodSection, PlacesReport};
 use super::sun::{Days, SunPlace, sun_days_above};
+use super::sun_and_sky::{Light, OnTargets};
 use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
-use crate::rows::Obstacles;
 use crate::sum_errors::Intervals;
 use crate::sun::{Binning, DayParams, Period, Site, SunSchedule, Zone};
-use crate::sun_hours::{SunPlan, SunRule, SunSums, scene_sun_hours};
-use crate::targets::{Measure, ResultKind, Targets};
+use crate::sun_hours::{SunPlan, SunRule, scene_sun_hours};
+use crate::targets::{Measure, ResultKind};
 use belvedere_core::query::UnprovenAs;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 /// Names of the columns of rules of one's own, in the order given.
 const OWN_RULES: [&str; 8] = ["rule_1", "rule_2", "rule_3", "rule_4", "rule_5", "rule_6", "rule_7", "rule_8"];
 
-/// How long the sun reaches places.
+/// Hours of sun at places.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SunHoursQuestion {
@@ -28,28 +26,16 @@ pub struct SunHoursQuestion {
     pub days: Days,
     /// Rules of daylight, by name or as HOURS@DAYS.
     pub rules: Vec<String>,
-    /// Where on earth, and how clocks run.
+    /// Location on earth, and clock.
     pub place: SunPlace,
-    /// Greatest angle between a sun and the direction that is tested for it, degrees, 0 to 5; `None` for 0 up to 2000
+    /// Maximum angle between a sun and the direction that is tested for it, degrees, 0 to 5; `None` for 0 up to 2000
     /// suns, else 1.
     pub sun_tolerance_deg: Option<f64>,
-    /// What gets through trees.
+    /// Light through trees.
     pub trees: ThroughTrees,
-    /// Whether to say how far hours may be from the truth: the expected value and an interval that holds 90 %. Only
-    /// where trees are opaque. Default: not.
+    /// True to give the expected value of hours and an interval that holds 90 %. Only for opaque trees. Default: false.
     #[serde(default)]
     pub interval: bool,
-}
-
-/// What is known before the sun is tested. [`PreparedSun::answers`] makes answers of what it lit.
-pub struct PreparedSun {
-    /// The suns.
-    pub plan: SunPlan,
-    /// Where on earth the scene lies.
-    pub site: Site,
-    light: Light,
-    has_interval: bool,
-    title: String,
 }
 
 /// The rules, each with the name of its column.
@@ -85,22 +71,15 @@ impl SunHoursQuestion {
         }
     }
 
-    /// The suns of the days and of the rules at a site, and how clocks run there. Directions are those of `among` where
-    /// given, each for suns within the tolerance, 1 degree by default.
+    /// Returns the suns of the days and of the rules at a site, and its time zone.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] without days, and for what cannot be.
-    pub fn plan(&self, site: &Site, among: Option<&[[f64; 3]]>) -> Result<(SunPlan, Zone)> {
+    pub fn plan(&self, site: &Site) -> Result<(SunPlan, Zone)> {
         let zone = self.place.zone_at(site, self.days.times())?;
         let params = self.days.params(&self.place);
         let schedule = |period: &Period, params: &DayParams| {
-            let days = sun_days_above(site, &zone, period, params)?;
-            match among {
-                None => SunSchedule::new(&days, self.binning()),
-                Some(directions) => {
-                    SunSchedule::among(&days, directions, self.sun_tolerance_deg.unwrap_or(1.0).to_radians())
-                }
-            }
+            SunSchedule::new(&sun_days_above(site, &zone, period, params)?, self.binning())
         };
         let mut of_rules = Vec::new();
         for (column, rule) in rules(&self.rules)? {
@@ -115,34 +94,6 @@ impl SunHoursQuestion {
             (None, None) => return missing_period(),
         };
         Ok((SunPlan::new(main, of_rules), zone))
-    }
-
-    /// All that is known before the sun is tested.
-    ///
-    /// # Errors
-    /// Those of [`SunHoursQuestion::plan`], of finding the targets, and of building what blocks.
-    pub fn prepare(
-        &self,
-        scene: &Scene,
-        places: &Places,
-        among: Option<&[[f64; 3]]>,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<PreparedSun> {
-        check_interval_scene(self.interval, scene, control)?;
-        // a single place costs little more with its interval
-        let is_single = matches!(places, Places::At(..));
-        let has_interval = self.interval || is_single && !self.trees.is_light() && knows_intervals(scene, control)?;
-        let site = self.place.site(scene, context, None)?;
-        let (plan, zone) = self.plan(&site, among)?;
-        context.report.period = Some(section(&plan, &zone, &self.days.params(&self.place)));
-        let light = Light::on(places, plan.directions(), (&self.trees, UnprovenAs::Visible), scene, context, control)?;
-        if among.is_some() {
-            // what was kept is not tested again
-            context.report.lines_of_sight = None;
-        }
-        let title = self.title(&plan, &zone, &scene.whereabouts());
-        Ok(PreparedSun { plan, site, light, has_interval, title })
     }
 
     pub(super) fn title(&self, plan: &SunPlan, zone: &Zone, whereabouts: &Whereabouts<'_>) -> String {
@@ -164,41 +115,6 @@ fn missing_period<T>() -> Result<T> {
     })
 }
 
-impl PreparedSun {
-    /// The targets.
-    #[must_use]
-    pub fn targets(&self) -> &Arc<Targets> {
-        &self.light.targets
-    }
-
-    /// What the light meets.
-    #[must_use]
-    pub fn obstacles(&self) -> Obstacles<'_> {
-        self.light.obstacles()
-    }
-
-    /// Tests the sun.
-    ///
-    /// # Errors
-    /// Those of [`scene_sun_hours`].
-    pub fn test(&self, control: &Control<'_>) -> Result<SunSums> {
-        control.stage("testing sun", self.light.steps(), || {
-            let intervals = Intervals::wanted(self.has_interval);
-            scene_sun_hours(self.obstacles(), self.targets(), &self.plan, Some(&self.site), intervals, control)
-        })
-    }
-
-    /// The answers, from what the sun lit.
-    #[must_use]
-    pub fn answers(self, sums: SunSums, context: &mut Context) -> Answers<OnTargets> {
-        let targets = &self.light.targets;
-        let measures = sums.into_measures(&self.plan, targets);
-        context.report.measures = Some(MeasuresSection::of(targets, &measures));
-        summarise(&self.plan, &self.title, &measures, &PlacesReport::in_words(targets), context);
-        Answers::new(self.light.titled(self.title), measures)
-    }
-}
-
 impl Ask for SunHoursQuestion {
     type Found = OnTargets;
 
@@ -217,9 +133,25 @@ impl Ask for SunHoursQuestion {
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<Answers<OnTargets>> {
-        let prepared = self.prepare(scene, places, None, context, control)?;
-        let sums = prepared.test(control)?;
-        Ok(prepared.answers(sums, context))
+        check_interval_scene(self.interval, scene, control)?;
+        // a single place costs little more with its interval
+        let is_single = matches!(places, Places::At(..));
+        let has_interval = self.interval || is_single && !self.trees.is_light() && knows_intervals(scene, control)?;
+        let site = self.place.site(scene, context, None)?;
+        let (plan, zone) = self.plan(&site)?;
+        context.report.period = Some(section(&plan, &zone, &self.days.params(&self.place)));
+        let light =
+            Light::resolve(places, plan.directions(), (&self.trees, UnprovenAs::Visible), scene, context, control)?;
+        let targets = &light.targets;
+        let sums = control.stage("testing sun", light.steps(), || {
+            let intervals = Intervals::wanted(has_interval);
+            scene_sun_hours(light.obstacles(), targets, &plan, Some(&site), intervals, control)
+        })?;
+        let measures = sums.into_measures(&plan, targets);
+        context.report.measures = Some(MeasuresSection::of(targets, &measures));
+        let title = self.title(&plan, &zone, &scene.whereabouts());
+        summarise(&plan, &title, &measures, &PlacesReport::in_words(targets), context);
+        Ok(Answers::new(light.titled(title), measures))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Where the sun stands above a scene.
+//! Position of the sun above a scene.
 
 use super::sun::SunPlace;
 use super::{Answers, Ask, Context, Places, Scene};
@@ -8,13 +8,13 @@ use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use serde::{Deserialize, Serialize};
 
-/// Where the sun stands at some times.
+/// Position of the sun at some times.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SunPositionQuestion {
     /// Instants, ISO 8601, with an offset unless the zone says how clocks run.
     pub times: Vec<String>,
-    /// Where on earth, and how clocks run.
+    /// Location on earth, and clock.
     pub place: SunPlace,
 }
 

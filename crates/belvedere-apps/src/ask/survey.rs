@@ -1,4 +1,4 @@
-//! What answers say of the survey itself: lines that do not fit, surveys years apart, ground points only.
+//! Remarks on the survey itself: lines that do not fit, surveys years apart, ground points only.
 
 use super::Remark;
 use belvedere_core::model::{DatedSurvey, SurveyFindings};
@@ -9,7 +9,7 @@ use belvedere_data::report::rounded;
 /// Names that a remark lists at most.
 const MAX_NAMED: usize = 8;
 
-/// What is to be known of a survey, of which places are in a frame.
+/// Returns remarks on a survey, with places in the coordinates of a frame.
 #[must_use]
 pub fn remarks_on_survey(findings: &SurveyFindings, frame: &Frame) -> Vec<Remark> {
     let strips = findings.strips.as_ref().and_then(remark_on_strips);

@@ -1,4 +1,4 @@
-//! Where to scan again: which stations would prove most of the unproven lines of sight of a question.
+//! Survey plan: the stations that would prove most of the unproven lines of sight of a question.
 
 use super::cameras::{CameraSite, Candidates};
 use super::observers::{Reach, Standing, check_height, skip_unfit, stand};
@@ -17,44 +17,44 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Most lines of sight that are tested; of more, as many are taken at even steps.
+/// Maximum number of lines of sight that are tested; of more, as many are taken at even steps.
 const MAX_LINES: usize = 20_000;
 /// Sine of the elevation of suns below which no line is followed: half a degree.
 const LOWEST_SUN: f64 = 0.0087;
-/// How far above all that stands a line to a sun ends, metres.
+/// Height above all objects at which a line to a sun ends, metres.
 const ABOVE_ALL: f64 = 1.0;
 /// Side of the cells in which the ground below stations is known, metres.
 const GROUND_CELL: f64 = 1.0;
 
-/// Where to scan again so that unproven lines of sight become proven: lines between pairs, or from observers to cells
+/// Stations for another scan that make unproven lines of sight proven: lines between pairs, or from observers to cells
 /// or points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SurveyPlanQuestion {
     /// Stations to choose, 1 or more. Default 1.
     pub count: usize,
-    /// Where the scanner could stand.
+    /// Possible stations of the scanner.
     pub candidates: Candidates,
     /// Height of the scanner above the ground or the roof, metres, 0 or more; `None` for 1.8.
     pub station_height: Option<f64>,
-    /// Greatest range at which surfaces return pulses, metres, above 0; `None` for 100.
+    /// Maximum range at which surfaces return pulses, metres, above 0; `None` for 100.
     pub max_distance: Option<f64>,
     /// Angle between pulses, degrees, above 0 to 90; `None` for 0.1.
     pub angle_step_deg: Option<f64>,
-    /// Who looks at the places of the question; none where these are pairs, and where suns are given.
+    /// Observers of the places of the question; none for pairs, and for given suns.
     #[serde(skip)]
     pub observers: Vec<Standing>,
     /// Suns whose light is to be proven at the places of the question.
     pub suns: Option<Suns>,
-    /// Where on earth, and how clocks run.
+    /// Location on earth, and clock.
     pub place: SunPlace,
-    /// Whether all places of a line of candidates are one candidate, such as a flight line. Default: each is one.
+    /// True if all places of a line of candidates are one candidate, such as a flight line. Default: each is one.
     pub whole_lines: bool,
     /// Height above the ground of observers without one, metres, 0 or more; `None` for 1.7.
     pub observer_height: Option<f64>,
     /// Height above the ground of targets of pairs without one, metres, 0 or more; `None` for 0.1.
     pub target_height: Option<f64>,
-    /// Which points are ground.
+    /// Source of ground points.
     pub ground: GroundPoints,
 }
 
@@ -80,9 +80,9 @@ impl Default for SurveyPlanQuestion {
 /// Stations that were chosen, among those that could be.
 #[derive(Clone, Debug)]
 pub struct SurveyPlanResults {
-    /// Where each candidate looks from, local metres, of a line its first place; NaN for one that cannot be used.
+    /// Eye of each candidate, local metres, of a line its first place; NaN for one that cannot be used.
     pub eyes: Vec<[f64; 3]>,
-    /// What is expected of them.
+    /// Expected gain of the stations.
     pub plan: SurveyPlan,
     /// Number of unproven lines.
     pub unproven: usize,
@@ -91,13 +91,13 @@ pub struct SurveyPlanResults {
 /// A candidate with what is expected of it: what tables hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedStation {
-    /// Where it looks from, local metres.
+    /// Position of its eye, local metres.
     pub eye: [f64; 3],
     /// Its place in the order in which stations were chosen, from 1; `None` for one that was not.
     pub order: Option<usize>,
-    /// What it would prove alone.
+    /// Gain of the station alone.
     pub alone: SurveyGain,
-    /// What it and those chosen before it prove together, for one that was chosen.
+    /// Gain together with those chosen before it, for one that was chosen.
     pub together: Option<SurveyGain>,
 }
 
@@ -190,7 +190,7 @@ impl SurveyPlanQuestion {
         Ok(some_of(rows.len() * eyes.len(), line, context))
     }
 
-    /// From above all that stands in the scene towards each sun down to the places.
+    /// Returns lines from above all objects of the scene towards each sun down to the places.
     fn lines_to_suns(
         &self,
         suns: &Suns,
@@ -199,7 +199,7 @@ impl SurveyPlanQuestion {
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<Vec<[[f64; 3]; 2]>> {
-        let suns = suns.over(&self.place, &scene.whereabouts(), context)?;
+        let suns = suns.resolve(&self.place, &scene.whereabouts(), context)?;
         let towards: Vec<[f64; 3]> =
             suns.iter().map(|sun| sun.sun.to_sun).filter(|to_sun| to_sun[2] > LOWEST_SUN).collect();
         let targets = places.targets(scene, context, control)?;

@@ -16,12 +16,12 @@ const MIN_PLACES: usize = 20;
 const GROUND_SHARE: f64 = 0.2;
 /// Ground and terrain that are this near agree, metres: a raster of coarse cells is no better.
 const AGREES: f64 = 1.0;
-/// How exact a ratio is, as a share of the difference that it explains: cells of 30 m on slopes.
+/// Accuracy of a ratio, as a share of the difference that it explains: cells of 30 m on slopes.
 const RATIO_ERROR: f64 = 0.02;
-/// Heights of the terrain less those of a level of the scene are spread over this much at most, metres, if they are to
-/// tell an offset: noise and grass, cells of 10 m on slopes, cells of 30 m in hills.
+/// Maximum spread of the heights of the terrain less those of a level of the scene, metres, for an offset to be
+/// significant: noise and grass, cells of 10 m on slopes, cells of 30 m in hills.
 const SPREADS: [f64; 3] = [1.0, 2.0, 4.0];
-/// How many times as many places lie at the level of the ground as in the next range above it, of the same height.
+/// Minimum ratio of places at the level of the ground to those in the next range above it, of the same height.
 const MIN_PEAK: f64 = 2.0;
 /// Share of the places that may lie below the ground, as noise and pits do: with more of them the level is another one.
 const MAX_SHARE_BELOW: f64 = 0.05;
@@ -132,8 +132,8 @@ fn differing(offset: f64) -> FoundContradiction {
     TERRAIN_HEIGHTS.found(text).with("difference_m", rounded(offset.abs(), 1)).with("offset_m", by)
 }
 
-/// By how much the terrain lies above the ground, by its heights less those of places, of which a share shows the
-/// ground and the others stand above it; `None` where they tell no common offset.
+/// Returns the height of the terrain above the ground, from its heights less those of places. A share of the places
+/// shows the ground; the others stand above it. `None` without a common offset.
 fn common_offset(mut rises: Vec<f64>) -> Option<f64> {
     // from the lowest places upwards: what stands on the ground follows
     rises.sort_by(|a, b| b.total_cmp(a));

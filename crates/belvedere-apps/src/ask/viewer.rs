@@ -1,4 +1,4 @@
-//! What to know of targets of one viewer, however they are tested.
+//! Remarks on targets of one viewer, for all tests.
 
 use super::Remark;
 use belvedere_core::query::{BlockingTriangles, Coverage, MedialScene};
@@ -46,9 +46,9 @@ pub fn remark_on_doubt(doubt: Option<&str>) -> Option<Remark> {
     doubt.and_then(|doubt| Remark::of_contradiction(REFERENCE_SYSTEM.found(doubt)))
 }
 
-/// What is to be known of files that were read: what speaks against the reference system, files that hold fewer points
-/// than their headers announce, each with its name and the number that is missing, and what contradicts each other. Of
-/// many contradictions of one kind the first is said, with their number.
+/// Returns remarks on files that were read. They concern the reference system, files with fewer points than their
+/// headers announce (each with its name and the missing number), and contradictions. Of many contradictions of one kind
+/// the first is named, with their number.
 #[must_use]
 pub fn remarks_on_reading(
     doubt: Option<&str>,
@@ -88,8 +88,8 @@ pub fn remark_on_faces(name: &str, count: usize) -> Option<Remark> {
     (count > 0).then(|| Remark::note("faces-turn-around", text()).with("count", count as f64))
 }
 
-/// A warning that a `file` has columns or properties that are not used: those that look as if they said how observers
-/// look and are not understood, and `limits` that are understood, but of no use to the question.
+/// Warns that a `file` has columns or properties that are not used. These look like limits of observers and are not
+/// understood, or are `limits` that are understood, but of no use to the question.
 #[must_use]
 pub fn remark_on_unused(file: &str, unknown: &[String], limits: &[String]) -> Option<Remark> {
     let advice = "understood are z, height, min_distance, max_distance, azimuth_from, azimuth_to, elevation_from, \
@@ -109,8 +109,8 @@ pub fn remark_on_targets_inside(inside: usize, count: usize) -> Option<Remark> {
     Remark::of_share("targets-inside-obstacle", inside, count, "targets", so).map(Remark::into_note)
 }
 
-/// A warning of an end of lines of sight that lies so deep in an obstacle that nothing is seen from there, nor it from
-/// anywhere; `what` it is is a word such as "eye".
+/// Warns of an end of lines of sight that lies so deep in an obstacle that all of them are blocked. `what` is a word
+/// for it such as "eye".
 #[must_use]
 pub fn remark_on_inside(blockers: &MedialScene, end: [f64; 3], what: &str) -> Option<Remark> {
     blockers.is_inside_obstacle(end).then(|| {

@@ -1,10 +1,10 @@
 //! Viewshed: what observers see of cells, of points and of far terrain, or from where a target is seen.
 
 mod limits;
-mod sights;
+mod seen_targets;
 
 pub use limits::{StandingObserver, ViewLimits};
-pub use sights::{FarSeen, SeenSection};
+pub use seen_targets::{FarSeen, SeenSection};
 
 use super::how_sure::HowSure;
 use super::north::North;
@@ -13,10 +13,10 @@ use super::scene::KnownGround;
 use super::sections::LinesSection;
 use super::{Answers, Ask, Context, GridCells, Places, Remark, Scene};
 use crate::eyes::{EyesReport, fault_of_target};
-use crate::targets::{Measure, Targets, set_on_ground, set_on_terrain};
+use crate::targets::{Measure, TARGET_LIFT, Targets, set_on_ground, set_on_terrain};
 use crate::viewshed::{
-    OBSERVER_HEIGHT, Observer, SightLimits, TARGET_HEIGHT, Viewshed as Seen, ViewshedParams, answers_of_bands,
-    box_within_reach, cell_for, far_targets, terrain_within_reach, tested_height,
+    OBSERVER_HEIGHT, Observer, SightLimits, Viewshed as Seen, ViewshedParams, answers_of_bands, box_within_reach,
+    cell_for, far_targets, terrain_within_reach, tested_height,
 };
 use belvedere_core::ground::{Ground, GroundPoints, MapGrid};
 use belvedere_core::query::{Answer, EarthParams, MedialScene, UnprovenAs};
@@ -24,49 +24,49 @@ use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::report::rounded;
 use belvedere_data::{ElevationGrid, Error, Frame, Parameter, Result};
+use seen_targets::{Sights, Things};
 use serde::{Deserialize, Serialize};
-use sights::{Sights, Things};
 use std::sync::Arc;
 
-/// Most eyes below the ground that are named one by one.
+/// Maximum number of eyes below the ground that are named one by one.
 const MAX_NAMED: usize = 5;
 
-/// What observers see, or from where a target is seen.
+/// Places visible from observers, or from which a target is visible.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ViewshedQuestion {
-    /// Who looks; of a reverse viewshed the one target, which is looked at.
+    /// Observers; for a reverse viewshed the one target.
     #[serde(skip)]
     pub observers: Vec<StandingObserver>,
-    /// Whether the viewshed is a reverse one: observers stand in all cells, and look at one target. Default: not.
+    /// True for a reverse viewshed: observers stand in all cells, and look at one target. Default: false.
     pub reverse: bool,
     /// Height of observers above the ground, metres, 0 or more; `None` for 1.7.
     pub observer_height: Option<f64>,
     /// Height of targets above the ground, metres, 0 or more; `None` for 0.1.
     pub target_height: Option<f64>,
-    /// Where observers look, unless they have limits of their own. Default: everywhere.
+    /// Limits of observers without their own. Default: none.
     pub limits: ViewLimits,
     /// The north that azimuths count from.
     pub north: North,
-    /// How lines of sight run over the earth.
+    /// Curvature of the earth on lines of sight.
     pub earth: EarthParams,
-    /// What to make of targets whose view pulses do not prove; `None` to report them where pulses are known.
+    /// Treatment of unproven targets; `None` to report them if pulses are known.
     pub unproven: Option<UnprovenAs>,
-    /// How sure to say answers for cells and points are.
+    /// Request for the certainty of answers for cells and points.
     pub how_sure: HowSure,
     /// Side of a cell, metres, above 0; `None` for 0.5, doubled until there are at most 4 million cells.
     pub cell: Option<f64>,
-    /// Which points are ground.
+    /// Source of ground points.
     pub ground: GroundPoints,
-    /// What is looked at. Default: cells.
+    /// Targets. Default: cells.
     pub targets: Vec<ViewshedTargets>,
-    /// Whether to keep which observer sees which cell. Default: counts only.
+    /// True to keep a mask of the cells of each observer. Default: counts only.
     pub masks: bool,
     /// Height above the ground up to which lowest visible heights are computed, metres, 0 or more; `None` for none.
     pub max_height: Option<f64>,
 }
 
-/// What a viewshed looks at.
+/// Targets of a viewshed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ViewshedTargets {
@@ -78,23 +78,23 @@ pub enum ViewshedTargets {
     FarTerrain,
 }
 
-/// What was seen.
+/// Results of a viewshed.
 pub struct ViewshedResults {
     /// The eyes of observers, or the target of a reverse viewshed, local metres; NaN for those that are skipped.
     pub eyes: Vec<[f64; 3]>,
-    /// Whether the viewshed is a reverse one.
+    /// True for a reverse viewshed.
     pub reverse: bool,
     /// The ground of the cells.
     pub ground: Arc<KnownGround>,
-    /// Of the cells on the ground, where they were wanted.
+    /// Results for the cells on the ground, if wanted.
     pub cells: Option<Seen>,
-    /// How sure these answers are, where that was wanted: measures of the cells.
+    /// Certainty of these answers, if wanted: measures of the cells.
     pub cells_sure: Vec<Measure>,
-    /// Of the points, where they were wanted.
+    /// Results for the points, if wanted.
     pub points: Option<Seen>,
-    /// How sure these answers are, where that was wanted: measures of the points.
+    /// Certainty of these answers, if wanted: measures of the points.
     pub points_sure: Vec<Measure>,
-    /// Of far terrain, where it was wanted.
+    /// Results for far terrain, if wanted.
     pub far: Option<FarSeen>,
     /// Lowest visible heights above the ground, metres, where they were wanted
     /// ([`crate::viewshed::min_visible_heights`]).
@@ -131,7 +131,7 @@ impl ViewshedQuestion {
         if self.reverse { "no cell sees the target" } else { "the observer sees no cell" }
     }
 
-    /// What to do where nothing is seen.
+    /// Returns advice for a view in which nothing is visible.
     fn way_to_see(&self) -> &'static str {
         match self.reverse {
             true => "give a greater height above its surface",
@@ -150,7 +150,7 @@ impl ViewshedQuestion {
     /// Height above the ground of the given places, and of what stands in cells, metres.
     fn heights(&self) -> [f64; 2] {
         let [observer, target] =
-            [self.observer_height.unwrap_or(OBSERVER_HEIGHT), self.target_height.unwrap_or(TARGET_HEIGHT)];
+            [self.observer_height.unwrap_or(OBSERVER_HEIGHT), self.target_height.unwrap_or(TARGET_LIFT)];
         if self.reverse { [target, observer] } else { [observer, target] }
     }
 
@@ -161,7 +161,7 @@ impl ViewshedQuestion {
         GridCells { cell: self.cell, height: Some(tested_height(height)), ground: self.ground, ..GridCells::default() }
     }
 
-    /// Where the eyes of its observers are, and how high they stand where the ground is to give their heights, metres.
+    /// Returns the eyes of its observers, and their height above the ground, metres, if the ground gives their heights.
     pub fn standing(&self) -> impl Iterator<Item = ([f64; 3], f64)> {
         let [usual, _] = self.heights();
         self.observers.iter().map(move |one| (one.standing.place, one.standing.height.unwrap_or(usual)))
@@ -188,8 +188,8 @@ impl ViewshedQuestion {
         }
     }
 
-    /// Says in `context` what is seen of cells of a side, metres, from measures of what nothing blocks and of what of
-    /// that is unproven; how sure the answers are may be among `all`.
+    /// Reports in `context` the visibility of cells of a side, metres, from the measure of free cells and that of the
+    /// unproven ones among them. `all` may contain the certainty of the answers.
     pub(super) fn summarise_parts(&self, measures: &[Measure], (all, cell): (&[Measure], f64), context: &mut Context) {
         let answers = answers_of_bands(measures);
         let is_tested = measures.len() > 1;
@@ -215,7 +215,7 @@ impl ViewshedQuestion {
         }
     }
 
-    /// Where each observer looks, and which north that is counted from.
+    /// Returns the limits of each observer, counted from grid north.
     fn sight_limits(&self, scene: &Scene, context: &mut Context) -> Result<Vec<SightLimits>> {
         let north = self.north.of_scene(scene);
         let of_one = |one: &StandingObserver| one.limits.or(&self.limits).sight_limits(north.of_grid);
@@ -317,7 +317,7 @@ impl ViewshedQuestion {
         }
     }
 
-    /// Who looks, as the last line of the answer.
+    /// Adds the observers as the last line of the answer.
     fn headline_of_eyes(&self, eyes: &EyesReport, context: &mut Context) {
         let (report, name) = match self.reverse {
             true => (&context.report.target, "target"),

@@ -18,14 +18,14 @@ use serde::{Deserialize, Serialize};
 /// Share of the things seen that are of no known kind from which on it is warned of, percent.
 const OTHER_WARNING_PERCENT: f64 = 50.0;
 
-/// What is seen from windows.
+/// Views from windows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct WindowViewsQuestion {
     /// The windows.
     #[serde(skip)]
     pub windows: GivenWindows,
-    /// From which north their azimuths count.
+    /// North of their azimuths.
     pub north: North,
     /// Longest side of the pieces that faces of a mesh are cut into, metres, above 0. Default 2.
     pub spacing: f64,
@@ -33,10 +33,9 @@ pub struct WindowViewsQuestion {
     pub seed: u64,
     /// Number of directions in front of each place, 1 to 100 000. Default 1000.
     pub directions: usize,
-    /// What classes of points are, where that is not what ASPRS says.
+    /// Meanings of classes of points that differ from ASPRS.
     pub classes: Vec<(u8, SeenKind)>,
-    /// Whether views through space that no pulse came near are reported (`None` too) or count as visible. What is given
-    /// needs pulses.
+    /// Treatment of unproven views: reported (`None` too), or visible. A given value needs pulses.
     pub unproven: Option<UnprovenAs>,
 }
 
@@ -54,13 +53,13 @@ impl Default for WindowViewsQuestion {
     }
 }
 
-/// What was found of windows.
+/// Results for windows.
 pub struct WindowViewsResults {
-    /// Where each is and looks to.
+    /// Position and direction of each window.
     pub windows: Vec<Window>,
     /// Name of the object that each is a face of; empty where that is not known.
     pub names: Vec<String>,
-    /// What each sees.
+    /// View from each window.
     pub views: Vec<WindowView>,
     /// Azimuth of grid north from the north that azimuths count from, radians.
     pub grid_north: f64,
@@ -92,7 +91,7 @@ pub struct WindowsSection {
     targets_on_roofs_and_floors: Option<usize>,
 }
 
-/// What windows see.
+/// Statistics of views from windows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ViewsSection {
     directions: usize,

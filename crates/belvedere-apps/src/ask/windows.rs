@@ -31,7 +31,7 @@ pub struct GivenWindow {
 pub struct WindowTargets {
     /// A group for each window.
     pub targets: Targets,
-    /// Where each is and looks to.
+    /// Position and direction of each window.
     pub windows: Vec<Window>,
     /// Name of the object that each is a face of; empty where that is not known.
     pub names: Vec<String>,

@@ -1,10 +1,12 @@
-//! What no selection of cameras can exceed: the linear relaxation, by prices on the targets.
+//! Upper bound for any selection of cameras: the linear relaxation, by prices on the targets.
 //!
 //! Each target t has a price between 0 and its worth w. A selection S of at most k cameras, each target needing r of
-//! them, is worth Σ w·min(count, r) ≤ Σ r·(w − price) + Σ over S of the prices that a camera covers: for one count
-//! each, w·min(count, r) ≤ r·(w − price) + price·count. The k cameras that cover the highest prices bound the last sum
-//! for any S. So any prices give a bound that holds, and the least of these bounds is that of the linear relaxation.
-//! Prices that are the worth of what a greedy selection leaves open, and 0 elsewhere, give a bound no worse than that
+//! them, is worth Σ w·min(count, r). This is at most Σ r·(w − price) plus, over S, the sum of the prices that a camera
+//! covers, since for each count w·min(count, r) ≤ r·(w − price) + price·count. The k cameras that cover the highest
+//! prices bound the last sum for any S. Any prices therefore give a valid bound, and the least of these bounds is that
+//! of the linear relaxation.
+//!
+//! Prices equal to the worth of what a greedy selection leaves open, and 0 elsewhere, give a bound no worse than that
 //! of Nemhauser, Wolsey & Fisher (1978).
 //!
 //! # Source
@@ -26,7 +28,7 @@ const MEMORY: f64 = 0.7;
 /// Steps below this share of their size at the start move nothing.
 const MIN_STEP: f64 = 1e-4;
 
-/// What is decided of a candidate.
+/// Decision on a candidate.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum CandidateFate {
     Open,
@@ -67,7 +69,7 @@ struct AtPrices {
 }
 
 impl Relaxation {
-    /// What the cameras at some prices give, without shares.
+    /// Creates the relaxation of the cameras at some prices, without shares.
     fn of(at: &AtPrices, prices: &[f64]) -> Self {
         let (covered, picked) = (at.covered.clone(), at.picked.clone());
         Self { bound: at.bound, prices: prices.to_vec(), covered, shares: Vec::new(), picked }

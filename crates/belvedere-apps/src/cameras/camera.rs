@@ -1,4 +1,4 @@
-//! What a camera can have in its picture, and how finely.
+//! Area and resolution of a camera's picture.
 
 use crate::viewshed::SightLimits;
 use belvedere_data::report::rounded;
@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// Shape of a usual picture, width over height.
 const ASPECT: f64 = 16.0 / 9.0;
 
-/// What a picture is good for, by the pixels on a metre of a person.
+/// Purpose of a picture, by the pixels on a metre of a person.
 ///
 /// # Source
 /// EN 62676-4:2015, video surveillance systems for use in security applications, part 4: application guidelines.
@@ -17,13 +17,13 @@ const ASPECT: f64 = 16.0 / 9.0;
 pub enum Level {
     /// The number, direction and speed of people.
     Monitor,
-    /// Whether somebody is there.
+    /// Presence of a person.
     Detect,
     /// Details such as clothing.
     Observe,
-    /// Whether it is somebody known.
+    /// Recognition of a known person.
     Recognise,
-    /// Who it is, beyond doubt.
+    /// Identification beyond doubt.
     Identify,
 }
 
@@ -37,7 +37,7 @@ impl Level {
         ("identify", Self::Identify),
     ];
 
-    /// Least pixels per metre.
+    /// Minimum pixels per metre.
     #[must_use]
     pub fn pixels_per_metre(self) -> f64 {
         match self {
@@ -100,7 +100,7 @@ impl Lens {
         Ok(())
     }
 
-    /// Whether the picture is flat.
+    /// Returns true if the picture is flat.
     #[must_use]
     pub fn is_flat(&self) -> bool {
         self.width < PI
@@ -142,7 +142,7 @@ impl Lens {
 /// A camera in its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Where it is, local metres; NaN for one that cannot look.
+    /// Position, local metres; NaN for a camera that cannot look.
     pub eye: [f64; 3],
     /// Distances that it is good for, and the directions that it sees, by turning or by its lens.
     pub limits: SightLimits,
@@ -152,7 +152,7 @@ pub struct Camera {
     pub density: Option<f64>,
 }
 
-/// Where a flat picture is turned to.
+/// Direction and size of a flat picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PictureDirection {
     /// Azimuth of its middle, radians clockwise from grid north.
@@ -164,7 +164,7 @@ pub struct PictureDirection {
 }
 
 impl PictureDirection {
-    /// Whether a direction, of any length, is in the picture.
+    /// Returns true if a direction, of any length, is in the picture.
     #[must_use]
     pub fn holds(&self, direction: [f64; 3]) -> bool {
         let (east, north) = (self.heading.sin(), self.heading.cos());
@@ -199,9 +199,9 @@ impl Camera {
         Self { eye, limits, picture: None, density: lens.density() }
     }
 
-    /// Whether a target that nothing hides, local metres, is in the picture with at least so many pixels per metre; 0
-    /// requires none. Pixels per metre are those at the range of the target, times the cosine of the angle at which its
-    /// unit `normal` is seen, where it has one. A target whose back is seen is not covered.
+    /// Returns true if a target that nothing hides, local metres, is in the picture with at least `density` pixels per
+    /// metre; 0 requires none. Pixels per metre are those at the range of the target, times the cosine of the angle at
+    /// which its unit `normal` is seen, if it has one. A target seen from the back is not covered.
     #[must_use]
     pub fn covers(&self, target: [f64; 3], normal: Option<[f64; 3]>, density: f64) -> bool {
         if !self.limits.allow(self.eye, target) {

@@ -16,10 +16,10 @@ pub const CAMERA_HEIGHT: f64 = 4.0;
 pub const ROOF_CAMERA_HEIGHT: f64 = 1.0;
 /// Height of what cameras look at above the ground, metres: the head of a person.
 pub const CAMERA_TARGET_HEIGHT: f64 = 1.5;
-/// Least height of a roof above the ground, metres: lower ones are cars and hedges.
+/// Minimum height of a roof above the ground, metres: lower ones are cars and hedges.
 const MIN_ROOF: f64 = 2.0;
 
-/// Whether cameras are turned.
+/// Motion of cameras: fixed or turning.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Motion {
     /// They keep looking to one side. Default.
@@ -29,13 +29,13 @@ pub enum Motion {
     Turning,
 }
 
-/// How cameras are put up, where nothing else is said of a place.
+/// Default mounting of cameras.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MountingParams {
     /// Lens and pixels.
     pub lens: Lens,
-    /// Whether they are turned.
+    /// Motion: fixed or turning.
     pub motion: Motion,
     /// Headings to choose from at each place, evenly spread from north on, 1 or more. Default 8. One is enough for
     /// cameras that see or turn all around.
@@ -69,7 +69,7 @@ impl Default for MountingParams {
 /// A place for cameras, with what is said of it; the rest is as in [`MountingParams`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mount {
-    /// Where the eye is, local metres.
+    /// Position of the eye, local metres.
     pub eye: [f64; 3],
     /// The only heading, radians clockwise from grid north.
     pub heading: Option<f64>,
@@ -77,7 +77,7 @@ pub struct Mount {
     pub tilt: Option<f64>,
     /// Horizontal field of view, radians.
     pub width: Option<f64>,
-    /// Least and greatest distance, metres.
+    /// Minimum and maximum distance, metres.
     pub distance: [Option<f64>; 2],
     /// Azimuths that a camera can be turned to, radians clockwise from grid north, and its elevations.
     pub azimuth: Option<[f64; 2]>,
@@ -214,7 +214,7 @@ pub fn keep_within(targets: &mut Targets, areas: &[WeightedArea]) {
     }
 }
 
-/// How much each target counts for [`super::place_cameras`]: its weight, and 0 for one without a position.
+/// Returns the weight of each target for [`super::place_cameras`]; 0 for one without a position.
 #[must_use]
 pub fn counted_weights(targets: &Targets) -> Vec<f64> {
     (0..targets.len()).map(|row| if targets.is_target(row) { targets.weight(row) } else { 0.0 }).collect()

@@ -1,4 +1,4 @@
-//! Where to put cameras, watch posts and masts, so that few of them cover much.
+//! Placement of cameras, watch posts and masts, so that few of them cover much.
 //!
 //! | step | function |
 //! |---|---|
@@ -14,11 +14,11 @@
 mod bound;
 mod camera;
 mod candidates;
+mod coverage;
 mod greedy;
 mod placement;
 mod problem;
 mod search;
-mod sights;
 mod table;
 
 pub use camera::{Camera, Lens, Level, PictureDirection};
@@ -26,8 +26,8 @@ pub use candidates::{
     CAMERA_HEIGHT, CAMERA_TARGET_HEIGHT, CameraPose, Motion, Mount, MountingParams, ROOF_CAMERA_HEIGHT, WeightedArea,
     counted_weights, ground_places, keep_within, roof_places,
 };
-pub use placement::{Goal, Placement, PlacementParams, place_cameras};
-pub use sights::{
+pub use coverage::{
     CoverageParams, CoverageReport, FREE_FRESNEL_SHARE, FresnelZone, coverage, leave_out_private, sees_private,
 };
+pub use placement::{Goal, Placement, PlacementParams, place_cameras};
 pub use table::CoverageTable;

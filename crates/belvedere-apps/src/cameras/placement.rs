@@ -1,4 +1,4 @@
-//! Which cameras to choose.
+//! Selection of cameras.
 
 use super::bound::{Best, BranchNode, CandidateFate, prices_of};
 use super::greedy::{exchange, fill};
@@ -10,17 +10,17 @@ use belvedere_data::{Error, Parameter, Result};
 
 /// Rounds of a bound before the cameras that it would choose are improved by exchanges.
 const ROUNDS: usize = 80;
-/// How often that is done again with the prices that were found. With 6 in place of 1, selections of random towns are
-/// up to 1.8 % better.
+/// Number of repetitions with the prices that were found. With 6 in place of 1, selections of random towns are up to
+/// 1.8 % better.
 const RESTARTS: usize = 6;
 /// Words, targets and covered pairs that the search may look at, if no limit is given: about half a minute.
 const MAX_LOOKS: usize = 4_000_000_000;
-/// How often a branch looks at each of them: the rounds of its bound.
+/// Number of evaluations of each in a branch: the rounds of its bound.
 const LOOKS_PER_BRANCH: usize = 40;
-/// Most branches of a search, if no limit is given.
+/// Maximum number of branches of a search, if no limit is given.
 const MAX_BRANCHES: usize = 20_000;
 
-/// What cameras are chosen for.
+/// Goal of a selection of cameras.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
     /// To cover as much as possible with so many new cameras.
@@ -29,18 +29,18 @@ pub enum Goal {
     Coverage(f64),
 }
 
-/// How cameras are chosen.
+/// Parameters of the selection of cameras.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PlacementParams {
-    /// What they are chosen for.
+    /// Goal of the selection.
     pub goal: Goal,
     /// Cameras that stand already: they are kept, and cost nothing. Default: none.
     pub existing: Vec<usize>,
-    /// How many cameras each target needs, 1 or more. A target with fewer counts in proportion. Default 1.
+    /// Number of cameras that each target needs, 1 or more. A target with fewer counts in proportion. Default 1.
     pub required: u32,
-    /// Most branches of the search for the proven optimum; 0 for none. `None`, the default: by the size of the problem,
-    /// about half a minute.
+    /// Maximum number of branches of the search for the proven optimum; 0 for none. `None`, the default: by the size of
+    /// the problem, about half a minute.
     pub search_limit: Option<usize>,
 }
 
@@ -85,13 +85,13 @@ impl Placement {
         self.curve.last().copied().unwrap_or(0.0)
     }
 
-    /// By how much the coverage is at most below the best possible, as a share of that.
+    /// Returns the maximum gap between the coverage and the best possible, as a share of the latter.
     #[must_use]
     pub fn gap(&self) -> f64 {
         if self.bound > 0.0 { ((self.bound - self.coverage()) / self.bound).max(0.0) } else { 0.0 }
     }
 
-    /// Whether no other selection is better: none covers more, or none needs fewer cameras.
+    /// Returns true if no other selection is better: none covers more, or none needs fewer cameras.
     #[must_use]
     pub fn is_optimal(&self) -> bool {
         match self.min_count {

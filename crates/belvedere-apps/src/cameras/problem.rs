@@ -1,4 +1,4 @@
-//! What is to be covered, and what a selection of cameras covers of it.
+//! Targets to cover, and the part that a selection of cameras covers.
 
 use super::table::{CoverageTable, ones};
 use belvedere_data::{Error, Parameter, Result};
@@ -9,7 +9,7 @@ pub(super) const TOLERANCE: f64 = 1e-9;
 /// Targets with their weights, and how many cameras each needs.
 pub(super) struct Problem<'a> {
     pub(super) table: &'a CoverageTable,
-    /// What one more camera on a target is worth: its share of all weight over the number of cameras that it needs.
+    /// Worth of one more camera on a target: its share of all weight over the number of cameras that it needs.
     pub(super) worth: Vec<f64>,
     /// The same for all targets that count, if it is.
     even: Option<f64>,
@@ -58,12 +58,12 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// By how much two values differ at least, if they are not equal.
+    /// Returns the minimum difference of two values that are not equal.
     fn step(&self) -> f64 {
         self.even.unwrap_or(0.0)
     }
 
-    /// Whether something of at most `bound` can be better than `best`.
+    /// Returns true if a selection of at most `bound` can be better than `best`.
     pub(super) fn is_better(&self, bound: f64, best: f64) -> bool {
         bound > best + (self.step() - TOLERANCE).max(TOLERANCE)
     }
@@ -107,7 +107,7 @@ impl<'a> CameraSelection<'a> {
         }
     }
 
-    /// What a camera adds.
+    /// Returns the worth that a camera adds.
     pub(super) fn gain(&self, camera: usize) -> f64 {
         self.problem.worth_of(self.problem.table.row(camera), &self.open)
     }
@@ -133,7 +133,7 @@ impl<'a> CameraSelection<'a> {
         }
     }
 
-    /// What is lost without a chosen camera.
+    /// Returns the worth that is lost without a chosen camera.
     pub(super) fn loss(&self, camera: usize) -> Loss {
         let required = self.problem.required;
         let mut loss = Loss { worth: 0.0, tight_worth: 0.0, tight: Vec::new() };
@@ -154,7 +154,7 @@ impl<'a> CameraSelection<'a> {
         loss
     }
 
-    /// How much of a loss another camera saves.
+    /// Returns the part of a loss that another camera saves.
     pub(super) fn saved(&self, camera: usize, loss: &Loss) -> f64 {
         let row = self.problem.table.row(camera);
         let common = loss.tight.iter().map(|&(word, bits)| (word, row[word] & bits)).filter(|(_, bits)| *bits != 0);
@@ -165,7 +165,7 @@ impl<'a> CameraSelection<'a> {
     }
 }
 
-/// What goes with a camera that is taken out.
+/// Loss from removing a camera.
 pub(super) struct Loss {
     pub(super) worth: f64,
     /// Worth of the targets that have just the cameras they need: another camera could save them.

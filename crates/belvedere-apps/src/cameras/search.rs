@@ -107,7 +107,7 @@ pub(super) fn improve(
     Ok(())
 }
 
-/// What remains to be decided after a bound; `None` where nothing better than `best` remains.
+/// Creates the branch that remains after a bound; `None` if nothing better than `best` remains.
 fn branch(
     problem: &Problem<'_>,
     mut fates: Vec<CandidateFate>,

@@ -1,8 +1,8 @@
-//! Which camera covers which target, a bit each.
+//! Bit matrix of the targets that each camera covers.
 
 use belvedere_data::{Error, Parameter, Result};
 
-/// Most bits of a table: 8 GiB.
+/// Maximum number of bits of a table: 8 GiB.
 const MAX_BITS: u64 = 1 << 36;
 
 /// A row of bits for each camera: bit t of word t / 64 says whether it covers target t.

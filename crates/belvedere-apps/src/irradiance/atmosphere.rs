@@ -8,8 +8,8 @@ pub const SOLAR_CONSTANT: f64 = 1366.1;
 /// Pressure at sea level, Pa.
 const SEA_LEVEL_PRESSURE: f64 = 101_325.0;
 
-/// Radiation on a plane that faces the sun above the atmosphere, W/m², at `unix_s` seconds since 1970-01-01 UTC; NaN
-/// for an instant that is not in the years 1 to 9999.
+/// Returns the radiation on a plane that faces the sun above the atmosphere, W/m², at `unix_s` seconds since 1970-01-01
+/// UTC. NaN for an instant outside the years 1 to 9999.
 ///
 /// # Source
 /// Spencer 1971, Fourier series representation of the position of the sun.

@@ -6,7 +6,7 @@ use belvedere_data::weather::Irradiance;
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 
-/// Which radiation a clear sky gives.
+/// Model of the radiation of a clear sky.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ClearSky {
@@ -38,7 +38,7 @@ impl Default for ClearSky {
     }
 }
 
-/// What is in the air for [`ClearSky::Bird`].
+/// State of the air for [`ClearSky::Bird`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BirdParams {
     /// Optical depth of aerosols at 380 nm, 0 or more. Default 0.15, of Bird & Hulstrom's standard atmosphere.
@@ -109,9 +109,8 @@ impl ClearSky {
 }
 
 /// # Source
-/// Ineichen & Perez 2002, A new airmass independent formulation for the Linke turbidity coefficient, with the
-/// coefficient b as printed there (0.664 + 0.163 / fh1) and without the exponent that Perez et al. 2002 add for global
-/// radiation.
+/// Ineichen & Perez 2002, A new airmass independent formulation for the Linke turbidity coefficient. The coefficient b
+/// is as printed there (0.664 + 0.163 / fh1), without the exponent that Perez et al. 2002 add for global radiation.
 fn ineichen(cosine: f64, absolute: f64, linke: f64, height: f64, extraterrestrial: f64) -> Irradiance {
     let (low, high) = ((-height / 8000.0).exp(), (-height / 1250.0).exp());
     let (gain, loss) = (5.09e-5 * height + 0.868, 3.92e-5 * height + 0.0387);

@@ -1,4 +1,4 @@
-//! How the diffuse radiation of a level plane falls on a tilted one: parts of it that obstacles take away differently.
+//! Diffuse radiation on a tilted plane, in parts that obstacles reduce differently.
 
 use super::atmosphere::air_mass;
 use belvedere_data::weather::Irradiance;
@@ -32,22 +32,22 @@ impl std::fmt::Display for SkyModel {
     }
 }
 
-/// Parts of diffuse radiation, W/m², that add up on a plane as `even · s + sun · max(cos a, 0) + horizon · sin t`: `s`
-/// is the share of the sky that the plane faces, (1 + cos t)/2 where nothing stands before it, `a` the angle between
-/// sun and normal, `t` the tilt. `sun` is given for a plane that faces the sun.
+/// Parts of diffuse radiation, W/m², that add up on a plane as `even · s + sun · max(cos a, 0) + horizon · sin t`. `s`
+/// is the share of the sky that the plane faces, (1 + cos t)/2 without obstacles; `a` is the angle between sun and
+/// normal, `t` the tilt. `sun` is given for a plane that faces the sun.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DiffuseParts {
     /// The same from all of the sky.
     pub even: f64,
-    /// From around the sun: lost where the sun is hidden.
+    /// Part around the sun: lost where the sun is hidden.
     pub sun: f64,
-    /// From along the horizon; below zero where that is darker than the rest.
+    /// Part along the horizon; negative where that is darker than the rest.
     pub horizon: f64,
 }
 
 impl DiffuseParts {
-    /// What a plane gets that sees all before it, W/m²: its tilt, radians, and the cosine between its normal and the
-    /// sun.
+    /// Returns the radiation on a plane without obstacles, W/m², from its tilt, radians, and the cosine between its
+    /// normal and the sun.
     #[must_use]
     pub fn unshaded(&self, tilt: f64, cosine: f64) -> f64 {
         let (sin, cos) = tilt.sin_cos();
@@ -71,7 +71,7 @@ const PEREZ: [[f64; 6]; 8] = [
 const CLASSES: [f64; 7] = [1.065, 1.23, 1.5, 1.95, 2.8, 4.5, 6.2];
 /// Weight of the zenith's cube in the clearness, for angles in radians.
 const KAPPA: f64 = 1.041;
-/// Least cosine of the zenith that Hay & Davies' ratio divides by: a sun of one degree, as in pvlib.
+/// Minimum cosine of the zenith that Hay & Davies' ratio divides by: a sun of one degree, as in pvlib.
 const HAY_DAVIES_MIN: f64 = 0.01745;
 
 /// Clearness and brightness of a sky, and the class of its clearness.

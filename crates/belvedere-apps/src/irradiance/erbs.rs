@@ -4,7 +4,7 @@ use belvedere_data::weather::Irradiance;
 
 /// Sun below which the split is all diffuse, radians of zenith: the division by the cosine would make beams of noise.
 const LOWEST_SUN: f64 = 87.0 * std::f64::consts::PI / 180.0;
-/// Least cosine of the zenith that clearness is judged with: a sun of 3.7 degrees.
+/// Minimum cosine of the zenith that clearness is judged with: a sun of 3.7 degrees.
 const MIN_COSINE: f64 = 0.065;
 
 /// Splits global radiation on a level plane, W/m², for a sun at `zenith`, radians, where `extraterrestrial` W/m² arrive

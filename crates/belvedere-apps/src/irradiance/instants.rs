@@ -12,17 +12,17 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Parts that rows of weather are cut into by default: of an hour 15 minutes, in which the sun moves 4 degrees.
 pub const PARTS: usize = 4;
-/// Most parts of a row: of an hour half a minute each.
+/// Maximum number of parts of a row: of an hour half a minute each.
 const MAX_PARTS: usize = 120;
 /// Instants of a clear sky beyond which something is mistyped: 20 years of minutes.
 const MAX_INSTANTS: f64 = 1.1e7;
 
 /// The rows of `weather` under the sun of `site`, each cut into `parts` of equal length, 1 to 120.
 ///
-/// Every part has the radiation of its row. Of a row in which the sun rises or sets, the parts with the sun below the
-/// horizon give their direct radiation to the others, so that what was measured arrives. What the file does not tell is
-/// made by [`complete`] for the sun of the row's instant. With one part these are the sums that pvlib makes with the
-/// sun of each row's instant.
+/// Every part has the radiation of its row. In a row in which the sun rises or sets, the parts with the sun below the
+/// horizon give their direct radiation to the others, so that the measured sum is kept. Values missing in the file come
+/// from [`complete`] for the sun of the row's instant. With one part the sums are those of pvlib with the sun of each
+/// row's instant.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a number of parts outside its range, and those of [`Weather::validate`] and

@@ -1,5 +1,4 @@
-//! How far energies may be from the truth: by how much of them would move with the outlines of what stands before sun
-//! and sky.
+//! Intervals of energies, by the change if the outlines of obstacles before sun and sky moved.
 
 use super::period::PeriodRadiation;
 use crate::rows::{RowBlock, normals_of};
@@ -16,7 +15,7 @@ const CHUNK: usize = 64;
 /// The directions of a period's radiation with their neighbours, suns and sky apart.
 pub(super) struct EnergyOutlines<'a> {
     radiation: &'a PeriodRadiation,
-    /// What comes with the sun from each of its directions: radiation times the vector to it, Wh/m².
+    /// Radiation times the vector to the sun for each of its directions, Wh/m².
     of_suns: Vec<[f64; 3]>,
     sun: Outlines,
     sky: Outlines,
@@ -58,7 +57,7 @@ impl<'a> EnergyOutlines<'a> {
         if all > 0.0 { (moved_sun + from_sky * moved_sky) / all } else { 0.0 }
     }
 
-    /// What comes from the sky but for the part around the sun, Wh/m².
+    /// Returns the radiation from the sky without the part around the sun, Wh/m².
     fn diffuse(&self, normal: [f64; 3]) -> f64 {
         let Self { radiation, .. } = self;
         let whole = f64::midpoint(1.0, normal[2]);

@@ -19,11 +19,11 @@ const HORIZON_BAND: f64 = 0.1132;
 pub struct Irradiation {
     /// Straight from the sun.
     pub beam: f64,
-    /// From the sky, the part from around the sun among it.
+    /// Radiation of the sky, with the part around the sun.
     pub diffuse: f64,
-    /// From the ground, and from what hides the sky where that is taken to reflect.
+    /// Radiation of the ground, and of the obstacles before the sky if these reflect.
     pub reflected: f64,
-    /// What it would get if nothing stood before it.
+    /// Radiation without obstacles, kWh/m².
     pub unshaded: f64,
 }
 
@@ -111,7 +111,7 @@ pub fn irradiation(
     })
 }
 
-/// As [`irradiation`], where what is behind crowns counts by the share that these let through, with this
+/// Computes [`irradiation`] with light behind crowns weighted by the share that these let through, with this
 /// [`factor`](crate::tree_light::CrownLight::factor).
 ///
 /// # Errors

@@ -18,7 +18,7 @@ pub const MONTH_COLUMNS: [&str; 12] = [
     "kwh_m2_11",
     "kwh_m2_12",
 ];
-/// What a raster of energies says of itself.
+/// Description of a raster of energies.
 pub const ENERGY: &str = "energy of the period, kWh/m2";
 /// Name of its column and its band.
 pub const ENERGY_NAME: &str = "kwh_m2";
@@ -26,8 +26,8 @@ pub const ENERGY_NAME: &str = "kwh_m2";
 const ENERGY_DECIMALS: usize = 2;
 const SHARE_DECIMALS: usize = 4;
 
-/// The energies of targets, whose rows of `group_count` sums are `sums`, as measures: the whole, the share lost, the
-/// parts, what an open plane gets, and the months where groups are months.
+/// Returns the energies of targets as measures: the whole, the share lost, the parts, the energy of an open plane, and
+/// the months if groups are months. `sums` has rows of `group_count` sums.
 #[must_use]
 pub fn irradiation_measures(sums: &[Irradiation], group_count: usize) -> Vec<Measure> {
     let group_count = group_count.max(1);

@@ -38,7 +38,7 @@ pub use measures::{ENERGY, ENERGY_NAME, MONTH_COLUMNS, irradiation_measures};
 pub use patch_sky::patch_radiation;
 pub use period::{Grouping, Instant, IrradianceParams, PeriodRadiation, PeriodReport, Surroundings};
 pub use roof_columns::{RoofColumn, roof_columns};
-pub use roofs::{PANEL_HEIGHT, RoofIrradiation, RoofsReport, above_roof, horizon_places, roof_irradiation};
+pub use roofs::{RoofIrradiation, RoofsReport, above_roof, horizon_places, roof_irradiation};
 pub use seasons::{
     CLEAR_SKY_YEAR, RadiationSource, SeasonRadiation, TargetEnergies, look_count, period_seasons, season_irradiation,
 };

@@ -67,15 +67,15 @@ const SHAPES: [[[f64; 4]; 5]; 8] = [
 ];
 /// Range of brightness that the coefficients were fitted in.
 const BRIGHTNESS: [f64; 2] = [0.01, 0.6];
-/// Least brightness of the classes between overcast and clear, below which the fit gives darkness around the sun.
+/// Minimum brightness of the classes between overcast and clear, below which the fit gives darkness around the sun.
 const MIN_BETWEEN: f64 = 0.2;
-/// Least height of a place of the sky, since the gradation divides by it.
+/// Minimum height of a place of the sky, since the gradation divides by it.
 const MIN_UP: f64 = 0.01;
 
-/// Radiation of each patch of `sky` on a plane that faces it, W/m², (D): its radiance times its solid angle, scaled so
-/// that a level plane gets the diffuse radiation of `irradiance` exactly. `sun` is the unit vector to the sun in the
-/// axes of the sky, `zenith` its angle from straight up, radians (apparent). A sky without a sun above the horizon is
-/// even. Put into `patches`, which is overwritten.
+/// Computes the radiation of each patch of `sky` on a plane that faces it, W/m², (D): its radiance times its solid
+/// angle, scaled so that a level plane gets the diffuse radiation of `irradiance` exactly. `sun` is the unit vector to
+/// the sun in the axes of the sky, `zenith` its apparent angle from straight up, radians. A sky without a sun above the
+/// horizon is even. Overwrites `patches`.
 ///
 /// # Source
 /// Perez, Seals & Michalsky 1993, All-weather model for sky luminance distribution — preliminary configuration and
@@ -101,7 +101,7 @@ pub fn patch_radiation(
     patches.iter_mut().for_each(|patch| *patch *= scale);
 }
 
-/// How radiance varies over the sky.
+/// Distribution of radiance over the sky.
 struct RadianceShape {
     a: f64,
     b: f64,

@@ -1,4 +1,4 @@
-//! What sun and sky send over a period, gathered by direction, so that cost follows distinct directions and not
+//! Radiation of sun and sky over a period, gathered by direction, so that the cost grows with directions and not with
 //! instants.
 
 use super::diffuse::{SkyModel, diffuse_parts};
@@ -18,7 +18,7 @@ const DOUBTFUL: f64 = 0.01;
 /// Sun directions beyond which their bits would fill the memory of a usual machine.
 const MAX_SUN_DIRECTIONS: f64 = 200_000.0;
 
-/// How the radiation of a period is gathered and falls on planes.
+/// Parameters of gathering the radiation of a period, and of its effect on planes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 #[non_exhaustive]
@@ -28,16 +28,16 @@ pub struct IrradianceParams {
     /// Division of the sky into patches, 1 to 26: 145 patches for 1, 577 for 2, the default, whose sky view factor errs
     /// by 0.004.
     pub patch_division: usize,
-    /// Side of the cells that directions of the sun are gathered in, radians, above 0 to a tenth of a circle. Default 3
-    /// degrees: against 1 degree the energy of a year on cells in Delft differs by 0.02 % on the mean and 0.9 % (RMS)
-    /// of it, in a third of the time.
+    /// Side of the cells in which directions of the sun are gathered, radians, above 0 to a tenth of a circle. Default
+    /// 3 degrees. Against 1 degree the energy of a year on cells in Delft differs by 0.02 % on the mean and 0.9 %
+    /// (RMS), in a third of the time.
     pub sun_cell: f64,
     /// Share of the global radiation that the ground reflects, 0 to 1. Default 0.2: grass, and what PVGIS and GRASS
     /// take.
     pub albedo: f64,
-    /// What stands before a plane and hides the sky.
+    /// Radiation of the obstacles that hide the sky from a plane.
     pub surroundings: Surroundings,
-    /// Whether months are kept apart.
+    /// Sums to keep: the whole, or months.
     pub grouping: Grouping,
 }
 
@@ -50,18 +50,18 @@ belvedere_data::setters!(IrradianceParams {
     with_grouping(grouping: Grouping),
 });
 
-/// What obstacles send to a plane in place of the sky that they hide.
+/// Radiation that obstacles send to a plane in place of the hidden sky.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Surroundings {
-    /// Nothing: radiation is a lower bound, and the loss by shading an upper one. Default.
+    /// No radiation: the sum is a lower bound, and the loss by shading an upper one. Default.
     #[default]
     Dark,
-    /// As much as the ground, as if all of them lay in the sun: an upper bound in streets.
+    /// Radiation of the ground, as if all obstacles lay in the sun: an upper bound in streets.
     LikeGround,
 }
 
-/// Which sums of a period are kept.
+/// Sums of a period to keep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Grouping {
@@ -108,7 +108,7 @@ impl IrradianceParams {
 /// Sine of the elevation below which it is night, −12°: within an hour around sunset the sun sinks to here where days
 /// are shortest.
 const NIGHT: f64 = -0.208;
-/// Most radiation that sensors show at night, W/m².
+/// Maximum radiation that sensors show at night, W/m².
 const MAX_AT_NIGHT: f64 = 20.0;
 
 /// An instant, or a part of an interval, of a period.
@@ -118,7 +118,7 @@ pub struct Instant {
     pub sun: [f64; 3],
     /// Angle of the apparent sun from straight up, radians.
     pub zenith: f64,
-    /// How long it counts, hours.
+    /// Duration, hours.
     pub hours: f64,
     /// Month, 1 to 12.
     pub month: u8,
@@ -149,7 +149,7 @@ pub(super) struct Evenly {
     pub(super) global: f64,
 }
 
-/// What sun and sky send over a period.
+/// Radiation of sun and sky over a period.
 #[derive(Clone, Debug)]
 pub struct PeriodRadiation {
     pub(super) params: IrradianceParams,
@@ -159,11 +159,11 @@ pub struct PeriodRadiation {
     pub(super) evenly: Vec<Evenly>,
     /// Radiation of each patch on a plane that faces it, Wh/m², patch by patch, its groups together.
     pub(super) patches: Vec<f64>,
-    /// What was gathered.
+    /// Report of the gathering.
     pub report: PeriodReport,
 }
 
-/// What was gathered of a period.
+/// Radiation that was gathered over a period.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PeriodReport {
     /// Global radiation on a level plane, kWh/m².
@@ -194,8 +194,8 @@ impl PeriodReport {
         self.sun_direction_count += other.sun_direction_count;
     }
 
-    /// Whether so much direct radiation comes with the sun below the horizon, a hundredth of all, that the place or the
-    /// time zone of the weather is probably wrong.
+    /// Returns true if a hundredth or more of the direct radiation comes with the sun below the horizon, so that the
+    /// place or the time zone of the weather is probably wrong.
     #[must_use]
     pub fn is_doubtful(&self) -> bool {
         self.dni_without_sun > DOUBTFUL * self.dni
@@ -221,9 +221,9 @@ fn in_rows(cells: &SunCells) -> (Vec<[f64; 3]>, Vec<SunShare>) {
 impl PeriodRadiation {
     /// Gathers `instants`.
     ///
-    /// Directions of the sun are gathered in cells of equal width and height; each is tested once, along its mean
-    /// weighted by radiation, and keeps the sum of radiation times direction, so that planes of any tilt get what
-    /// single instants would give unless the sun crosses their plane within the cell.
+    /// Directions of the sun are gathered in cells of equal width and height. Each cell is tested once, along its mean
+    /// direction weighted by radiation, and keeps the sum of radiation times direction. Planes of any tilt therefore
+    /// get the same as from single instants, unless the sun crosses their plane within the cell.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for parameters outside their range and for instants that are not finite or below

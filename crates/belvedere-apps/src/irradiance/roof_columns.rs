@@ -1,4 +1,4 @@
-//! What is known of the planes of roofs and their energy, in columns.
+//! Columns of the planes of roofs and their energy.
 
 use super::measures::MONTH_COLUMNS;
 use super::roofs::RoofIrradiation;
@@ -17,9 +17,9 @@ pub struct RoofColumn {
     pub decimals: usize,
 }
 
-/// The columns of `planes` and their energies, `rows`: the middle in the coordinates and unit of the file of `frame`,
-/// areas, tilt, azimuth from true north (NaN for level planes), energy, and losses. Months where the energies have
-/// them.
+/// Returns the columns of `planes` and their energies, `rows`. They are the middle in the coordinates and unit of the
+/// file of `frame`, areas, tilt, azimuth from true north (NaN for level planes), energy, losses, and months if the
+/// energies have them.
 #[must_use]
 pub fn roof_columns(planes: &[RoofPlane], rows: &[RoofIrradiation], frame: &Frame, site: &Site) -> Vec<RoofColumn> {
     let of_planes = |value: &dyn Fn(&RoofPlane) -> f64| -> Vec<f64> { planes.iter().map(value).collect() };

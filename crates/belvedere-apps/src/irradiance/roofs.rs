@@ -7,15 +7,13 @@ use super::strings::{PlaneIrradiation, plane_irradiation};
 use crate::roof_planes::RoofPlane;
 use crate::rows::{BLOCK_BITS, Obstacles, RowBlock, fold_blocks};
 use crate::sum_errors::{Intervals, SumError, SumKind, class_of};
+use crate::targets::{TARGET_LIFT, to_f32};
 use belvedere_core::query::MedialScene;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use belvedere_data::vector::{length, sub};
 use serde::Serialize;
-
-/// Height of panels above their roof, metres: that of usual rails, which balls of a rough roof do not reach.
-pub const PANEL_HEIGHT: f64 = 0.1;
 
 /// Energy of a plane over a period.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,11 +22,11 @@ pub struct RoofIrradiation {
     pub mean: Irradiation,
     /// The same where a row of cells gets what all of its cells get at once: strings without bypass diodes.
     pub string_limited: Irradiation,
-    /// What arrives in each group of the period, kWh/m²: 12 months, or the whole.
+    /// Energy in each group of the period, kWh/m²: 12 months, or the whole.
     pub groups: Vec<f64>,
     /// Cells that count: those of the plane that see anything of the sky.
     pub cell_count: usize,
-    /// How far the mean may be from the truth, by a class ([`SumKind::Plane`]); `None` where that was not wanted.
+    /// Error class of the mean ([`SumKind::Plane`]); `None` if not requested.
     pub class: Option<u8>,
 }
 
@@ -38,7 +36,7 @@ impl RoofIrradiation {
     #[must_use]
     pub fn expected(&self) -> [f64; 3] {
         let error = self.class.map(|class| SumError::of(SumKind::Plane, class));
-        error.map_or([f64::NAN; 3], |error| error.around(self.mean.total(), self.mean.unshaded))
+        error.map_or([f64::NAN; 3], |error| error.interval(self.mean.total(), self.mean.unshaded))
     }
 
     /// Area of the cells of `plane` that count, m².
@@ -89,12 +87,12 @@ impl RoofsReport {
 /// A place above a roof at the height of its panels, local metres.
 #[must_use]
 pub fn above_roof(place: [f64; 3], normal: [f64; 3]) -> [f32; 3] {
-    crate::targets::to_f32([0, 1, 2].map(|i| place[i] + PANEL_HEIGHT * normal[i]))
+    to_f32([0, 1, 2].map(|i| place[i] + TARGET_LIFT * normal[i]))
 }
 
-/// Where the horizon of each of `planes` is measured: above the middle of the cell nearest to the middle of the plane
-/// over which nothing of `scene` is; above the nearest cell where something is over all of them. With it whether
-/// nothing is. Under a ball, however small, the horizon is 90° all around.
+/// Returns the place at which the horizon of each of `planes` is measured, and true if obstacles of `scene` are above
+/// all of its cells. The place is above the middle of the open cell nearest to the middle of the plane; without an open
+/// cell, above the nearest cell. Under a ball, however small, the horizon is 90° all around.
 #[must_use]
 pub fn horizon_places(planes: &[RoofPlane], scene: &MedialScene) -> Vec<([f32; 3], bool)> {
     let of_plane = |plane: &RoofPlane| {
@@ -142,7 +140,7 @@ pub fn roof_irradiation<'a>(
     Ok(found)
 }
 
-/// How many of the first planes have at most so many cells together, at least one.
+/// Returns the number of planes, from the first, that have at most `max_cells` cells together, at least one.
 fn planes_at_once(planes: &[RoofPlane], max_cells: usize) -> usize {
     let mut cells = 0;
     let fits = |plane: &&RoofPlane| {

@@ -20,7 +20,7 @@ pub const CLEAR_SKY_YEAR: i16 = 2026;
 /// Steps of a clear sky, seconds.
 const CLEAR_STEP: f64 = 600.0;
 
-/// Where the radiation of a period comes from.
+/// Source of the radiation of a period.
 #[derive(Clone, Copy, Debug)]
 pub enum RadiationSource<'a> {
     /// Rows of weather, each cut into parts.
@@ -32,17 +32,17 @@ pub enum RadiationSource<'a> {
     },
     /// A year without clouds.
     ClearSky {
-        /// What it sends.
+        /// Clear-sky model.
         clear_sky: ClearSky,
         /// The year.
         year: i16,
     },
 }
 
-/// What the days send on which crowns let the same share through.
+/// Radiation of the days with the same transmissivity of crowns.
 #[derive(Clone, Debug)]
 pub struct SeasonRadiation {
-    /// What they send.
+    /// Radiation of the days.
     pub radiation: PeriodRadiation,
     /// [`CrownLight::factor`] of these days; 0 where trees are opaque.
     pub factor: f64,
@@ -134,7 +134,7 @@ pub struct TargetEnergies {
     pub sums: Vec<Irradiation>,
     /// Groups of the period, such as months: 1 or more.
     pub group_count: usize,
-    /// How far they may be from the truth, by classes; empty where that was not wanted.
+    /// Error classes; empty if not requested.
     pub classes: Vec<u8>,
 }
 
@@ -193,7 +193,7 @@ pub fn season_irradiation<'a>(
     Ok(TargetEnergies { sums, group_count, classes })
 }
 
-/// How often each target is tested: once for each of `seasons`, or twice where trees let light through.
+/// Returns the number of tests of each target: one for each of `seasons`, or two if trees let light through.
 #[must_use]
 pub fn look_count(obstacles: &Obstacles<'_>, seasons: &[SeasonRadiation]) -> usize {
     seasons.len() * obstacles.matrix_count()

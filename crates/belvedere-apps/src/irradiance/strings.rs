@@ -19,10 +19,10 @@ pub struct PlaneIrradiation {
     pub cell_count: usize,
 }
 
-/// The energy of a plane with a unit `normal`, upward, whose cells are rows of `block` from `first` on: `strings`,
-/// (C), numbers the string of each, those of a string together. Crowns have a
-/// [`factor`](crate::tree_light::CrownLight::factor). Cells that see nothing at all lie inside an obstacle or
-/// under a roof, where no panel is put: they do not count. A plane without cells gets nothing.
+/// Computes the energy of a plane with a unit `normal`, upward, whose cells are rows of `block` from `first` on.
+/// `strings`, (C), numbers the string of each cell; cells of a string are together. Crowns have a
+/// [`factor`](crate::tree_light::CrownLight::factor). Cells that see nothing at all lie inside an obstacle or under a
+/// roof, where no panel is put, and do not count. A plane without cells gets nothing.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where the matrix has fewer rows or other directions.

@@ -1,4 +1,4 @@
-//! Whether the rows of a weather file belong to the times that it says: days are as long before noon as after it.
+//! Check of the clock of a weather file: days are as long before noon as after it.
 
 use crate::sun::{Site, sun_times};
 use belvedere_data::Result;
@@ -17,8 +17,8 @@ const MAX_STEP: f64 = 1.01;
 /// nothing.
 const NEXT: f64 = 1.5;
 
-/// By how much the middle of the light of its days is off the noon of the sun, in words; `None` where it is not, and
-/// where too few days tell.
+/// Describes the offset between the middle of the light of its days and solar noon. `None` without an offset, and with
+/// too few usable days.
 ///
 /// # Errors
 /// Those of [`sun_times`].

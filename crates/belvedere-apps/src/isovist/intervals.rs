@@ -1,8 +1,8 @@
-//! How large an isovist may be in truth: from how likely places along each ray are visible.
+//! Intervals of isovists, from the probabilities that places along each ray are visible.
 //!
-//! The probability that a place is visible falls with its range: it is how likely sight along the ray reaches so far,
-//! so that the expected area or volume of a ray and its variance follow. Errors of rays beside each other come from the
-//! same edges: their deviations are added up within a sector, and sectors are taken for independent of each other.
+//! The probability that a place is visible falls with its range: it is that of sight along the ray reaching so far. The
+//! expected area or volume of a ray and its variance follow. Errors of neighbouring rays come from the same edges.
+//! Their deviations are added up within a sector, and sectors are treated as independent.
 
 use super::{Isovist, IsovistParams, direction};
 use belvedere_core::query::MedialScene;
@@ -14,8 +14,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Ranges at which the probability is looked at, as shares of the range at which the ray ends.
 const LOOKED_AT: [f64; 14] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.97, 1.03, 1.1, 1.3, 2.0];
-/// What is less likely visible than this is taken for hidden: a small rest that never ends would be most of an area
-/// that grows with the square of the range.
+/// Minimum probability of a visible place; less probable places count as hidden. A small remainder that never ends
+/// would be most of an area that grows with the square of the range.
 const UNLIKELY: f32 = 0.05;
 /// Rays of the plan.
 const PLAN_RAYS: usize = 360;
@@ -35,7 +35,7 @@ pub struct IsovistIntervals {
     pub volume: [f64; 2],
 }
 
-/// How large `seen`, the isovist of `eye`, local metres, may be in truth; `None` without pulses.
+/// Returns the intervals of `seen`, the isovist of `eye`, local metres; `None` without pulses.
 ///
 /// # Errors
 /// [`belvedere_data::Error::Cancelled`].
@@ -78,10 +78,14 @@ pub fn isovist_intervals(
         Ok((sector, RayPart::new(range, &ends, |range| weight * range.powi(3) / 3.0)))
     });
     let space: Vec<(usize, RayPart)> = space.collect::<Result<_>>()?;
-    Ok(Some(IsovistIntervals { plan_area: around(seen.plan.area, &plan), volume: around(seen.volume, &space) }))
+    Ok(Some(IsovistIntervals {
+        plan_area: interval_of_sum(seen.plan.area, &plan),
+        volume: interval_of_sum(seen.volume, &space),
+    }))
 }
 
-/// Where sight may end, and how likely it ends there, from the probabilities that places at rising ranges are visible.
+/// Returns the ranges at which sight may end, with their probabilities, from the probabilities that places at rising
+/// ranges are visible.
 fn ends_of_sight(places: impl Iterator<Item = (f64, f64)>, reach: f64) -> Vec<(f64, f64)> {
     let (mut before, mut left) = (0.0, 1.0_f64);
     let mut ends = Vec::new();
@@ -95,17 +99,18 @@ fn ends_of_sight(places: impl Iterator<Item = (f64, f64)>, reach: f64) -> Vec<(f
     ends
 }
 
-/// What a ray adds to a sum.
+/// Contribution of a ray to a sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct RayPart {
-    /// By how much more is expected than is seen.
+    /// Expected value less the visible one.
     more: f64,
     /// Standard deviation.
     deviation: f64,
 }
 
 impl RayPart {
-    /// From where sight ends, and where it may end in truth, if it adds `size` to the sum where it ends at a range.
+    /// Computes the part of a ray from the range of sight and its possible ends. It adds `size` to the sum if it ends
+    /// at a range.
     fn new(range: f64, ends: &[(f64, f64)], size: impl Fn(f64) -> f64) -> Self {
         let moment = |of: &dyn Fn(f64) -> f64| ends.iter().map(|&(at, likely)| likely * of(size(at))).sum::<f64>();
         let mean = moment(&|size| size);
@@ -115,7 +120,7 @@ impl RayPart {
 }
 
 /// The interval around a sum, from what rays add to it, each with its sector.
-fn around(sum: f64, parts: &[(usize, RayPart)]) -> [f64; 2] {
+fn interval_of_sum(sum: f64, parts: &[(usize, RayPart)]) -> [f64; 2] {
     let mut sectors = vec![0.0; parts.iter().map(|(sector, _)| sector + 1).max().unwrap_or(0)];
     parts.iter().for_each(|(sector, part)| sectors[*sector] += part.deviation);
     let mean = sum + parts.iter().map(|(_, part)| part.more).sum::<f64>();
@@ -131,7 +136,7 @@ mod tests {
     fn errors_of_a_sector_are_added_up_and_those_of_sectors_are_independent() {
         let part = |more, deviation| RayPart { more, deviation };
         let parts = [(0, part(1.0, 2.0)), (0, part(-0.5, 1.0)), (3, part(0.5, 4.0))];
-        let [low, high] = around(40.0, &parts);
+        let [low, high] = interval_of_sum(40.0, &parts);
         assert!((low - (41.0 - 5.0 * DEVIATIONS)).abs() < 1e-12 && (high - (41.0 + 5.0 * DEVIATIONS)).abs() < 1e-12);
     }
 

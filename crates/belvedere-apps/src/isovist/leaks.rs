@@ -2,18 +2,39 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Most of all directions that may be open in a closed room. Streets and courtyards see more sky.
-const MAX_OPEN: f64 = 0.1;
-/// Least share of neighbouring ranges that are alike, and how much they may differ: walls and furniture, but no crowns.
-const MIN_SMOOTH: f64 = 0.9;
-const ALIKE: f64 = 1.15;
-/// An opening of up to this share of all directions is bounded by the surface around it: a floor below a tripod, a gap.
-const MAX_SHARE: f64 = 0.02;
-/// So is one that is this narrow, metres, however long: where a ceiling meets a wall, scans have no points.
-const MAX_WIDTH: f64 = 0.5;
-/// Share of the greatest range: where the surface around an opening is further away, the place goes on, as corridors
-/// do.
-const MAX_REACH: f64 = 0.5;
+/// Thresholds for closed rooms and for gaps in their surface. Neighbouring values were not measured.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ClosedRoomParams {
+    /// Maximum share of open directions of a closed room, 0 to 1. Default 0.1: streets and courtyards see more sky.
+    max_open: f64,
+    /// Minimum share of pairs of neighbouring ranges that are alike, 0 to 1. Default 0.9: walls and furniture, but no
+    /// crowns.
+    min_smooth: f64,
+    /// Maximum ratio of two ranges that are alike, above 1. Default 1.15.
+    max_ratio: f64,
+    /// Maximum share of all directions of a gap that the surface around it bounds, 0 to 1. Default 0.02: a floor below a
+    /// tripod.
+    max_gap_share: f64,
+    /// Maximum width of a gap that counts as closed at any length, metres. Default 0.5: scans have no points where a
+    /// ceiling meets a wall.
+    max_gap_width: f64,
+    /// Maximum range of the surface around a gap, as a share of the maximum range of the isovist, 0 to 1. Default 0.5:
+    /// farther away, the place goes on, as corridors do.
+    max_gap_range: f64,
+}
+
+impl Default for ClosedRoomParams {
+    fn default() -> Self {
+        Self {
+            max_open: 0.1,
+            min_smooth: 0.9,
+            max_ratio: 1.15,
+            max_gap_share: 0.02,
+            max_gap_width: 0.5,
+            max_gap_range: 0.5,
+        }
+    }
+}
 
 /// A panorama of ranges.
 #[derive(Clone, Copy)]
@@ -24,7 +45,7 @@ pub(super) struct RangeGrid<'a> {
     pub(super) width: usize,
     /// Solid angle of a cell of each row, in steradians.
     pub(super) weights: &'a [f64],
-    /// Greatest range, metres.
+    /// Maximum range, metres.
     pub(super) reach: f64,
 }
 
@@ -41,20 +62,20 @@ pub(super) struct ClosedSurface {
 
 impl ClosedSurface {
     /// The surface around an eye; `None` where it is in no room.
-    pub(super) fn of(grid: &RangeGrid<'_>) -> Option<Self> {
+    pub(super) fn of(grid: &RangeGrid<'_>, params: &ClosedRoomParams) -> Option<Self> {
         let total: f64 = grid.weights.iter().sum::<f64>() * grid.width as f64;
         let open: f64 = (0..grid.ranges.len()).filter(|&at| grid.ranges[at].is_none()).map(|at| grid.weight(at)).sum();
-        if open > MAX_OPEN * total || !grid.is_smooth() {
+        if open > params.max_open * total || !grid.is_smooth(params) {
             return None;
         }
-        let max_range = MAX_REACH * grid.reach;
+        let max_range = params.max_gap_range * grid.reach;
         let mut ranges = grid.ranges.to_vec();
         let mut gaps = 0.0;
         for cells in grid.openings() {
             let share = cells.iter().map(|&at| grid.weight(at)).sum::<f64>() / total;
             let filled: Vec<Option<f64>> = cells.iter().map(|&at| grid.range_around(at)).collect();
             let goes_on = filled.iter().flatten().any(|range| *range > max_range);
-            if goes_on || share > MAX_SHARE && grid.width_of(&cells, &filled) > MAX_WIDTH {
+            if goes_on || share > params.max_gap_share && grid.width_of(&cells, &filled) > params.max_gap_width {
                 continue;
             }
             gaps += share;
@@ -98,19 +119,19 @@ impl RangeGrid<'_> {
         ]
     }
 
-    /// Whether ranges beside each other are mostly alike.
-    fn is_smooth(&self) -> bool {
+    /// Returns true if neighbouring ranges are mostly alike.
+    fn is_smooth(&self, params: &ClosedRoomParams) -> bool {
         let (mut pairs, mut alike) = (0_usize, 0_usize);
         for (at, range) in self.ranges.iter().enumerate() {
             let [right, _, below, _] = self.neighbors(at);
             for other in [right, below].into_iter().flatten() {
                 if let (Some(a), Some(b)) = (range, self.ranges[other]) {
                     pairs += 1;
-                    alike += usize::from(a.max(b) <= ALIKE * a.min(b));
+                    alike += usize::from(a.max(b) <= params.max_ratio * a.min(b));
                 }
             }
         }
-        alike as f64 >= MIN_SMOOTH * pairs as f64
+        alike as f64 >= params.min_smooth * pairs as f64
     }
 
     /// Cells of each opening, which hang together by their sides.
@@ -178,8 +199,9 @@ mod tests {
 
     const SIDES: [f64; 3] = [6.0, 4.0, 3.0];
 
-    /// What an eye sees in a room of 6 by 4 by 3 m, whose surface has no points where `is_gap` of a place on it.
-    fn seen(is_gap: impl Fn([f64; 3]) -> bool + Sync, max_range: f64) -> Isovist {
+    /// Simulates the isovist of an eye in a room of 6 by 4 by 3 m, whose surface has no points where `is_gap` of a
+    /// place on it.
+    fn isovist_of_room(is_gap: impl Fn([f64; 3]) -> bool + Sync, max_range: f64) -> Isovist {
         let eye = [4.5, 3.0, 1.2];
         let range = |direction: [f64; 3]| {
             let to_side = |axis: usize| {
@@ -205,24 +227,24 @@ mod tests {
     fn what_leaves_between_points_is_no_part_of_a_room() {
         // the far corner of the room, 5.7 m away, is nearer than half of the greatest range
         for reach in [15.0, 100.0] {
-            let whole = seen(|_| false, reach);
+            let whole = isovist_of_room(|_| false, reach);
             assert!(is_right(&whole) && whole.unbounded == 0.0, "{} {}", whole.volume, whole.plan.area);
             // a slit of 15 cm where the ceiling meets the walls, and one at a corner
-            let slit = seen(|[x, y, z]| z > 2.85 && z < 2.999 || x < 0.1 && y < 0.1, reach);
+            let slit = isovist_of_room(|[x, y, z]| z > 2.85 && z < 2.999 || x < 0.1 && y < 0.1, reach);
             assert!(is_right(&slit) && slit.unbounded > 0.005, "{} {}", slit.volume, slit.plan.area);
             // a hole below a tripod, and one of a finger
-            let hole = seen(|[x, y, z]| z < 1e-9 && (x - 2.0).hypot(y - 1.5) < 0.8, reach);
+            let hole = isovist_of_room(|[x, y, z]| z < 1e-9 && (x - 2.0).hypot(y - 1.5) < 0.8, reach);
             assert!(is_right(&hole) && hole.unbounded > 0.001, "{}", hole.volume);
-            let pinhole = seen(|[x, y, z]| x < 1e-9 && (y - 2.0).hypot(z - 1.2) < 0.03, reach);
+            let pinhole = isovist_of_room(|[x, y, z]| x < 1e-9 && (y - 2.0).hypot(z - 1.2) < 0.03, reach);
             assert!(is_right(&pinhole), "{} {}", pinhole.volume, pinhole.plan.area);
         }
     }
 
     #[test]
     fn a_wall_that_is_missing_stays_open() {
-        let open = seen(|[x, _, _]| x < 1e-9, 100.0);
+        let open = isovist_of_room(|[x, _, _]| x < 1e-9, 100.0);
         assert!(open.volume > 10_000.0 && open.unbounded == 0.0, "{}", open.volume);
-        let no_ceiling = seen(|[_, _, z]| z > 2.99, 100.0);
+        let no_ceiling = isovist_of_room(|[_, _, z]| z > 2.99, 100.0);
         assert!(no_ceiling.volume > 100_000.0 && no_ceiling.unbounded == 0.0, "{}", no_ceiling.volume);
     }
 }

@@ -14,14 +14,14 @@ use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::view::to_sun;
 use belvedere_data::{Error, Parameter, Result};
-use leaks::{ClosedSurface, RangeGrid};
+use leaks::{ClosedRoomParams, ClosedSurface, RangeGrid};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Rays between two looks at whether the work was cancelled: a few milliseconds.
 const CHECKED: usize = 1024;
 
-/// How isovists are made.
+/// Parameters of isovists.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct IsovistParams {
@@ -31,7 +31,7 @@ pub struct IsovistParams {
     /// Range at which sight ends where nothing blocks, metres, above 0. Default 100: beyond it streets are no longer
     /// read as a space.
     pub max_range: f64,
-    /// Least jump in range that makes an edge of the plan, metres, above 0. Default 0.25: balls bulge by centimetres.
+    /// Minimum jump in range that is an edge of the plan, metres, above 0. Default 0.25: balls bulge by centimetres.
     pub jump: f64,
 }
 
@@ -69,12 +69,12 @@ impl IsovistParams {
     }
 }
 
-/// What an eye sees around itself.
+/// Space visible from an eye.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Isovist {
-    /// Ranges in metres, +∞ where nothing blocks within the greatest range. A column is an azimuth, clockwise from
-    /// south at the left edge over west, north in the middle and east to south again; a row is an elevation, from the
-    /// zenith down to the nadir.
+    /// Ranges in metres, +∞ if nothing blocks within the maximum range. A column is an azimuth: clockwise from south at
+    /// the left edge over west, north in the middle and east to south again. A row is an elevation, from the zenith
+    /// down to the nadir.
     pub panorama: Raster<f32>,
     /// Volume seen, m³. Directions in which nothing blocks reach to the greatest range; in a closed room those that
     /// leave it between its points reach to its surface.
@@ -89,22 +89,22 @@ pub struct Isovist {
     pub openness: f64,
     /// The same share of the directions above the horizon: the sky.
     pub sky_openness: f64,
-    /// From the eye to the middle of the volume seen, local metres.
+    /// Vector from the eye to the middle of the visible volume, local metres.
     pub drift: [f64; 3],
-    /// What is seen in the level plane through the eye.
+    /// Visible area in the level plane through the eye.
     pub plan: PlanIsovist,
-    /// How large what is seen may be in truth; `None` where that was not wanted, and without pulses.
+    /// Intervals of its figures; `None` if not requested, and without pulses.
     pub intervals: Option<IsovistIntervals>,
 }
 
 /// Statistics of ranges, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RadialStatistics {
-    /// Least.
+    /// Minimum.
     pub min: f64,
     /// Mean.
     pub mean: f64,
-    /// Greatest.
+    /// Maximum.
     pub greatest: f64,
     /// Mean square deviation from the mean, m².
     pub variance: f64,
@@ -133,8 +133,8 @@ impl RadialStatistics {
     }
 }
 
-/// What an eye at `eye`, local metres, sees of `scene`. Balls that hold the eye are left out
-/// ([`MedialScene::enclosure`] tells of them).
+/// Computes the isovist of an eye at `eye`, local metres, in `scene`. Balls that hold the eye are left out
+/// ([`MedialScene::enclosure`] returns them).
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for an eye that is not finite and for parameters outside their range, and
@@ -195,7 +195,8 @@ pub fn isovist_of(
     let blocked: f64 = (ranges.iter().enumerate())
         .map(|(at, range)| range.map_or(0.0, |range| weight(at / width) * range.powi(3) / 3.0))
         .sum();
-    let surface = ClosedSurface::of(&RangeGrid { ranges: &ranges, width, weights: &weights, reach });
+    let grid = RangeGrid { ranges: &ranges, width, weights: &weights, reach };
+    let surface = ClosedSurface::of(&grid, &ClosedRoomParams::default());
     let (ranges, unbounded) = match &surface {
         Some(surface) => (surface.ranges.clone(), surface.gap_share),
         None => (ranges, 0.0),

@@ -10,7 +10,7 @@ const HALVINGS: usize = 10;
 /// Rays of the plan for each column of the panorama: the plane has few.
 const RAYS_PER_STEP: usize = 4;
 
-/// What is seen in the level plane through the eye.
+/// Visible area in the level plane through the eye.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlanIsovist {
     /// Corners of what is seen: azimuth clockwise from north, radians, and range, metres, the greatest where nothing
@@ -26,7 +26,7 @@ pub struct PlanIsovist {
     pub openness: f64,
     /// Ranges in all azimuths, open ones as the greatest range.
     pub ranges: RadialStatistics,
-    /// From the eye to the middle of the area: east and north, metres.
+    /// Vector from the eye to the middle of the area: east and north, metres.
     pub drift: [f64; 2],
 }
 

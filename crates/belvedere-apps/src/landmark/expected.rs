@@ -1,4 +1,4 @@
-//! How much of a landmark an observer is expected to see.
+//! Expected visible part of a landmark.
 
 use super::{LandmarkParams, LandmarkView, NEAREST};
 use belvedere_core::query::{MedialScene, SurfacePieces, Viewer};

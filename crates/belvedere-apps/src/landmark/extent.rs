@@ -1,4 +1,4 @@
-//! How wide and how high pieces stand before an eye.
+//! Angular width and height of pieces before an eye.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,15 +7,15 @@ use std::f64::consts::{PI, TAU};
 pub(super) struct SkyBox {
     /// Azimuth from and to, clockwise from north, radians; the second is the first plus the width, 0 to 2π.
     pub(super) azimuths: [f64; 2],
-    /// Least and greatest elevation, radians.
+    /// Minimum and maximum elevation, radians.
     pub(super) elevations: [f64; 2],
-    /// Least and greatest range of corners, metres.
+    /// Minimum and maximum range of corners, metres.
     pub(super) ranges: [f64; 2],
 }
 
 impl SkyBox {
     /// The box around both, but for azimuths, which stay this one's.
-    pub(super) fn around(&self, other: &Self) -> Self {
+    pub(super) fn union(&self, other: &Self) -> Self {
         let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
         Self {
             azimuths: self.azimuths,

@@ -1,4 +1,4 @@
-//! What an observer sees of a landmark, as named numbers.
+//! Visible part of a landmark, as named numbers.
 
 use super::LandmarkView;
 
@@ -7,7 +7,7 @@ use super::LandmarkView;
 pub struct LandmarkMeasure {
     /// Name of its column.
     pub name: &'static str,
-    /// What it is, with its unit.
+    /// Description, with its unit.
     pub description: &'static str,
     /// Decimals in tables.
     pub decimals: usize,

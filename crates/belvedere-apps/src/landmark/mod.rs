@@ -24,26 +24,25 @@ use rayon::prelude::*;
 /// Pieces that a landmark is cut into where nothing is said: a share of it is then known to 1.6 % at worst, mostly to
 /// much less.
 const USUAL_PIECES: f64 = 1000.0;
-/// Least spacing where nothing is said, metres: balls know walls to about a decimetre.
+/// Minimum default spacing, metres: balls represent walls to about a decimetre.
 const MIN_SPACING: f64 = 0.25;
-/// Least range that measures are made of, metres: a piece that touches the eye would fill half of its view.
+/// Minimum range of a measured piece, metres: a piece that touches the eye would fill half of its view.
 const NEAREST: f64 = 1e-3;
 
-/// How landmarks are looked at.
+/// Parameters of views of landmarks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LandmarkParams {
-    /// How its faces are tested. Default: those turned away are not visible, so that shares are those of the whole
+    /// Treatment of its faces. Default: those turned away are not visible, so that shares are those of the whole
     /// landmark.
     pub faces: MeshTargetParams,
-    /// What to make of pieces that nothing blocks but whose view is not proven. Default: reported apart from the
-    /// visible.
+    /// Treatment of unproven pieces that nothing blocks. Default: reported apart from the visible.
     pub unproven: UnprovenAs,
-    /// How lines of sight run over the earth.
+    /// Curvature of the earth on lines of sight.
     pub earth: EarthParams,
-    /// Greatest range of what counts, metres, above 0. Default: infinite.
+    /// Maximum range of pieces that count, metres, above 0. Default: infinite.
     pub max_range: f64,
-    /// Whether to tell what area is expected to be seen; needs pulses. Default: not.
+    /// True to compute the expected visible area; needs pulses. Default: false.
     pub has_expected: bool,
 }
 
@@ -73,7 +72,7 @@ impl LandmarkParams {
         Ok(())
     }
 
-    /// Whether a piece is turned to an eye, or both of its sides count.
+    /// Returns true if a piece is turned to an eye, or both of its sides count.
     fn can_be_seen(&self, landmark: &SurfacePieces, piece: &SurfacePiece, eye: [f64; 3]) -> bool {
         let backs_count = self.faces.back_faces == BackFaces::BothSides || landmark.sides == Sides::Both;
         backs_count || dot(piece.normal.map(f64::from), sub(piece.corners[0].map(f64::from), eye)) < 0.0
@@ -92,7 +91,7 @@ impl Default for LandmarkParams {
     }
 }
 
-/// What one observer sees of a landmark. Angles are those at the eye; all is 0 where nothing is seen.
+/// Visible part of a landmark for one observer. Angles are those at the eye; all are 0 if nothing is visible.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LandmarkView {
     /// Area seen, m².
@@ -125,10 +124,10 @@ impl LandmarkView {
 
 /// Default side of the cells that observers of a grid stand in, metres: a step or two.
 const OBSERVER_CELL: f64 = 2.0;
-/// Most cells of a default grid of observers: a thousand lines of sight each take about a minute.
+/// Maximum number of cells of a default grid of observers: a thousand lines of sight each take about a minute.
 const USUAL_OBSERVERS: f64 = 40_000.0;
 
-/// The side of the cells of a default grid of observers over the box on the map from `low` to `high`, metres: 2,
+/// Returns the side of the cells of a default grid of observers over the box in plan from `low` to `high`, metres: 2,
 /// doubled until there are at most 40 000.
 #[must_use]
 pub fn observer_cell_for(low: [f64; 2], high: [f64; 2]) -> f64 {
@@ -147,7 +146,7 @@ pub fn spacing_for(area: f64) -> f64 {
     (4.0 * area / USUAL_PIECES).sqrt().max(MIN_SPACING)
 }
 
-/// What an eye at `eye`, local metres, sees of `landmark`.
+/// Computes the visible part of `landmark` for an eye at `eye`, local metres.
 ///
 /// Each piece counts as its place does; angles and ranges are those of whole pieces, so that they err outward by up to
 /// a piece. The solid angle of a piece is exact. Lines of sight are those of [`MedialScene::sight_answer`]: the
@@ -166,7 +165,8 @@ pub fn landmark_view(
     measured(landmark, eye, params, |_, place| scene.sight_answer(eye, place, &params.earth))
 }
 
-/// What an eye sees of a landmark if `answer` tells what it sees of the places of pieces, given by their rows.
+/// Computes the visible part of a landmark for an eye; `answer` returns the answer for the place of a piece, given its
+/// row.
 fn measured(
     landmark: &SurfacePieces,
     eye: [f64; 3],
@@ -203,7 +203,7 @@ fn measured(
         view.solid_angle += solid_angle(corners);
         let sky = sky_box(corners, sub(piece.place.map(f64::from), eye));
         arcs.add(sky.azimuths);
-        seen = Some(seen.map_or(sky, |seen| seen.around(&sky)));
+        seen = Some(seen.map_or(sky, |seen| seen.union(&sky)));
     }
     if let Some(seen) = seen {
         let (covered, span) = arcs.measure();
@@ -215,8 +215,8 @@ fn measured(
     view
 }
 
-/// What each of `eyes`, (N) local metres, sees of `landmark`; control counts eyes. An eye that is not finite sees
-/// nothing and has an area of 0.
+/// Computes the visible part of `landmark` for each of `eyes`, (N) local metres; control counts eyes. An eye that is
+/// not finite sees nothing and has an area of 0.
 ///
 /// # Errors
 /// [`Error::NoPoints`] for a landmark without area, [`Error::InvalidParameter`] for parameters outside their range,
@@ -274,12 +274,12 @@ impl LandmarkPieces {
         Self { fronts: TargetTree::new(&lifted(1.0)), backs: TargetTree::new(&backs) }
     }
 
-    /// Whether any line of sight from `eye` is curved.
+    /// Returns true if any line of sight from `eye` is curved.
     fn bend(&self, eye: [f64; 3], earth: &EarthParams) -> bool {
         [&self.fronts, &self.backs].into_iter().any(|tree| tree.any_corner(|corner| earth.bends(corner, eye)))
     }
 
-    /// Whether nothing blocks the place of each piece on the side that `eye` is on.
+    /// Flags the pieces whose place nothing blocks on the side of `eye`.
     fn unblocked_from(
         &self,
         scene: &MedialScene,

@@ -8,22 +8,22 @@ use belvedere_data::control::Control;
 use belvedere_data::polygon::is_inside;
 use belvedere_data::{Error, PointCloud, Result};
 
-/// Greatest radius of the surface that a point represents, metres: walls that few pulses reach have points a metre
+/// Maximum radius of the surface that a point represents, metres: walls that few pulses reach have points a metre
 /// apart.
 const MAX_RADIUS: f64 = 1.0;
 
-/// Which points of a cloud are the landmark.
+/// Selection of the points of a landmark.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LandmarkPoints<'a> {
-    /// Those of an ASPRS class.
+    /// Points of an ASPRS class.
     Class(u8),
-    /// Those above one of several polygons that are not ground: each an outline and holes of (x, y), local metres,
-    /// closed or not.
+    /// Points above one of several polygons that are not ground. Each polygon is an outline and holes of (x, y), local
+    /// metres, closed or not.
     Inside(&'a [Vec<Vec<[f64; 2]>>]),
 }
 
-/// Rows of the points of `cloud` that are the landmark, in rising order, and their surface
-/// ([`SurfacePieces::of_points`] with normals from 16 neighbours, a point standing for a disc of 1 m radius at most).
+/// Returns the rows of the points of `cloud` that are the landmark, ascending, and their surface
+/// ([`SurfacePieces::of_points`]). Normals come from 16 neighbours; a point represents a disc of 1 m radius at most.
 ///
 /// # Errors
 /// [`Error::MissingAttribute`] for a class where the cloud has none, [`Error::NoPoints`] where no point is meant, and

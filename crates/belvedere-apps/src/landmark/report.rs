@@ -1,10 +1,10 @@
-//! What the observers of a landmark see of it, in a few numbers.
+//! Summary of the views of a landmark.
 
 use super::LandmarkView;
 use belvedere_data::report::{percent, rounded};
 use serde::Serialize;
 
-/// How many observers see a landmark, and who sees most of it.
+/// Number of observers that see a landmark, and the best view.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LandmarkReport {
     /// Observers that stand somewhere.
@@ -15,7 +15,7 @@ pub struct LandmarkReport {
     pub observers_with_view: usize,
     /// The same as a share of all.
     pub observers_with_view_percent: f64,
-    /// Who sees most of it.
+    /// Best view.
     #[serde(flatten)]
     pub best: Option<BestView>,
 }
@@ -32,7 +32,7 @@ pub struct BestView {
 }
 
 impl LandmarkReport {
-    /// What `views`, one for each of `eyes`, come to; `enclosed_count` of the eyes are inside a ball.
+    /// Summarises `views`, one for each of `eyes`; `enclosed_count` of the eyes are inside a ball.
     #[must_use]
     pub fn new(views: &[LandmarkView], eyes: &[[f64; 3]], enclosed_count: usize) -> Self {
         let count = eyes.iter().filter(|eye| eye[2].is_finite()).count();

@@ -8,10 +8,10 @@ use belvedere_data::vector::{dot, sub};
 const MAX_CELLS: f64 = 20_000.0;
 /// Shares of a side by which cells are shifted to measure an area.
 const SHIFTS: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
-/// Points of a cell of the extent of a plane: of so many, cells that the outline crosses reach over it by as much as
-/// they lack ([`area`] has the formula), and few cells within it are empty by chance.
+/// Mean number of points of a cell of the extent of a plane. Cells that the outline crosses then extend over it by as
+/// much as they lack ([`area`] has the formula), and few cells inside are empty by chance.
 const POINTS_OF_CELL: f64 = 2.0;
-/// Least side of a cell of an extent, metres: outlines of denser clouds need not be finer.
+/// Minimum side of a cell of an extent, metres: outlines of denser clouds need not be finer.
 const MIN_EXTENT_CELL: f64 = 0.2;
 /// Holes of an extent up to this area belong to it, m²: chimneys, windows and dormers. Pieces beside it of this area do
 /// not.
@@ -34,8 +34,8 @@ pub struct PlaneCells {
 }
 
 impl PlaneCells {
-    /// The cells of a plane that hold some of `rows` among `points`, from its lowest and outermost points on, and of
-    /// which `is_usable`, given the middle of a cell, says yes.
+    /// Creates the cells of a plane that hold some of `rows` among `points`, from its lowest and outermost points on.
+    /// `is_usable` accepts or rejects a cell, given its middle.
     pub(super) fn of(
         points: &[[f32; 3]],
         rows: &[u32],
@@ -63,7 +63,7 @@ impl PlaneCells {
         cells
     }
 
-    /// How many there are.
+    /// Returns the number of cells.
     #[must_use]
     pub fn count(&self) -> usize {
         self.filled.values().iter().filter(|filled| **filled).count()
@@ -151,7 +151,7 @@ fn smooth(cells: &mut Raster<bool>, max_count: f64) {
 /// Cells of one value that hang together by their sides.
 struct CellGroup {
     cells: Vec<usize>,
-    /// Whether none is at the border.
+    /// True if no cell is at the border.
     is_enclosed: bool,
 }
 
@@ -178,7 +178,7 @@ fn groups(cells: &Raster<bool>, value: bool) -> Vec<CellGroup> {
     found
 }
 
-/// How many cells `point_count` points that fill these were drawn from.
+/// Estimates the number of cells from which the `point_count` points that fill these were drawn.
 fn cells_covered(cells: &Raster<bool>, point_count: usize) -> f64 {
     let is_filled = |column: usize, row: usize| cells.get(column, row).unwrap_or(false);
     let (mut count, mut sides, mut corners) = (0.0, 0.0, 0.0);

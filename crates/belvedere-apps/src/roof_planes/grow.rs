@@ -14,12 +14,12 @@ const MIN_POINTS: usize = 12;
 const FIRST_FIT: usize = 12;
 /// Times that the points near a grown plane are taken anew: the first fit leans to where it began.
 const ROUNDS: usize = 2;
-/// Least share of the points within reach of a plane's points that lie on it, too: in a crown, where planes pass
-/// through by chance, a fifth do, and on a roof between others more than two thirds.
+/// Minimum share of the points within reach of a plane's points that lie on it, too. In a crown, where planes pass
+/// through by chance, it is a fifth, and on a roof between others more than two thirds.
 const MIN_SHARE: f64 = 0.5;
 
 const FREE: u32 = u32::MAX;
-/// Of a plane that is no roof: no seed, but may join one that is.
+/// Owner of points on a plane that is no roof: they are no seed, but may join a plane that is.
 const DROPPED: u32 = u32::MAX - 1;
 
 /// Rows of the points of each plane that `is_roof`, rising, and its fit.
@@ -55,8 +55,8 @@ pub(super) fn regions(
     Ok(regions)
 }
 
-/// Gives points that were left because their normals bend, as near ridges, to the plane next to them that they lie on:
-/// to the nearest, of planes equally near to the first.
+/// Assigns points left over because their normals bend, as near ridges, to the adjacent plane that they lie on. It is
+/// the nearest one, or the first of several equally near.
 fn absorb(
     points: &[[f32; 3]],
     index: &NeighborIndex,

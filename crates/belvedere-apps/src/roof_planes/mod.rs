@@ -22,29 +22,28 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// ASPRS class of buildings.
 pub const BUILDING: u8 = 6;
 
-/// Least side of a cell, metres: points do not tell more, and the cells of a whole town would fill the memory.
+/// Minimum side of a cell, metres: points resolve no more, and the cells of a whole town would fill the memory.
 const MIN_CELL: f64 = 0.1;
 
-/// Tilt up to which a plane is level and faces nowhere, radians: roofs that are called flat have 2 to 3 % of slope for
-/// the rain, and a few of these degrees are noise.
+/// Maximum tilt of a level plane without an aspect, radians. Flat roofs have 2 to 3 % of slope for the rain, and a few
+/// of these degrees are noise.
 pub const MAX_LEVEL: f64 = 2.0 * std::f64::consts::PI / 180.0;
 
-/// How planes are found.
+/// Parameters of the detection of planes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RoofPlaneParams {
-    /// Farthest that a point of a plane lies from it, metres, above 0. Default 0.12: four times the noise of airborne
+    /// Maximum distance of a point of a plane from it, metres, above 0. Default 0.12: four times the noise of airborne
     /// scans.
     pub distance: f64,
-    /// Most that the normal of a point differs from that of its plane, radians, above 0 to π/2. Default 25 degrees:
+    /// Maximum angle between the normals of a point and of its plane, radians, above 0 to π/2. Default 25 degrees:
     /// wide, since normals bend near ridges and eaves; distance decides.
     pub angle: f64,
-    /// Farthest step from point to point of a plane, metres, above 0. Default 1: what two points a square metre reach
-    /// over.
+    /// Maximum step from point to point of a plane, metres, above 0. Default 1: the gap of two points a square metre.
     pub reach: f64,
     /// Steepest plane that counts, radians from level, below π/2. Default 75 degrees: walls are no roofs.
     pub max_tilt: f64,
-    /// Least area of a plane, m². Default 4: two panels.
+    /// Minimum area of a plane, m². Default 4: two panels.
     pub min_area: f64,
     /// Side of the cells that a plane is cut into, metres, 0.1 to 1000. Default 1: the width of a panel.
     pub cell: f64,

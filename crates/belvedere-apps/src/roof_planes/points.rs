@@ -1,4 +1,4 @@
-//! Which points of a cloud are roofs.
+//! Selection of the points of roofs.
 
 use super::BUILDING;
 use belvedere_core::ground::Ground;
@@ -15,17 +15,17 @@ const FEW: usize = 1000;
 /// Side of the cells of the ground that roofs are separated from, metres.
 pub const GROUND_CELL: f64 = 1.0;
 
-/// How roofs were separated from other objects.
+/// Criterion that separates roofs from other objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RoofsFrom {
-    /// By the class of buildings.
+    /// Class of buildings.
     Class,
-    /// By their height above the ground.
+    /// Height above the ground.
     Height,
 }
 
-/// Rows of the points of `cloud` that may lie on roofs, rising: those of class 6, where at least one in a thousand has
-/// it; else those at least 2 m above `ground` whose class is nothing else.
+/// Returns the rows of the points of `cloud` that may lie on roofs, ascending. These are points of class 6, if at least
+/// one in a thousand has it. Otherwise they are points at least 2 m above `ground` without another class.
 ///
 /// # Errors
 /// [`Error::NoPoints`] where there is none.

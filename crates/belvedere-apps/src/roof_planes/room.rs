@@ -1,4 +1,4 @@
-//! Where on a plane a panel can lie.
+//! Room for panels on a plane.
 
 use super::RoofPlaneParams;
 use super::cells::PlaneCells;
@@ -7,22 +7,22 @@ use belvedere_core::neighbors::NeighborIndex;
 use belvedere_data::vector::{dot, sub};
 use std::f64::consts::{PI, TAU};
 
-/// How far above its plane something must lie to be in the way of a panel, metres: twice the distance up to which
-/// points count as on the plane. Parapets, chimneys and dormers are higher.
+/// Minimum height above its plane of an obstacle to a panel, metres: twice the distance up to which points count as on
+/// the plane. Parapets, chimneys and dormers are higher.
 const CLEARANCE: f64 = 0.25;
-/// Height above a plane up to which something over a cell is in the way, metres: chimneys and the walls of higher parts
-/// are lower, or have points below that height.
+/// Maximum height above a plane at which a point over a cell is an obstacle, metres. Chimneys and the walls of higher
+/// parts are lower, or have points below that height.
 const OVERHEAD: f64 = 6.0;
 /// A point of no plane.
 const NO_PLANE: u32 = u32::MAX;
 
-/// Which point of a roof lies on which plane.
+/// Assignment of the points of a roof to planes.
 pub(super) struct Room<'a> {
     points: &'a [[f32; 3]],
     index: &'a NeighborIndex,
     /// Number of the plane of each point.
     owner: Vec<u32>,
-    /// How far around a middle points are looked at, metres.
+    /// Radius around a middle within which points count, metres.
     reach: f64,
 }
 
@@ -40,8 +40,8 @@ impl<'a> Room<'a> {
         Self { points, index, owner, reach: params.reach.max(params.cell) }
     }
 
-    /// Whether a panel can lie on the cell of plane `number` with this middle: points of the plane lie all around the
-    /// middle, so that it is not beyond the edge, and nothing stands on the cell.
+    /// Returns true if a panel fits on the cell of plane `number` with this middle. Points of the plane lie all around
+    /// the middle, so that it is not beyond the edge, and nothing stands on the cell.
     pub(super) fn fits(&self, number: u32, cells: &PlaneCells, normal: [f64; 3], middle: [f64; 3]) -> bool {
         let offset = |row: usize| {
             let offset = sub(self.points[row].map(f64::from), middle);
@@ -71,7 +71,7 @@ impl<'a> Room<'a> {
     }
 }
 
-/// Whether directions leave no half circle empty.
+/// Returns true if directions leave no half circle empty.
 fn is_all_around(mut angles: Vec<f64>) -> bool {
     angles.sort_by(f64::total_cmp);
     let (Some(first), Some(last)) = (angles.first(), angles.last()) else { return false };

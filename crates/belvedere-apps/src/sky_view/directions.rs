@@ -5,7 +5,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Patches of each row of Tregenza's sky, from the horizon up; one more lies around the zenith.
 const TREGENZA: [usize; 7] = [30, 30, 24, 24, 18, 12, 6];
-/// Most directions of a sky: their bits of a million targets still fit into the memory of a usual machine.
+/// Maximum number of directions of a sky: their bits for a million targets still fit into the memory of a usual
+/// machine.
 const MAX_DIRECTIONS: usize = 100_000;
 
 /// Parts of the upper hemisphere, a direction for each.
@@ -18,9 +19,9 @@ pub struct SkyDirections {
 }
 
 impl SkyDirections {
-    /// `count` parts of equal solid angle along a spiral. Of 400 street canyons the sky view factor at 577 directions
-    /// errs by 0.0041 (root mean square), openness by 0.0036, and the sky view factor of walls by 0.0020; at 145 by
-    /// 0.0118, 0.0106 and 0.0062, at 2305 by 0.0015, 0.0013 and 0.0008.
+    /// Creates `count` parts of equal solid angle along a spiral. Errors were measured in 400 street canyons. At 577
+    /// directions the root mean square error of the sky view factor is 0.0041, of openness 0.0036, and of the sky view
+    /// factor of walls 0.0020. At 145 they are 0.0118, 0.0106 and 0.0062, at 2305 0.0015, 0.0013 and 0.0008.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for no direction and for more than 100 000.

@@ -1,4 +1,4 @@
-//! How much of the sky a place sees: the sky view factor and sky openness, two figures that are often mixed up.
+//! Visible part of the sky: the sky view factor and sky openness, two figures that are often confused.
 
 mod directions;
 
@@ -14,18 +14,16 @@ use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
-/// Default height of targets above the ground for results about the sun and the sky, metres.
-pub const SKY_TARGET_HEIGHT: f64 = 0.1;
 /// Number of directions of [`SkyDirections::even`] unless said otherwise: errors of half a percent at most streets.
 pub const SKY_DIRECTIONS: usize = 577;
 
-/// What a raster of sky view factors says of itself.
+/// Description of a raster of sky view factors.
 pub const SKY_VIEW_FACTOR: &str = "sky view factor, cosine";
 
 /// Targets handed to a thread at once.
 const CHUNK: usize = 256;
 
-/// How much of the sky each of many targets sees.
+/// Visible part of the sky of many targets.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SkyView {
     /// Cosine-weighted share of the sky, 0 to 1, (M): (1/π) ∫ V cos θ dΩ, θ being the angle to the target's normal. The
@@ -34,7 +32,7 @@ pub struct SkyView {
     /// Share of the hemisphere above the horizon that is seen, 0 to 1, (M): (1/2π) ∫ V dΩ, whatever the normal. A free
     /// plane has 1, and a free wall ½ too.
     pub openness: Vec<f32>,
-    /// How far these may be from the truth, by classes; empty where that was not wanted.
+    /// Error classes; empty if not requested.
     pub classes: Vec<u8>,
 }
 
@@ -58,8 +56,9 @@ impl SkyView {
     }
 }
 
-/// How much of `sky` each of `targets` sees among `obstacles`; NaN for a target without a position. Where trees let
-/// light through they are in leaf, unless they are said to be bare. Progress counts targets, once or twice each.
+/// Computes the visible part of `sky` for each of `targets` among `obstacles`; NaN for a target without a position.
+/// Trees that let light through are in leaf, unless they are said to be bare. Progress counts targets, once or twice
+/// each.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`sky_view`].
@@ -103,7 +102,7 @@ pub fn sky_view(matrix: &VisibilityMatrix, sky: &SkyDirections, normals: Option<
     sky_shares(matrix, sky, normals, |target, column| f64::from(u8::from(matrix.is_free(target, column))))
 }
 
-/// As [`sky_view`], where what is behind crowns counts by the share that these let through, with this
+/// Computes [`sky_view`] with directions behind crowns weighted by the share that these let through, with this
 /// [`factor`](crate::tree_light::CrownLight::factor).
 ///
 /// # Errors

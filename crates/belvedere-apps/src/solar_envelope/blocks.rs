@@ -86,9 +86,10 @@ fn distinct(corners: &[[f64; 2]]) -> Vec<[f64; 2]> {
 }
 
 impl SolarEnvelope {
-    /// The envelope as a mesh in metres of the system that `origin` counts from, in closed solids whose volumes add up
-    /// to [`SolarEnvelope::volume`]: the whole cells of the parcel as blocks that touch each other without gap, and the
-    /// cells that its outline cuts as prisms beside them. Columns lower than a millimetre are left out.
+    /// Converts the envelope into a mesh in metres of the system of `origin`. It consists of closed solids whose
+    /// volumes add up to [`SolarEnvelope::volume`]. The whole cells of the parcel are blocks that touch each other
+    /// without gap; the cells that its outline cuts are prisms beside them. Columns lower than a millimetre are left
+    /// out.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] where a column is bounded by nothing.

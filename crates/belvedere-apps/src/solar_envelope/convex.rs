@@ -1,7 +1,7 @@
 //! Convex pieces of the map, small enough to live on the stack.
 
-/// Most corners: a piece between two edges of a parcel and the sides of a cell has six, three cuts add one each; the
-/// rest is spare.
+/// Maximum number of corners: a piece between two edges of a parcel and the sides of a cell has six, three cuts add one
+/// each; the rest is spare.
 const MAX_CORNERS: usize = 12;
 
 /// A convex polygon on the map, counter-clockwise, local metres.

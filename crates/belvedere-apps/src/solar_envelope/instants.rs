@@ -3,7 +3,7 @@
 use crate::sun::{Date, DayParams, Site, Zone, sun_position_with};
 use belvedere_data::{Error, Parameter, Result};
 
-/// Most instants: three years at 10 minutes.
+/// Maximum number of instants: three years at 10 minutes.
 const MAX_INSTANTS: usize = 200_000;
 
 /// A sun that must reach what is protected.
@@ -15,14 +15,14 @@ pub struct EnvelopeSun {
     pub direction: [f64; 3],
 }
 
-/// The suns of each of `dates` at a site, from the first to the last of the hours `between` on the clocks of `zone`,
-/// both included: the first and the last sun of a day cast the longest shadows, and bind. Steps are made a little
-/// shorter where they do not fill the time. Suns at or below the least elevation of `params` are left out; their number
-/// is returned too.
+/// Returns the suns of each of `dates` at a site, from the first to the last of the hours `between` on the clocks of
+/// `zone`, both included. The first and the last sun of a day cast the longest shadows, and bind. Steps are shortened a
+/// little to fill the time. Suns at or below the minimum elevation of `params` are left out; their number is returned
+/// too.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for hours that are not 0 to 24 in rising order, a step that is not 10 to 3600 seconds,
-/// and more than 200 000 instants; those of [`Zone::instant_of`] and [`sun_position_with`].
+/// and more than 200 000 instants. Also the errors of [`Zone::instant_of`] and [`sun_position_with`].
 pub fn envelope_suns(
     site: &Site,
     zone: &Zone,

@@ -1,9 +1,9 @@
 //! The solar envelope: the largest volume over a parcel that casts no shadow on what is protected, at any of the suns.
 //!
-//! A sun at elevation e shades the place g up to the height h − d tan e from a thing of height h that stands d metres
-//! toward the sun. So that it does not, h may be z(g) + d tan e at most. A protected edge swept toward the sun makes a
-//! strip of the map, over which that bound is linear: the least of it over a column of the grid is found in closed
-//! form, without sampling the line or marching.
+//! A sun at elevation e shades the place g up to the height h − d tan e from an object of height h that stands d metres
+//! toward the sun. To keep g in the sun, h may be at most z(g) + d tan e. A protected edge swept toward the sun makes a
+//! strip in plan, over which that bound is linear. The minimum over a column of the grid is found in closed form,
+//! without sampling the line or marching.
 
 mod blocks;
 mod convex;
@@ -31,16 +31,16 @@ use strip::ShadingStrip;
 
 /// A sun that stands this near to the zenith shades nothing beside a thing: cosine of its elevation.
 const OVERHEAD: f64 = 1e-9;
-/// Most pairs of a protected piece and a sun: some minutes of work.
+/// Maximum number of pairs of a protected piece and a sun: some minutes of work.
 const MAX_PAIRS: usize = 200_000_000;
 
-/// What bounds an envelope besides the sun.
+/// Bounds of an envelope besides the sun.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 #[non_exhaustive]
 pub struct EnvelopeParams {
-    /// Greatest height above the ground, metres, above 0: what zoning allows anyway. Default `None`: columns that no
-    /// sun bounds are infinitely high.
+    /// Maximum height above the ground, metres, above 0: the limit of zoning. Default `None`: columns that no sun
+    /// bounds are infinitely high.
     pub ceiling: Option<f64>,
 }
 
@@ -68,15 +68,15 @@ impl EnvelopeParams {
 /// A solar envelope over the cells of a grid.
 #[derive(Clone, Debug)]
 pub struct SolarEnvelope {
-    /// Where the cells lie.
+    /// Position of the cells.
     pub grid: MapGrid,
     /// The columns, in the order of their cells.
     pub columns: Vec<EnvelopeColumn>,
-    /// What was left out of account.
+    /// Counts of what was left out.
     pub report: EnvelopeReport,
 }
 
-/// What may be built over the part of a cell that lies on the parcel.
+/// Envelope over the part of a cell that lies on the parcel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnvelopeColumn {
     /// The part of the cell.
@@ -86,7 +86,7 @@ pub struct EnvelopeColumn {
     /// Height of the envelope, local metres, the ground at least; infinite where nothing bounds it. It holds over the
     /// whole footprint, so that the columns together shade nothing.
     pub top: f64,
-    /// What bounds it; `None` for the ceiling, or nothing.
+    /// Bound of the column; `None` for the ceiling, or no bound.
     pub binding: Option<Binding>,
 }
 
@@ -98,7 +98,7 @@ impl EnvelopeColumn {
     }
 }
 
-/// What bounds a column: the first of those that bound it equally.
+/// Bound of a column: the first of those that bound it equally.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Binding {
     /// Row of the protected piece.
@@ -107,7 +107,7 @@ pub struct Binding {
     pub sun: usize,
 }
 
-/// What was left out of account.
+/// Counts of what was left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EnvelopeReport {
     /// Suns at or below the horizon, which shade nothing.
@@ -122,20 +122,22 @@ pub struct EnvelopeReport {
     pub without_ground_count: usize,
 }
 
-/// The solar envelope of `parcel` over the cells of `ground`, that keeps the sun for each piece of `protected` at each
-/// of `suns`, (S, 3) unit vectors from the scene to the sun (x east, y grid north, z up).
+/// Computes the solar envelope of `parcel` over the cells of `ground`. It keeps the sun for each piece of `protected`
+/// at each of `suns`, (S, 3) unit vectors from the scene to the sun (x east, y grid north, z up).
 ///
 /// Each column is bounded by the least bound over its whole footprint: nothing built within the columns shades what is
 /// protected, and no column can be raised without that. Where a bound lies below the ground nothing may be built, and
 /// the height is 0. Protected edges that only touch a column from beside do not bound it.
 ///
-/// `free`, a row for each piece's sample and a column for each sun, credits shade that is there already: where it is
-/// not free, the piece is in shade at that sun, and the pair bounds nothing.
+/// `free`, a row for each piece's sample and a column for each sun, credits existing shade. Where it is not free, the
+/// piece is in shade at that sun, and the pair bounds nothing.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a sun that is not of unit length, a piece that is not finite, a ceiling that is not
-/// above zero, and more than 200 million pairs; [`Error::LengthMismatch`] where `free` has other rows and columns;
-/// [`Error::NoPoints`] where no ground is known below the parcel; [`Error::Cancelled`].
+/// - [`Error::InvalidParameter`] for a sun that is not of unit length, a piece that is not finite, a ceiling that is
+///   not above zero, and more than 200 million pairs.
+/// - [`Error::LengthMismatch`] if `free` has other rows and columns.
+/// - [`Error::NoPoints`] if no ground is known below the parcel.
+/// - [`Error::Cancelled`].
 ///
 /// # Source
 /// Knowles 2003, The solar envelope: its meaning for energy and buildings, Energy and Buildings 35.
@@ -189,8 +191,8 @@ pub fn solar_envelope(
     Ok(SolarEnvelope { grid, columns, report })
 }
 
-/// Which of `suns` each of `protected` sees in `scene`: the shade that is there already, for [`solar_envelope`] to
-/// credit. It has at most 200 million bits. Progress counts pieces.
+/// Computes which of `suns` each of `protected` sees in `scene`: the existing shade, for [`solar_envelope`] to credit.
+/// It has at most 200 million bits. Progress counts pieces.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for more than 200 million pairs, and those of [`MedialScene::visibility_matrix`].
@@ -338,7 +340,7 @@ impl SolarEnvelope {
         self.columns.iter().map(|column| column.footprint.area).sum()
     }
 
-    /// Greatest height above the ground, metres; 0 without columns.
+    /// Returns the maximum height above the ground, metres; 0 without columns.
     #[must_use]
     pub fn greatest_height(&self) -> f64 {
         self.columns.iter().map(EnvelopeColumn::height).fold(0.0, f64::max)

@@ -5,9 +5,9 @@ use belvedere_core::ground::MapGrid;
 use belvedere_data::polygon::simple_rings;
 use belvedere_data::{Error, Parameter, Result};
 
-/// Most corners of a parcel: more are a slipped file, and each cell is cut at all of their heights.
+/// Maximum number of corners of a parcel: more are a damaged file, and each cell is cut at all of their heights.
 const MAX_CORNERS: usize = 10_000;
-/// Least area of a parcel, m²: below it the corners lie in a line.
+/// Minimum area of a parcel, m²: below it the corners lie in a line.
 const MIN_AREA: f64 = 0.01;
 /// Strips and pieces thinner than this are rounding, metres.
 const THIN: f64 = 1e-9;
@@ -27,13 +27,13 @@ pub struct ParcelCell {
     pub pieces: Vec<ConvexPolygon>,
     /// Their area, m².
     pub area: f64,
-    /// Whether the cell lies wholly on the parcel.
+    /// True if the cell lies wholly on the parcel.
     pub is_whole: bool,
 }
 
 impl Parcel {
-    /// The parcel within `rings`, local metres on the map, each an outline or a hole, of any orientation, the first
-    /// corner repeated at the end or not: what lies within an odd number of rings belongs to it.
+    /// Creates the parcel within `rings`, local metres in plan. Each ring is an outline or a hole, of any orientation,
+    /// with the first corner repeated at the end or not. The inside of an odd number of rings belongs to it.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a corner that is not finite, a ring with less than three corners, sides that

@@ -1,11 +1,11 @@
-//! What shadows must stay off: lines with a fence, faces of facades, points.
+//! Objects that shadows must stay off: lines with a fence, faces of facades, points.
 
-use crate::sky_view::SKY_TARGET_HEIGHT;
+use crate::targets::TARGET_LIFT;
 use belvedere_core::ground::Ground;
 use belvedere_core::query::SurfacePieces;
 use belvedere_data::{Error, Parameter, Result};
 
-/// Most pieces of lines: every sun sweeps each over the parcel.
+/// Maximum number of pieces of lines: every sun sweeps each over the parcel.
 const MAX_PIECES: usize = 1_000_000;
 
 /// A piece of what is protected: a point, an edge or a triangle.
@@ -26,19 +26,19 @@ impl ProtectedPiece {
     /// A point.
     #[must_use]
     pub fn point(place: [f64; 3], source: u32) -> Self {
-        let sample = single([place[0], place[1], place[2] + SKY_TARGET_HEIGHT]);
+        let sample = single([place[0], place[1], place[2] + TARGET_LIFT]);
         Self { corners: vec![place], normal: None, sample, source }
     }
 }
 
-/// The top of a fence of `fence` metres along a line through `corners`, local metres, in pieces of at most `spacing`
-/// metres. Shadows may fall on the fence and stay below its top. Where a corner has no height (NaN), the ground below
-/// each piece's ends counts: the line follows the terrain; pieces whose ground is not known are left out, and their
-/// number returned too.
+/// Creates pieces of at most `spacing` metres of the top of a fence of `fence` metres along a line through `corners`,
+/// local metres. Shadows may fall on the fence and stay below its top. If a corner has no height (NaN), the ground
+/// below each piece's ends counts: the line follows the terrain. Pieces whose ground is not known are left out, and
+/// their number is returned too.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a corner whose place on the map is not finite, a fence that is below zero or not
-/// finite, a spacing that is not above zero, and lines of more than a million pieces.
+/// [`Error::InvalidParameter`] for a corner whose position in plan is not finite, a fence that is below zero or not
+/// finite, and a spacing that is not above zero. Also for lines of more than a million pieces.
 pub fn protected_line(
     corners: &[[f64; 3]],
     fence: f64,
@@ -75,7 +75,7 @@ pub fn protected_line(
                 (Some(from), Some(to)) => {
                     let mut middle = [0, 1, 2].map(|i| f64::midpoint(from[i], to[i]));
                     // off the ground, as other targets of the sun
-                    middle[2] += SKY_TARGET_HEIGHT;
+                    middle[2] += TARGET_LIFT;
                     let corners = vec![from, to];
                     pieces.push(ProtectedPiece { corners, normal: None, sample: single(middle), source });
                 }

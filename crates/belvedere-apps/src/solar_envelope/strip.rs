@@ -1,5 +1,5 @@
-//! How high a column may stand so that its shadow stays off one protected edge at one sun: in closed form, the edge
-//! being swept toward the sun.
+//! Maximum height of a column whose shadow stays off one protected edge at one sun, in closed form: the edge is swept
+//! toward the sun.
 
 use super::convex::ConvexPolygon;
 
@@ -19,7 +19,7 @@ pub(super) struct ShadingStrip {
     to_sun: [f64; 2],
     /// Tangent of the sun's elevation.
     slope: f64,
-    /// What the edge sweeps across the sun's direction, signed, metres.
+    /// Signed width of the swept edge across the sun's direction, metres.
     across: f64,
 }
 
@@ -49,7 +49,7 @@ impl ShadingStrip {
         piece.clipped(|p| self.place(p)[1]).clipped(share).clipped(|p| 1.0 - share(p))
     }
 
-    /// Where on a piece of the map the strip runs: lowest and highest x, `None` where it misses.
+    /// Returns the lowest and highest x of the strip on a piece of the plan; `None` if it misses the piece.
     pub(super) fn span_x(&self, piece: &ConvexPolygon) -> Option<[f64; 2]> {
         if self.is_ray() {
             let [a, b] = self.ends();
@@ -75,8 +75,8 @@ impl ShadingStrip {
         [self.start, [0, 1, 2].map(|i| self.start[i] + self.along[i])]
     }
 
-    /// Greatest height, local metres, up to which everything over a piece of the map may stand without shading the
-    /// edge; `None` where nothing that stands there can shade it.
+    /// Returns the maximum height, local metres, of objects over a piece of the plan that do not shade the edge; `None`
+    /// if none there can shade it.
     pub(super) fn limit(&self, piece: &ConvexPolygon) -> Option<f64> {
         if self.is_ray() {
             return self.limit_of_ray(piece);

@@ -7,15 +7,15 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 const DAY: f64 = 86_400.0;
-/// Longest time between two looks at the elevation, seconds: a sun that shows between two of them and is gone again
-/// rises 0.02° at most.
+/// Maximum interval between two evaluations of the elevation, seconds: a sun that rises and sets between them rises
+/// 0.02° at most.
 const SAMPLING: f64 = 300.0;
-/// Most days of a period: ten years.
+/// Maximum number of days of a period: ten years.
 const MAX_DAYS: usize = 3700;
-/// How exactly the moment is found at which the sun passes the least elevation, seconds.
+/// Accuracy of the moment at which the sun passes the minimum elevation, seconds.
 const MOMENT: f64 = 0.01;
 
-/// How days are parted.
+/// Parameters of the division of days.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct DayParams {
@@ -26,7 +26,7 @@ pub struct DayParams {
     /// is left out. Default 0: the flat horizon. Some rules leave out low suns.
     #[serde(rename = "least_elevation")]
     pub min_elevation: f64,
-    /// By how much air lifts the sun. Default [`Refraction::Standard`].
+    /// Refraction of the sun by the air. Default [`Refraction::Standard`].
     pub refraction: Refraction,
 }
 
@@ -45,7 +45,7 @@ impl Default for DayParams {
 /// A piece of time during which the sun is up, a step of the day or what the horizon leaves of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunStep {
-    /// Which step of the day, from the midnight before: the same number on another day has the same hour angle.
+    /// Number of the step, from the midnight before: the same number on another day has the same hour angle.
     pub number: u32,
     /// Seconds of UTC since 1970 at its beginning.
     pub start: f64,
@@ -55,11 +55,11 @@ pub struct SunStep {
     pub direction: [f64; 3],
 }
 
-/// A day of the sun at a site: from its midnight (half-way between two culminations) to the next, so that it holds the
-/// whole light of the place whatever clocks show, and days follow each other without gap.
+/// A day of the sun at a site, from its midnight (half-way between two culminations) to the next. It holds the whole
+/// light of the place whatever clocks show, and days follow each other without gap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SunDay {
-    /// What the calendar of the zone calls it at noon.
+    /// Date at noon in the calendar of the zone.
     pub date: Date,
     /// Instant at which clocks of the zone begin this date (as they run at its noon): what times of day count from.
     pub clock_start: f64,
@@ -125,12 +125,12 @@ pub fn sun_day(site: &Site, zone: &Zone, date: Date, within: Option<[f64; 2]>, p
 pub enum Period {
     /// Whole days.
     Days(Vec<Date>),
-    /// What lies between two instants, seconds of UTC since 1970.
+    /// Time between two instants, seconds of UTC since 1970.
     Between([f64; 2]),
 }
 
-/// The days of the sun of a period, 3700 at most (ten years), in the order given; of days at both ends of a span
-/// between instants only the part within it has steps.
+/// Returns the days of the sun of a period, at most 3700 (ten years), in the order given. Days at both ends of a span
+/// between instants have steps within the span only.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a period without days or that ends before it begins, and those of [`sun_day`].
@@ -158,7 +158,7 @@ pub fn sun_days(site: &Site, zone: &Zone, period: &Period, params: &DayParams) -
 }
 
 impl DayParams {
-    /// Whether all are in their ranges.
+    /// Checks that all parameters are in their ranges.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] where one is not.

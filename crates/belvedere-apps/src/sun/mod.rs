@@ -1,8 +1,8 @@
 //! The sun: its position, the hours of light of a day, and the directions that represent the suns of many days.
 //!
-//! Instants are seconds of UTC since 1970-01-01T00:00:00Z, without leap seconds, and UTC is taken for UT1 (they differ
-//! by less than a second, in which the sky turns by 0.004°). Azimuths count clockwise from true north; unit vectors are
-//! in the axes of the grid, x east, y grid north, z up, so that the convergence of meridians is taken off on the way.
+//! Instants are seconds of UTC since 1970-01-01T00:00:00Z, without leap seconds. UTC is taken for UT1; they differ by
+//! less than a second, in which the sky turns by 0.004°. Azimuths count clockwise from true north. Unit vectors are in
+//! the axes of the grid, x east, y grid north, z up, and the convergence of meridians is subtracted for them.
 
 mod days;
 mod position;

@@ -19,7 +19,7 @@ const STANDARD_PRESSURE: f64 = 1013.25;
 /// Temperature that published tables of the sun assume, °C.
 const STANDARD_TEMPERATURE: f64 = 10.0;
 
-/// By how much air lifts the sun.
+/// Refraction of the sun by the air.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Refraction {
@@ -33,14 +33,14 @@ pub enum Refraction {
         /// Temperature, °C, −90 to 60.
         temperature: f64,
     },
-    /// Not at all: the apparent elevation is the geometric one.
+    /// No refraction: the apparent elevation is the geometric one.
     Without,
 }
 
 /// Steps of one in which components of a direction are rounded: 2 to the 32.
 const DIRECTION_STEPS: f64 = 4_294_967_296.0;
 
-/// Where the sun stands: the middle of its disc, as seen from the site (topocentric).
+/// Position of the sun: the centre of its disc, as seen from the site (topocentric).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunPosition {
     /// Azimuth, clockwise from true north, radians, 0 to 2π.
@@ -52,16 +52,16 @@ pub struct SunPosition {
 }
 
 impl SunPosition {
-    /// Unit vector to the apparent sun in the axes of the grid of `site`: x east, y grid north, z up. Rounded to a
-    /// 4 294 967 296th, a hundredth of a millionth of a degree, so that sines and cosines of other platforms, which
-    /// differ in their last digit, give the same shadows.
+    /// Returns the unit vector to the apparent sun in the axes of the grid of `site`: x east, y grid north, z up. It is
+    /// rounded to a 4 294 967 296th, a hundredth of a millionth of a degree. Sines and cosines of other platforms,
+    /// which differ in their last digit, then give the same shadows.
     #[must_use]
     pub fn to_sun(&self, site: &Site) -> [f64; 3] {
         to_sun(self.azimuth - site.convergence, self.elevation).map(|v| (v * DIRECTION_STEPS).round() / DIRECTION_STEPS)
     }
 }
 
-/// Where the sun stands at an instant, refracted by standard air.
+/// Returns the position of the sun at an instant, refracted by standard air.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a site out of range, and for instants before the year 1000 or after 3000.
@@ -113,8 +113,8 @@ pub fn sun_distance(unix_s: f64) -> Result<f64> {
     Ok(prepared.earth_radius_vector().unwrap_or(1.0))
 }
 
-/// When the sun rises, culminates and sets, seconds of UTC since 1970, each in ascending order; empty where it does
-/// not.
+/// Times of sunrise, culmination and sunset, seconds of UTC since 1970, each in ascending order; empty if there is
+/// none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SunTimes {
     /// Its upper edge appears: the middle of the disc is 50′ below the horizon, 34′ of refraction and 16′ of radius, as
@@ -126,7 +126,7 @@ pub struct SunTimes {
     pub sets: Vec<f64>,
 }
 
-/// When the sun rises, culminates and sets from the instant `from` up to `to`, seen from the level of the sea.
+/// Returns the times of sunrise, culmination and sunset from the instant `from` up to `to`, seen from sea level.
 ///
 /// # Errors
 /// As [`sun_position`], and [`Error::InvalidParameter`] for spans of time that end before they begin or last more than
@@ -155,8 +155,8 @@ pub fn sun_times(site: &Site, from: f64, to: f64) -> Result<SunTimes> {
     Ok(SunTimes { rises: instants(events.rises), transits: instants(events.transits), sets: instants(events.sets) })
 }
 
-/// When the sun crosses the meridian of a site next to its mean noon at `mean_noon`: within 17 minutes, the equation of
-/// time.
+/// Returns the time at which the sun crosses the meridian of a site next to its mean noon at `mean_noon`: within 17
+/// minutes, the equation of time.
 pub(super) fn transit(site: &Site, mean_noon: f64) -> Result<f64> {
     let julian = julian(mean_noon)?;
     let [start, end] = [-1.0, 1.0].map(|hours| julian.julian_date() + hours / 24.0);

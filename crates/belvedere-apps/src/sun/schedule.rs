@@ -6,13 +6,13 @@ use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Most steps for which each has its own direction where that is left to [`SunSchedule::new`].
+/// Maximum number of steps with a direction each, by default of [`SunSchedule::new`].
 const MAX_EXACT: usize = 2000;
 /// Angle within which a direction represents others where it is left to [`SunSchedule::new`]: 1°, two diameters of the
 /// sun.
 const USUAL_ANGLE: f64 = 0.017_453_292_519_943_295;
 
-/// Whether suns that stand close together share a direction.
+/// Rule by which suns that stand close together share a direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Binning {
@@ -35,7 +35,7 @@ pub struct LightStep {
     pub hours: f32,
     /// Row of the direction.
     pub direction: u32,
-    /// Whether it begins where the step before it ended.
+    /// True if it begins where the step before it ended.
     pub continues: bool,
 }
 
@@ -65,7 +65,7 @@ pub struct SunSchedule {
     pub days: Vec<DayOfLight>,
     /// Unit vectors to the sun in the axes of the grid, (D, 3).
     pub directions: Vec<[f64; 3]>,
-    /// Greatest angle between a sun and the direction that represents it, radians; 0 where each has its own.
+    /// Maximum angle between a sun and the direction that represents it, radians; 0 where each has its own.
     pub greatest_error: f64,
     /// Root of the mean squared angle, each step counting by its length, radians.
     pub rms_error: f64,
@@ -83,8 +83,8 @@ impl SunSchedule {
     /// The schedule of `days`, whose steps must have been cut alike (with the same step) for suns to be shared.
     ///
     /// Directions are shared by rows of declination, which the sun passes twice a year, at the same step from noon,
-    /// hence the same hour angle: in a row no wider than twice the angle the mean of the suns is within the angle of
-    /// them all, but for steps that the horizon cuts short; what is farther gets a direction of its own.
+    /// hence the same hour angle. In a row no wider than twice the angle the mean of the suns is within the angle of
+    /// them all, except for steps that the horizon shortens. Suns farther away get a direction of their own.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for an angle outside its range, and where there is no day.
@@ -119,38 +119,6 @@ impl SunSchedule {
             }
             Some(angle) => schedule.share(days, angle)?,
         }
-        Ok(schedule)
-    }
-
-    /// The schedule of `days` with `directions` that are there already, (D, 3) unit vectors: each sun is stood for by
-    /// the next of them.
-    ///
-    /// # Errors
-    /// [`Error::InvalidParameter`] where there is no day, for an angle that is not above 0 to 5°, and for a sun that
-    /// stands farther than `angle`, radians, from all directions.
-    pub fn among(days: &[SunDay], directions: &[[f64; 3]], angle: f64) -> Result<Self> {
-        // the checks of a schedule that shares suns are those here
-        let mut schedule = Self::new(days, Binning::Exact)?;
-        let angle = checked(angle)?;
-        schedule.directions = directions.to_vec();
-        let [mut squares, mut weights] = [0.0, 0.0];
-        for (day, light) in days.iter().zip(&mut schedule.days) {
-            for (step, light) in day.steps.iter().zip(&mut light.steps) {
-                let next = directions.iter().enumerate().map(|(i, d)| (dot(*d, step.direction), i));
-                let next = next.reduce(|best, other| if other.0 > best.0 { other } else { best });
-                let Some((number, error)) = next.map(|(_, i)| (i, between(directions[i], step.direction))) else {
-                    return Err(too_far(day.date, f64::INFINITY));
-                };
-                if error > angle {
-                    return Err(too_far(day.date, error));
-                }
-                light.direction = row(number);
-                schedule.greatest_error = schedule.greatest_error.max(error);
-                squares += (step.end - step.start) * error * error;
-                weights += step.end - step.start;
-            }
-        }
-        schedule.rms_error = if weights > 0.0 { f64::sqrt(squares / weights) } else { 0.0 };
         Ok(schedule)
     }
 
@@ -215,7 +183,7 @@ impl SunSchedule {
             while let Some(first) = left.first() {
                 let sum = left.iter().fold([0.0; 3], |sum, m| [0, 1, 2].map(|i| sum[i] + m.hours * m.direction[i]));
                 let mut direction = unit(sum).unwrap_or(first.direction);
-                if !left.iter().any(|member| between(member.direction, direction) <= angle) {
+                if !left.iter().any(|member| angle_between(member.direction, direction) <= angle) {
                     direction = first.direction;
                 }
                 let number = row(self.directions.len());
@@ -224,7 +192,7 @@ impl SunSchedule {
                 places.push((strip, turn, step));
                 turn += 1;
                 left.retain(|member| {
-                    let error = between(member.direction, direction);
+                    let error = angle_between(member.direction, direction);
                     if error <= angle {
                         self.days[member.day].steps[member.step].direction = number;
                         self.greatest_error = self.greatest_error.max(error);
@@ -276,16 +244,8 @@ fn checked(angle: f64) -> Result<f64> {
     Err(Error::InvalidParameter { parameter: Parameter::SunTolerance, value, expected: "above 0 to 5 degrees" })
 }
 
-fn too_far(date: Date, error: f64) -> Error {
-    Error::InvalidParameter {
-        parameter: Parameter::SunTolerance,
-        value: format!("{:.2} degrees on {date}", error.to_degrees()),
-        expected: "within the given angle: choose days of the saved matrix, or a larger angle",
-    }
-}
-
 /// Angle between unit vectors, exact for small ones, radians.
-fn between(a: [f64; 3], b: [f64; 3]) -> f64 {
+fn angle_between(a: [f64; 3], b: [f64; 3]) -> f64 {
     let apart = belvedere_data::vector::sub(a, b);
     2.0 * (0.5 * dot(apart, apart).sqrt()).min(1.0).asin()
 }

@@ -1,4 +1,4 @@
-//! Where on earth a scene lies.
+//! Location of a scene on earth.
 
 use crate::horizon::{convergence, far_outside};
 use belvedere_core::query::earth::EARTH_RADIUS;
@@ -25,7 +25,7 @@ pub struct Site {
     pub convergence: f64,
 }
 
-/// What a site was taken from.
+/// Source of a site.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum SiteFrom {
     /// Latitude and longitude that were given.
@@ -42,11 +42,13 @@ pub enum SiteFrom {
 impl Site {
     /// The site of a scene: the middle of its `bounds`.
     ///
-    /// Where it lies on earth follows from `location`, latitude and longitude in radians, where given; else from the
-    /// reference system of `frame`; else from `elsewhere`, such as the place of a weather station. The height is that
-    /// of the middle of the scene, and the axes of its grid lie as its reference system says, whatever names the place;
-    /// along the meridian where that is not known. A `location` that is far from what the reference system says is not
-    /// refused here, but by [`SunPlace::site_of`](crate::ask::SunPlace::site_of).
+    /// Returns the site of a scene. Its location is `location`, latitude and longitude in radians, if given. Otherwise
+    /// it follows from the reference system of `frame`, or else from `elsewhere`, such as the place of a weather
+    /// station. The height is that of the middle of the scene. The axes of its grid are those of its reference system
+    /// in each case, and along the meridian if that is not known.
+    ///
+    /// A `location` far from that of the reference system is not refused here, but by
+    /// [`SunPlace::site_of`](crate::ask::SunPlace::site_of).
     ///
     /// # Errors
     /// Those of [`Site::of`] where nothing says where the scene lies, and of [`Site::validate`].
@@ -79,8 +81,8 @@ impl Site {
         EARTH_RADIUS * north.hypot(east)
     }
 
-    /// The site at `position`, (x, y) metres in the system `crs`, with the convergence there, at a height in metres, of
-    /// which no more than the range is taken: heights of a cloud may be wild, and matter little.
+    /// Returns the site at `position`, (x, y) metres in the system `crs`, with the convergence there. `height`, metres,
+    /// is clamped to the valid range: heights of a cloud may be wild, and matter little.
     ///
     /// # Errors
     /// [`Error::MissingAttribute`] for a cloud that does not say where on earth it lies, and those of

@@ -13,7 +13,7 @@ use std::ops::Range;
 /// Years of dates and times.
 const YEARS: Range<i16> = 1000..3000;
 
-/// How clocks run at a place.
+/// Time zone of a place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Zone {
     zone: TimeZone,
@@ -61,13 +61,13 @@ impl Zone {
         Self { zone: TimeZone::fixed(offset), name: "mean solar time".to_owned() }
     }
 
-    /// What to call it: a name of the zone database, an offset, or "mean solar time".
+    /// Returns its name: that of the zone database, an offset, or "mean solar time".
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// By how many seconds its clocks are ahead of UTC at an instant; 0 for instants that no calendar holds.
+    /// Returns the offset of its clocks from UTC at an instant, seconds; 0 for instants that no calendar holds.
     #[must_use]
     pub fn offset_at(&self, unix_s: f64) -> f64 {
         timestamp(unix_s).map_or(0.0, |t| f64::from(self.zone.to_offset(t).seconds()))
@@ -99,9 +99,9 @@ impl Zone {
         Ok(Date(self.zone.to_datetime(t).date()))
     }
 
-    /// The instant at which its clocks show an hour of a date: hours are added to the midnight of the calendar, so that
-    /// they are what clocks show, summer time or not. Where clocks jump over the hour, what the hour would have been by
-    /// the time before; where they show it twice, the first.
+    /// Returns the instant at which its clocks show an hour of a date. Hours are added to the midnight of the calendar,
+    /// as clocks show them in summer time or not. If clocks skip the hour, the result is that hour by the time before;
+    /// if they show it twice, the first.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for an hour that is not from −48 to 48, and at the end of the calendar.
@@ -205,9 +205,9 @@ impl fmt::Display for Date {
 /// may have a fraction, and a leap second 23:59:60 counts as the second before it, as UTC since 1970 has none.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for what is no instant; for times without zone or offset where `zone` is `None`; where
-/// offset and named zone contradict each other; and for times that clocks skip or show twice when summer time begins or
-/// ends: an offset tells which is meant.
+/// [`Error::InvalidParameter`] for text that is no instant, and for times without zone or offset if `zone` is `None`.
+/// Also if offset and named zone contradict each other, and for times that clocks skip or show twice when summer time
+/// begins or ends; an offset resolves these.
 pub fn parse_instant(text: &str, zone: Option<&Zone>) -> Result<f64> {
     let text = text.trim();
     let invalid = |expected| Error::InvalidParameter { parameter: Parameter::Time, value: shortened(text), expected };
@@ -255,7 +255,7 @@ pub fn parse_instant(text: &str, zone: Option<&Zone>) -> Result<f64> {
     offset.to_timestamp(shown).map(seconds).map_err(|_| invalid(WRITING))
 }
 
-/// Whether a text begins with digits that are grouped as in 2026-06-21.
+/// Returns true if a text begins with digits that are grouped as in 2026-06-21.
 fn is_like_date(text: &str) -> bool {
     let is_so = |(at, byte): (usize, u8)| if matches!(at, 4 | 7) { byte == b'-' } else { byte.is_ascii_digit() };
     text.len() >= 10 && text.bytes().take(10).enumerate().all(is_so)

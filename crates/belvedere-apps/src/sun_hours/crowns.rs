@@ -12,11 +12,10 @@ use rayon::prelude::*;
 /// Bits in a word of a row of a matrix.
 const WORD: usize = 64;
 
-/// As [`sun_hours`], where an hour of a sun behind crowns counts as much as these let through on that day: `factors`
-/// has a [`factor`](crate::tree_light::CrownLight::factor) for each day of `schedule`. Hours, share, the least day and
-/// the
-/// days that suffice are those of the light that arrives; first, last and longest are of suns that count as free
-/// ([`LineLight::is_free`]), since a share of light has no such hour.
+/// Returns the sums of [`sun_hours`], where an hour of a sun behind crowns is weighted by the light that these let
+/// through on that day. `factors` has a [`factor`](crate::tree_light::CrownLight::factor) for each day of `schedule`.
+/// Hours, share, the shortest day and the sufficient days are those of the light that arrives. First, last and longest
+/// are of suns that count as free ([`LineLight::is_free`]), since a share of light has no such hour.
 ///
 /// # Errors
 /// Those of [`sun_hours`], and [`Error::LengthMismatch`] where there is not a factor for
@@ -72,7 +71,7 @@ pub fn sun_hours_through_crowns(
     Ok(hours)
 }
 
-/// What is summed up at one target.
+/// Sums at one target.
 struct CrownSum {
     total: f64,
     min: f64,
@@ -85,7 +84,7 @@ impl CrownSum {
         let mut light = LightBefore::default();
         for (runs, factor) in days {
             light.set(lines, *factor);
-            let hours = runs.iter().map(|run| f64::from(run.hours) * light.between(run.first, run.end)).sum();
+            let hours = runs.iter().map(|run| f64::from(run.hours) * light.sum_between(run.first, run.end)).sum();
             sum.total += hours;
             sum.min = sum.min.min(hours);
             sum.days += u32::from(hours >= sufficient);
@@ -116,7 +115,7 @@ impl LightBefore {
         }));
     }
 
-    fn between(&self, first: u32, end: u32) -> f64 {
+    fn sum_between(&self, first: u32, end: u32) -> f64 {
         let before = |number: u32| self.sums.get(number as usize).copied().unwrap_or_default();
         before(end) - before(first)
     }

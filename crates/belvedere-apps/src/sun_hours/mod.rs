@@ -1,5 +1,4 @@
-//! How long the sun reaches a place: hours and share of a day or of many days, first and last light, longest stretch,
-//! rules.
+//! Hours of sun at a place: hours and share of a day or of many days, first and last light, longest stretch, rules.
 
 mod crowns;
 mod plan;
@@ -17,7 +16,7 @@ use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use stretches::{DayStretch, Lit, runs_of};
 
-/// What rasters of hours of sun, and of whether a rule is met, say of themselves.
+/// Descriptions of rasters of hours of sun, and of fulfilled rules.
 pub const SUN_HOURS: &str = "hours of sun a day";
 /// See [`SUN_HOURS`].
 pub const RULE_IS_MET: &str = "rule is met";
@@ -34,10 +33,10 @@ pub struct SunHours {
     pub hours: Vec<f32>,
     /// Share of the hours of sun above a flat horizon, 0 to 1; NaN where the sun does not rise on any day.
     pub share: Vec<f32>,
-    /// When the sun first arrives, hours on the clocks of the zone: the earliest of the days; NaN where it never does.
-    /// True to within a step.
+    /// First time of sun, hours on the clocks of the zone: the earliest of the days; NaN if there is none. Accurate to
+    /// within a step.
     pub first: Vec<f32>,
-    /// When it last leaves: the latest of the days; NaN where it never came.
+    /// Last time of sun: the latest of the days; NaN if there is none.
     pub last: Vec<f32>,
     /// Longest stretch without a break on any day, hours.
     pub longest: Vec<f32>,
@@ -60,7 +59,7 @@ impl SunHours {
     }
 }
 
-/// What the statistics of a place are taken over.
+/// Parameters of the statistics of a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SunHoursParams {
@@ -140,7 +139,7 @@ pub fn sun_hours(
     })
 }
 
-/// What is summed up at one target.
+/// Sums at one target.
 struct TargetSum {
     total: f64,
     min: f64,

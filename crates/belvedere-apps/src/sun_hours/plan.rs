@@ -75,7 +75,7 @@ pub struct SunSums {
     pub period: SunHours,
     /// Over the days of each rule.
     pub rules: Vec<SunHours>,
-    /// How far hours of the period may be from the truth, by classes; empty where that was not wanted.
+    /// Error classes of the hours of the period; empty if not requested.
     pub classes: Vec<u8>,
 }
 
@@ -112,9 +112,9 @@ impl SunSums {
         Ok(())
     }
 
-    /// All figures as measures of `targets`: `sun_hours`, `sun_share`, `first_light`, `last_light`, `longest`; of
-    /// several days also `min_sun_hours` and `total_hours`; and for each rule whether it is met on all of its days, 1
-    /// or 0.
+    /// Converts all figures into measures of `targets`: `sun_hours`, `sun_share`, `first_light`, `last_light`,
+    /// `longest`. Several days also have `min_sun_hours` and `total_hours`. Each rule has 1 if it is met on all of its
+    /// days, otherwise 0.
     #[must_use]
     pub fn into_measures(self, plan: &SunPlan, targets: &Targets) -> Vec<Measure> {
         let max = plan.period.days.iter().map(|day| day.possible_hours).fold(0.0, f64::max);

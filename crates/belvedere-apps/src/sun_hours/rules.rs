@@ -21,7 +21,7 @@ pub enum RuleDays {
 pub struct SunRule {
     /// Its name; as typed for rules of one's own.
     pub name: String,
-    /// What it requires, and its source.
+    /// Requirement of the rule, and its source.
     pub description: String,
     /// Days on which it must be met.
     pub days: RuleDays,
@@ -70,8 +70,8 @@ impl SunRule {
         NAMED.iter().map(|named| (named.0, named.1))
     }
 
-    /// A rule by its name, or one's own, written as HOURS@DAYS with days as in [`RuleDays::parse`], and where low suns
-    /// do not count, with the least elevation in degrees behind a sign: "2@02-19..10-21>10".
+    /// Parses a rule from its name, or one's own, written as HOURS@DAYS with days as in [`RuleDays::parse`]. A sign and
+    /// degrees add a minimum elevation of the sun: "2@02-19..10-21>10".
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a name that is not known, and for days, hours (above 0 to 24) and elevations (0

@@ -3,7 +3,7 @@
 
 use crate::sun::DayOfLight;
 
-/// By how much steps may differ and yet count as equally long, hours: what f32 rounds in differences of hours of a day.
+/// Maximum difference of equally long steps, hours: the rounding of f32 in differences of hours of a day.
 const EQUAL: f32 = 1e-5;
 
 /// Steps of a day that follow each other without gap, are equally long and have directions that follow each other.
@@ -17,7 +17,7 @@ pub(super) struct DayStretch {
     pub(super) start: f32,
     /// Hours of a step.
     pub(super) hours: f32,
-    /// Whether it begins where the run before it ended.
+    /// True if it begins where the run before it ended.
     pub(super) continues: bool,
 }
 
@@ -41,7 +41,7 @@ pub(super) fn runs_of(day: &DayOfLight) -> Vec<DayStretch> {
     runs
 }
 
-/// Which directions light a target, and where the next change is.
+/// Bit masks of the directions that light a target, and the place of the next change.
 pub(super) struct Lit {
     /// For each direction the next that is lit, itself included; the number of directions where there is none.
     lit: Vec<u32>,

@@ -1,4 +1,4 @@
-//! Where to scan again, so that lines of sight of a question that are unproven today become proven.
+//! Survey plan: places to scan again, so that unproven lines of sight of a question become proven.
 //!
 //! A line is unproven because no pulse came near to pieces of it. These pieces are cut into *places*. A scan from a
 //! candidate is simulated in the model: along each of its ways runs a pulse up to the first surface. A place is proven
@@ -24,16 +24,17 @@ use virtual_scan::{LEVELS, ScannedSpace, SeenCells, VirtualScan, ways_around};
 pub const STATION_HEIGHT: f64 = 1.8;
 /// Side of the cells in which unproven pieces of lines are one place, as a share of how near a pulse must pass.
 const CELL_PER_NEARNESS: f64 = 0.5;
-/// How much of the worth of a line its proven share is. The rest counts for a station that settles the line alone.
+/// Share of the worth of a line that its proven share counts for. The rest counts for a station that settles the line
+/// alone.
 const WORTH_OF_SHARE: f64 = 0.25;
-/// How likely nothing stands in the unseen space that pulses must pass, for each level of it ([`LEVELS`]).
+/// Probability that nothing stands in the unseen space that pulses must pass, for each level of it ([`LEVELS`]).
 const CHANCES: [f64; LEVELS.len()] = [0.75, 0.5, 0.2];
 
-/// What a scanner can do.
+/// Limits of a scanner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ScannerParams {
-    /// Greatest range at which a surface returns pulses, metres, above 0. Default 100: medium-range scanners on tripods
+    /// Maximum range at which a surface returns pulses, metres, above 0. Default 100: medium-range scanners on tripods
     /// reach 100 to 130 m on most surfaces.
     pub max_range: f64,
     /// Angle between neighbouring pulses, radians, above 0. Default 0.1°: a coarse scan, of a minute or two.
@@ -70,12 +71,12 @@ impl ScannerParams {
     }
 }
 
-/// What stations prove of unproven lines.
+/// Proof of unproven lines by stations.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SurveyGain {
     /// Lines that become proven, if nothing stands in the space that no pulse saw.
     pub settled: usize,
-    /// How many of them are expected to become proven, since things do stand there.
+    /// Expected number of lines that become proven, since some do meet objects there.
     pub expected: f64,
     /// Length of unproven pieces that is proven, over all lines, metres.
     pub proven: f64,
@@ -86,15 +87,15 @@ pub struct SurveyGain {
 pub struct SurveyPlan {
     /// Candidates that were chosen, those that add most first.
     pub chosen: Vec<usize>,
-    /// What the first stations prove together, (chosen + 1); that of no station comes first.
+    /// Gain of the first stations together, (chosen + 1), beginning with that of no station.
     pub curve: Vec<SurveyGain>,
-    /// What each candidate would prove alone.
+    /// Gain of each candidate alone.
     pub alone: Vec<SurveyGain>,
-    /// What all candidates would prove together.
+    /// Gain of all candidates together.
     pub reachable: SurveyGain,
     /// Unproven length of all lines, metres.
     pub unproven: f64,
-    /// By how much the worth of the choice is at most below the best possible, as a share of that.
+    /// Maximum gap between the worth of the choice and the best possible, as a share of the latter.
     pub gap: f64,
 }
 
@@ -107,7 +108,7 @@ struct OpenSpace {
     tolerance: f64,
 }
 
-/// What is unproven of a line.
+/// Unproven part of a line.
 struct OpenLine {
     /// Places on it, and the length of the line that each represents, metres.
     parts: Vec<(usize, f64)>,
@@ -129,8 +130,8 @@ impl OpenLine {
         Self { parts, length, level }
     }
 
-    /// How much of it is proven through at most so much unseen space.
-    fn proven(&self, levels: &[u8], most: usize) -> f64 {
+    /// Returns the length of it that is proven through at most `most` levels of unseen space.
+    fn proven_length(&self, levels: &[u8], most: usize) -> f64 {
         let is_proven = |place: usize| usize::from(levels[place]) <= most;
         self.parts.iter().filter(|(place, _)| is_proven(*place)).map(|(_, length)| length).sum()
     }
@@ -166,7 +167,7 @@ impl OpenSpace {
 
     /// The lowest level at which a line is settled where places are proven at these levels.
     fn settled_level(&self, line: &OpenLine, levels: &[u8]) -> Option<usize> {
-        (line.level..LEVELS.len()).find(|&most| line.length - line.proven(levels, most) <= self.tolerance)
+        (line.level..LEVELS.len()).find(|&most| line.length - line.proven_length(levels, most) <= self.tolerance)
     }
 
     /// The best level of each place for several stations together.
@@ -186,14 +187,14 @@ impl OpenSpace {
                 gain.settled += 1;
                 gain.expected += CHANCES[level];
             }
-            gain.proven += line.proven(levels, LEVELS.len() - 1);
+            gain.proven += line.proven_length(levels, LEVELS.len() - 1);
         }
         gain
     }
 
-    /// What a station covers: a target for each place and level, then one for each line and level. What is proven
-    /// through little unseen space is so through more as well.
-    fn covered(&self, proven: &ProvenPlaces) -> Vec<usize> {
+    /// Returns the targets that a station covers: a target for each place and level, then one for each line and level.
+    /// A target proven through little unseen space is proven at higher levels as well.
+    fn covered_targets(&self, proven: &ProvenPlaces) -> Vec<usize> {
         let from = |number: usize, level: usize| (level..LEVELS.len()).map(move |level| number * LEVELS.len() + level);
         let levels = self.levels(std::iter::once(proven));
         let settled = |(row, line): (usize, &OpenLine)| {
@@ -204,7 +205,8 @@ impl OpenSpace {
         places.chain(self.lines.iter().enumerate().filter_map(settled).flatten()).collect()
     }
 
-    /// How much each of these targets counts: of a line that is proven at a level, the sum from there on is its chance.
+    /// Returns the weight of each of these targets: for a line that is proven at a level, the sum from there on is its
+    /// probability.
     fn weights(&self) -> Vec<f64> {
         let next = |level: usize| CHANCES.get(level + 1).copied().unwrap_or(0.0);
         let mut weights = vec![0.0; (self.places.len() + self.lines.len()) * LEVELS.len()];
@@ -221,11 +223,11 @@ impl OpenSpace {
     }
 }
 
-/// Chooses `count` of `candidates`: of each the places that it is scanned from, local metres, one of a tripod and
-/// several of a flight line; a place that is not finite is not used. `lines` are the unproven lines of sight of a
-/// question: of each the pieces that no pulse came near to ([`MedialScene::unproven_pieces`]), which must be longer
-/// than what the proof of `scene` tolerates. Where the model ends, pulses return from the level of `ground` below the
-/// station. Control counts candidates. The same for any number of threads.
+/// Chooses `count` of `candidates`. Each candidate has the places that it is scanned from, local metres: one of a
+/// tripod, several of a flight line; a place that is not finite is not used. `lines` are the unproven lines of sight of
+/// a question, each with the pieces that no pulse came near to ([`MedialScene::unproven_pieces`]). They must be longer
+/// than the tolerance of the proof of `scene`. Beyond the model, pulses return from the level of `ground` below the
+/// station. Control counts candidates. The result is the same for any number of threads.
 ///
 /// # Errors
 /// [`Error::MissingAttribute`] for a scene without pulses, those of [`ScannerParams::validate`] and of
@@ -257,7 +259,7 @@ pub fn plan_survey(
         Ok((0..).zip(levels).filter(|(_, level)| *level != NOT_PROVEN).collect())
     };
     let proven: Vec<ProvenPlaces> = candidates.par_iter().map(proven_by).collect::<Result<_>>()?;
-    let covered: Vec<Vec<usize>> = proven.par_iter().map(|proven| open.covered(proven)).collect();
+    let covered: Vec<Vec<usize>> = proven.par_iter().map(|proven| open.covered_targets(proven)).collect();
     let weights = open.weights();
     let table = CoverageTable::of_lists(weights.len(), &covered)?;
     // exchanges find what a search would, and the bound says how much could be missing

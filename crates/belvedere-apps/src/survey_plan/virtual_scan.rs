@@ -17,9 +17,9 @@ const ROWS: usize = COLUMNS / 2;
 const RINGS: [(f64, u32); 3] = [(0.0, 1), (0.5, 6), (0.9, 12)];
 /// Through how much space that no pulse saw a way runs, metres: at most so much for each level.
 pub(super) const LEVELS: [f64; 3] = [4.0, 12.0, f64::INFINITY];
-/// Least side of the cells in which it is known whether pulses saw space, metres.
+/// Minimum side of the cells that hold whether pulses saw space, metres.
 const CELL: f64 = 1.0;
-/// Most of these cells, 64 MB; a larger scene has larger ones.
+/// Maximum number of these cells, 64 MB; a larger scene has larger ones.
 const MAX_CELLS: f64 = 64e6;
 
 /// Cells of space of which it is found out when first needed whether a pulse came near to their middle.
@@ -53,7 +53,7 @@ impl<'a> SeenCells<'a> {
         Self { proof, low, side, size, cells }
     }
 
-    /// Whether no pulse came near to the middle of the cell of a place; false outside of all cells.
+    /// Returns true if no pulse came near to the middle of the cell of a place; false outside of all cells.
     fn is_unseen(&self, place: [f64; 3]) -> bool {
         let mut cell = [0; 3];
         for axis in 0..3 {
@@ -80,7 +80,7 @@ impl<'a> SeenCells<'a> {
         }
     }
 
-    /// How far a way of `range` metres gets until it has run through as much unseen space as each level allows.
+    /// Returns the distance of a path of `range` metres at which its unseen length exceeds each level.
     fn limits(&self, eye: [f64; 3], direction: [f64; 3], range: f64) -> [f32; LEVELS.len()] {
         #[expect(clippy::cast_possible_truncation, reason = "a range in metres")]
         let mut limits = [range as f32; LEVELS.len()];
@@ -112,7 +112,7 @@ pub(super) fn ways_around() -> Vec<[f64; 2]> {
     RINGS.into_iter().flat_map(ring).collect()
 }
 
-/// What all scans look at.
+/// Space that all scans share.
 pub(super) struct ScannedSpace<'a> {
     pub(super) scene: &'a MedialScene,
     pub(super) ground: Option<&'a Ground>,
@@ -128,7 +128,7 @@ pub(super) struct VirtualScan<'a> {
     eye: [f64; 3],
     /// Height of the ground below, local metres.
     floor: f64,
-    /// How far each way is free, metres: infinite where its pulse does not return, NaN where it is not known yet.
+    /// Free length of each direction, metres: infinite if its pulse does not return, NaN if it is not known yet.
     ranges: Vec<f32>,
     /// Length that a pulse proves along each way, for each level, metres: 0 where it does not return, NaN where it is
     /// not known yet.
@@ -193,8 +193,9 @@ impl<'a> VirtualScan<'a> {
         (direction, self.lengths[number])
     }
 
-    /// Length that the pulse of a way proves, metres. It is no longer than that of the ways beside it: balls do not
-    /// close far walls of a coarse scan, and what passes through such a gap alone does not pass in truth.
+    /// Returns the length that the pulse of a direction proves, metres. It is at most that of the neighbouring
+    /// directions. Balls do not close far walls of a coarse scan, and a pulse through such a gap alone does not pass in
+    /// truth.
     fn proven_length(&mut self, [column, row]: [usize; 2]) -> f64 {
         if self.range([column, row]).is_infinite() {
             return 0.0;
@@ -218,8 +219,8 @@ impl<'a> VirtualScan<'a> {
         self.ranges[number]
     }
 
-    /// How far a pulse runs that meets nothing in the model. One that falls meets the ground, or what nobody saw before
-    /// that, at the latest where the cloud ends; one that rises does not return.
+    /// Returns the length of a pulse that meets nothing in the model. A falling pulse meets the ground, or unseen space
+    /// before that, at the latest where the cloud ends; a rising one does not return.
     fn beyond_the_model(&self, direction: [f64; 3]) -> Option<f64> {
         if !(direction[2] < 0.0) {
             return None;

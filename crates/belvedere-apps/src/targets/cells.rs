@@ -1,7 +1,6 @@
 //! Cells of a grid on the ground, or on top of what stands on it.
 
-use super::{TargetLayout, Targets};
-use crate::sky_view::SKY_TARGET_HEIGHT;
+use super::{TARGET_LIFT, TargetLayout, Targets};
 use crate::viewshed::cell_targets;
 use belvedere_core::ground::{Ground, GroundParams, MapGrid, SurfaceParams, hidden_ground, top_surface};
 use belvedere_core::query::BlockingTriangles;
@@ -9,7 +8,7 @@ use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
 use serde::{Deserialize, Serialize};
 
-/// What cells stand on.
+/// Level of cells: ground or surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CellLevel {
@@ -20,11 +19,11 @@ pub enum CellLevel {
     Surface,
 }
 
-/// How cells become targets.
+/// Conversion of cells into targets.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct CellParams {
-    /// What cells stand on.
+    /// Level of cells: ground or surface.
     pub level: CellLevel,
     /// Height of the target above that, metres. Default 0.1.
     pub height: f64,
@@ -37,11 +36,11 @@ belvedere_data::setters!(CellParams {
 
 impl Default for CellParams {
     fn default() -> Self {
-        Self { level: CellLevel::Ground, height: SKY_TARGET_HEIGHT }
+        Self { level: CellLevel::Ground, height: TARGET_LIFT }
     }
 }
 
-/// What was left out of cells.
+/// Counts of cells that were left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CellReport {
     /// Cells on the ground under a roof or another cover, which are no targets.
@@ -55,25 +54,13 @@ impl Targets {
     /// # Errors
     /// Those of [`MapGrid::covering`] and [`Ground::of_cloud`].
     pub fn ground_cells(cloud: &PointCloud, cell: f64) -> Result<Self> {
-        Self::cells(cloud, cell, &CellParams::default())
-    }
-
-    /// Cells of `cell` metres on top of what stands on the ground of `cloud`.
-    ///
-    /// # Errors
-    /// Those of [`Targets::ground_cells`].
-    pub fn surface_cells(cloud: &PointCloud, cell: f64) -> Result<Self> {
-        Self::cells(cloud, cell, &CellParams::default().with_level(CellLevel::Surface))
-    }
-
-    fn cells(cloud: &PointCloud, cell: f64, params: &CellParams) -> Result<Self> {
         let bounds =
             cloud.bounds().ok_or_else(|| Error::NoPoints { what: "cells need a cloud with points".to_owned() })?;
         let (low, high) = bounds.on_map();
         let [x, y, _] = cloud.frame.origin;
         let grid = MapGrid::covering(low, high, cell, [x, y])?;
         let (ground, _) = Ground::of_cloud(cloud, grid, &GroundParams::default(), &Control::none())?;
-        Ok(Self::of_cells(cloud, ground, params, &Control::none())?.0)
+        Ok(Self::of_cells(cloud, ground, &CellParams::default(), &Control::none())?.0)
     }
 
     /// The cells of `ground`, whose heights come from `cloud`, in the frame of that cloud. Ground under a roof or

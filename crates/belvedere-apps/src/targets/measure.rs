@@ -9,29 +9,29 @@ use serde::Serialize;
 pub struct Measure {
     /// Name of its column and of its raster, of 15 letters at most.
     pub name: String,
-    /// What it is and its unit, of 31 letters at most.
+    /// Description with its unit, at most 31 letters.
     pub description: &'static str,
-    /// Which of several alike it is, such as the sun of a shadow: rasters say it behind the description. Empty where
-    /// there is but one.
+    /// Subject that separates it from measures alike, such as the sun of a shadow; rasters have it behind the
+    /// description. Empty if there is only one.
     pub subject: String,
     /// Digits after the point in tables.
     pub decimals: usize,
-    /// What a legend spans; `None` for the span of the values.
+    /// Range of a legend; `None` for the range of the values.
     pub range: Option<[f64; 2]>,
-    /// What its values are, which decides the type of its raster. Default: numbers.
+    /// Kind of its values, which decides the type of its raster. Default: numbers.
     pub kind: ResultKind,
     /// (M), NaN where there is none.
     pub values: Vec<f32>,
 }
 
-/// How the values of a measure are spread.
+/// Statistics of the values of a measure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MeasureStatistics {
     /// Mean of the values, all counting alike.
     pub mean: f64,
-    /// Least value.
+    /// Minimum value.
     pub min: f64,
-    /// Greatest value.
+    /// Maximum value.
     pub max: f64,
 }
 
@@ -79,7 +79,7 @@ impl Measure {
         Self { name: self.name.clone(), subject: self.subject.clone(), values: Vec::new(), ..*self }
     }
 
-    /// How the known values are spread; `None` where no target has a value.
+    /// Returns the statistics of the known values; `None` if no target has a value.
     #[must_use]
     pub fn statistics(&self) -> Option<MeasureStatistics> {
         let known = || self.values.iter().filter(|v| v.is_finite()).map(|&v| f64::from(v));
@@ -102,7 +102,7 @@ impl Measure {
         })
     }
 
-    /// What a legend spans for `values` of this measure: its range, or their span.
+    /// Returns the range of a legend for `values` of this measure: its own, or theirs.
     #[must_use]
     pub fn span(&self, values: &[f64]) -> [f64; 2] {
         self.range.unwrap_or_else(|| {

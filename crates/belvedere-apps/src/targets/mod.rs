@@ -3,7 +3,7 @@
 //!
 //! | targets | made by |
 //! |---|---|
-//! | cells on ground or obstacles | [`Targets::ground_cells`], [`Targets::surface_cells`], [`Targets::of_cells`] |
+//! | cells on ground or obstacles | [`Targets::ground_cells`], [`Targets::of_cells`] |
 //! | points of a cloud or of a file | [`Targets::of_points`], [`Targets::of_places`] |
 //! | faces of a mesh, in pieces | [`Targets::of_mesh`] |
 //! | places along routes | [`Targets::along_routes`] |
@@ -36,29 +36,33 @@ use belvedere_data::{PointCloud, Result};
 use rayon::prelude::*;
 use std::ops::Range;
 
+/// Default distance of targets from the ground, roof, facade or window that they lie on, metres. It is twice the noise of
+/// usual airborne surveys, and the height of the rails of panels. Points of surfaces lie up to a few centimetres below
+/// the balls around them.
+pub const TARGET_LIFT: f64 = 0.1;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 1024;
 
 /// Places for which results are computed, and their groups.
 #[derive(Clone, Debug)]
 pub struct Targets {
-    /// Where local coordinates lie.
+    /// Frame of local coordinates.
     pub frame: Frame,
     /// Local metres, (M, 3); NaN for a target that is left out.
     pub positions: Vec<[f32; 3]>,
     /// Outward unit normals, (M, 3); `None` where targets are level.
     pub normals: Option<Vec<[f32; 3]>>,
-    /// How much each target counts, (M): metres of a route, square metres of a surface; empty where all count alike.
+    /// Weight of each target, (M): metres of a route, square metres of a surface; empty for equal weights.
     pub weights: Vec<f64>,
     /// Rows of the targets of each route, window or object; empty where each target is on its own.
     pub groups: Vec<Range<usize>>,
-    /// What targets are.
+    /// Layout of the targets.
     pub layout: TargetLayout,
-    /// Whether each target stands on top of a mesh that was added, (M); empty where none does.
+    /// True for targets on top of an added mesh, (M); empty if there is none.
     pub on_added: Vec<bool>,
 }
 
-/// What targets are, with what is needed to write their values.
+/// Layout of targets, as needed to write their values.
 #[derive(Clone, Debug)]
 pub enum TargetLayout {
     /// Cells of a grid, row by row from the north, and the heights that they stand on.
@@ -94,13 +98,13 @@ impl Targets {
         self.positions.len()
     }
 
-    /// Whether there is no target.
+    /// Returns true if there is no target.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
 
-    /// Whether results are computed for a target: it has a position.
+    /// Returns true if results are computed for a target: it has a position.
     #[must_use]
     pub fn is_target(&self, row: usize) -> bool {
         self.positions.get(row).is_some_and(|position| position.iter().all(|v| v.is_finite()))
@@ -163,13 +167,13 @@ impl Targets {
         Ok(enclosed.into_iter().filter(|&is_enclosed| is_enclosed).count())
     }
 
-    /// How much a target counts.
+    /// Returns the weight of a target.
     #[must_use]
     pub fn weight(&self, row: usize) -> f64 {
         if self.weights.is_empty() { 1.0 } else { self.weights.get(row).copied().unwrap_or(0.0) }
     }
 
-    /// How much each group counts.
+    /// Returns the weight of each group.
     #[must_use]
     pub fn group_weights(&self) -> Vec<f64> {
         self.groups.iter().map(|group| group.clone().map(|row| self.weight(row)).sum()).collect()
@@ -180,19 +184,19 @@ impl Targets {
     #[must_use]
     pub fn group_means(&self, values: &[f32]) -> Vec<f64> {
         let mean = |group: &Range<usize>| {
-            let known = || self.known(group, values);
+            let known = || self.known_values(group, values);
             known().map(|(value, weight)| value * weight).sum::<f64>() / known().map(|(_, weight)| weight).sum::<f64>()
         };
         self.groups.iter().map(mean).collect()
     }
 
-    /// Least of `values`, (M), in each group; NaN for a group without any value.
+    /// Returns the minimum of `values`, (M), in each group; NaN for a group without any value.
     #[must_use]
     pub fn group_minima(&self, values: &[f32]) -> Vec<f64> {
         self.group_extremes(values, f64::min)
     }
 
-    /// Greatest of `values`, (M), in each group; NaN for a group without any value.
+    /// Returns the maximum of `values`, (M), in each group; NaN for a group without any value.
     #[must_use]
     pub fn group_maxima(&self, values: &[f32]) -> Vec<f64> {
         self.group_extremes(values, f64::max)
@@ -200,11 +204,11 @@ impl Targets {
 
     fn group_extremes(&self, values: &[f32], pick: fn(f64, f64) -> f64) -> Vec<f64> {
         let of_group =
-            |group: &Range<usize>| self.known(group, values).map(|(v, _)| v).reduce(pick).unwrap_or(f64::NAN);
+            |group: &Range<usize>| self.known_values(group, values).map(|(v, _)| v).reduce(pick).unwrap_or(f64::NAN);
         self.groups.iter().map(of_group).collect()
     }
 
-    fn known<'a>(&'a self, group: &Range<usize>, values: &'a [f32]) -> impl Iterator<Item = (f64, f64)> + 'a {
+    fn known_values<'a>(&'a self, group: &Range<usize>, values: &'a [f32]) -> impl Iterator<Item = (f64, f64)> + 'a {
         let value = move |row: usize| Some((f64::from(*values.get(row)?), self.weight(row)));
         group.clone().filter_map(value).filter(|(value, _)| value.is_finite())
     }

@@ -1,6 +1,6 @@
 //! Kinds of results: one pixel type and one value for no data for each, whoever writes them.
 
-/// What the values of a result are, which decides the type of its pixels and their value for no data.
+/// Kind of the values of a result, which decides the type of its pixels and their nodata value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ResultKind {
     /// Yes or no, such as lit, visible or a rule that is met: u8, 1 or 0, [`ResultKind::NO_ANSWER`] where there is
@@ -22,7 +22,7 @@ impl ResultKind {
     /// The pixel of no number.
     pub const NO_NUMBER: f32 = -9999.0;
 
-    /// How GDAL calls the type of its pixels, and their value for no data.
+    /// Returns the GDAL name of the type of its pixels, and their nodata value.
     #[must_use]
     pub fn in_gdal(self) -> (&'static str, f64) {
         match self {

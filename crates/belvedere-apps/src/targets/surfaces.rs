@@ -5,7 +5,7 @@ use belvedere_core::query::{MeshTargetParams, SurfacePieces};
 use belvedere_data::frame::Frame;
 use belvedere_data::{Mesh, Result};
 
-/// What targets on a surface are turned to.
+/// Orientation of targets on a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Facing {
     /// Square to the surface. Default.
@@ -15,17 +15,17 @@ pub enum Facing {
     Level,
 }
 
-/// How the faces of a mesh become targets.
+/// Conversion of the faces of a mesh into targets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MeshParams {
-    /// Longest side of a piece, metres, above 0. Default 0.5: what points of usual airborne surveys resolve on a wall.
+    /// Longest side of a piece, metres, above 0. Default 0.5: the resolution of usual airborne surveys on a wall.
     pub spacing: f64,
-    /// From which the place on each piece is drawn. Default 0.
+    /// Seed of the place on each piece. Default 0.
     pub seed: u64,
-    /// What targets are turned to.
+    /// Orientation of the targets.
     pub facing: Facing,
-    /// By how much targets lie before their face, metres. Default: that of [`MeshTargetParams`].
+    /// Distance of targets before their face, metres. Default: that of [`MeshTargetParams`].
     pub lift: f64,
 }
 

@@ -1,7 +1,7 @@
 //! Windows as targets: planes with a size, or the faces of a mesh.
 
-use super::{Facing, MeshParams, TargetLayout, Targets, to_f32};
-use crate::exposure::{WINDOW_LIFT, plane_normal, window_places};
+use super::{Facing, MeshParams, TARGET_LIFT, TargetLayout, Targets, to_f32};
+use crate::exposure::{plane_normal, window_places};
 use belvedere_core::query::SurfacePiece;
 use belvedere_data::frame::Frame;
 use belvedere_data::{Mesh, Result};
@@ -76,7 +76,7 @@ impl Targets {
     /// # Errors
     /// Those of [`Targets::of_mesh`].
     pub fn of_window_faces(mesh: &Mesh, frame: &Frame, spacing: f64, seed: u64) -> Result<(Self, Vec<Window>)> {
-        let params = MeshParams { spacing, seed, facing: Facing::Normals, lift: WINDOW_LIFT };
+        let params = MeshParams { spacing, seed, facing: Facing::Normals, lift: TARGET_LIFT };
         let targets = Self::of_mesh(mesh, frame, &params)?;
         let TargetLayout::Surface(surface) = &targets.layout else { return Ok((targets, Vec::new())) };
         let windows = surface.pieces.chunk_by(|a, b| a.face == b.face).filter_map(window_of_face).collect();

@@ -1,4 +1,4 @@
-//! What observers see of the terrain beyond a cloud, and from where there a target is seen.
+//! Viewshed of the terrain beyond a cloud, and reverse viewshed of a target from there.
 
 use super::{Observer, Viewshed, ViewshedParams, box_within_reach, check, tests_proof};
 use belvedere_core::query::{Answer, MedialScene};
@@ -31,10 +31,10 @@ fn is_beyond(scene: &MedialScene, node: [f64; 3]) -> bool {
     scene.coverage().is_none_or(|coverage| !coverage.holds_on_map(node))
 }
 
-/// What `observers` see of the nodes of `terrain` that lie beyond the cloud of `scene`, at `height` metres above them,
-/// in the order of the nodes; control counts rows. The answers are those of [`MedialScene::far_sight_answer`];
-/// [`Answer::OutsideCloud`] for nodes over the cloud or without a height, which are not tested, and
-/// [`Answer::OutsideView`] for what no observer is turned to. Masks are not kept.
+/// Computes which nodes of `terrain` beyond the cloud of `scene` `observers` see, at `height` metres above them, in the
+/// order of the nodes; control counts rows. The answers are those of [`MedialScene::far_sight_answer`]. Nodes over the
+/// cloud or without a height are not tested and are [`Answer::OutsideCloud`]. Nodes that no observer is turned to are
+/// [`Answer::OutsideView`]. Masks are not kept.
 ///
 /// As for [`viewshed`](super::viewshed), an observer whose eye is not finite sees nothing, and from where a target is
 /// seen is the viewshed of an observer in its place.

@@ -9,7 +9,6 @@ pub use far::{far_targets, far_viewshed, terrain_within_reach};
 pub use observers::{Observer, SightLimits, places_along};
 pub use probabilities::{SeenProbabilities, add_known, seen_probabilities};
 
-use crate::sky_view::SKY_TARGET_HEIGHT;
 use crate::targets::Measure;
 use belvedere_core::ground::Ground;
 use belvedere_core::query::target_tree::TargetTree;
@@ -22,15 +21,15 @@ use rayon::prelude::*;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 512;
 
-/// How viewsheds are made.
+/// Parameters of viewsheds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ViewshedParams {
-    /// How lines of sight run over the earth.
+    /// Curvature of the earth on lines of sight.
     pub earth: EarthParams,
-    /// What to make of targets that nothing blocks but whose view is not proven. Default: reported.
+    /// Treatment of unproven targets that nothing blocks. Default: reported.
     pub unproven: UnprovenAs,
-    /// Whether to keep which observer sees which target. Default: counts only.
+    /// Choice to keep a mask of the targets of each observer. Default: counts only.
     pub masks: Masks,
 }
 
@@ -46,7 +45,7 @@ impl Default for ViewshedParams {
     }
 }
 
-/// Whether it is kept which observer sees which target.
+/// Choice to keep a mask of the targets of each observer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Masks {
     /// One bit for each observer and target.
@@ -56,16 +55,16 @@ pub enum Masks {
     NotKept,
 }
 
-/// What observers see of targets.
+/// Targets that observers see.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Viewshed {
     /// The best of the observers' answers for each target: visible before unproven before blocked;
     /// [`Answer::OutsideView`] for what none of them is turned to, (M).
     pub answers: Vec<Answer>,
-    /// How many observers see each target, (M).
+    /// Number of observers that see each target, (M).
     pub counts: Vec<u32>,
-    /// How many more observers have a line of sight to each target that nothing blocks, but that is not proven, (M);
-    /// empty where proof is not tested.
+    /// Number of further observers with an unproven line of sight to each target that nothing blocks, (M); empty if
+    /// proof is not tested.
     pub unproven_counts: Vec<u32>,
     /// Bands of 32 observers: bit i of band b tells whether observer 32 · b + i sees each target, (bands, M); empty
     /// where masks are not kept.
@@ -76,13 +75,10 @@ pub struct Viewshed {
 
 /// Default height of an observer's eye above the ground, metres: a person's.
 pub const OBSERVER_HEIGHT: f64 = 1.7;
-/// Default height of targets above the ground or a surface, metres: that of all questions. A point of a roof or the
-/// ground lies up to a few centimetres below the balls around it.
-pub const TARGET_HEIGHT: f64 = SKY_TARGET_HEIGHT;
-/// Height above the ground at which targets that stand on it are tested, metres. The height of the ground is known to a
-/// few centimetres, and balls bulge by as much between its points: over tens of metres a line of sight at the ground
-/// itself would run in and out of them. On simulated towns 0.05 halves the false-blocked cells (6.9 to 3.7 %); 0.1
-/// gains no more and sees more of what is hidden.
+/// Height above the ground at which targets on it are tested, metres. The height of the ground is accurate to a few
+/// centimetres, and balls bulge by as much between its points. Over tens of metres a line of sight at the ground itself
+/// would run in and out of them. On simulated towns 0.05 halves the false-blocked cells (6.9 to 3.7 %); 0.1 gains no
+/// more and sees more of what is hidden.
 pub const GROUND_TOLERANCE: f64 = 0.05;
 
 /// The height above the ground at which a target of `height` metres is tested: no lower than [`GROUND_TOLERANCE`].
@@ -91,9 +87,9 @@ pub fn tested_height(height: f64) -> f64 {
     height.max(GROUND_TOLERANCE)
 }
 
-/// What a raster of what one observer sees says of itself.
+/// Description of a raster of what one observer sees.
 pub const SEEN: &str = "1 nothing blocks it, 0 blocked, 255 nodata";
-/// What a raster of several observers says of itself.
+/// Description of a raster of several observers.
 pub const SEEN_BY: &str = "number of observers from which nothing blocks the cell, 65535 nodata";
 
 /// Title of a map of what one or several observers see of cells, or of cells from which a target is seen.
@@ -127,7 +123,7 @@ pub fn answers_of_bands(bands: &[Measure]) -> Vec<Answer> {
 /// Default side of a cell, metres: what points of usual airborne surveys (0.3 to 0.5 m apart) can tell.
 pub const CELL: f64 = 0.5;
 
-/// Most cells of a default grid.
+/// Maximum number of cells of a default grid.
 const USUAL_CELLS: f64 = 4e6;
 
 /// The side of the cells of a default grid over the box on the map from `low` to `high`, metres: [`CELL`], doubled
@@ -175,13 +171,13 @@ pub fn cell_targets(ground: &Ground, height: f64) -> Vec<[f32; 3]> {
     ground.heights.values().par_iter().enumerate().with_min_len(CHUNK).map(target).collect()
 }
 
-/// What `observers` see of `targets`, (M, 3) local metres; control counts observers. An observer whose eye is not
-/// finite ([`crate::eyes::skip_unfit_eyes`]) sees nothing and keeps its number. Observers may stand on far terrain
-/// ([`MedialScene::is_on_far_terrain`]); for targets there, see [`far_viewshed`].
+/// Computes which of `targets`, (M, 3) local metres, `observers` see; control counts observers. An observer whose eye
+/// is not finite ([`crate::eyes::skip_unfit_eyes`]) sees nothing and keeps its number. Observers may stand on far
+/// terrain ([`MedialScene::is_on_far_terrain`]); for targets there, see [`far_viewshed`].
 ///
-/// A reverse viewshed, from where a target is seen, is the viewshed of an observer in its place, of the eyes that might
-/// see it: a line of sight is the same both ways. Balls that hold the target are then left out, and those at the eyes
-/// give way.
+/// A reverse viewshed finds the eyes that might see a target. It is the viewshed of an observer in the place of the
+/// target, since a line of sight is the same both ways. Balls that hold the target are then left out, and those at the
+/// eyes give way.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for parameters outside their range, and [`Error::Cancelled`].
@@ -238,7 +234,7 @@ pub fn viewshed_among(
     Ok(result)
 }
 
-/// Whether unproven lines of sight have an answer of their own.
+/// Returns true if unproven lines of sight have an answer of their own.
 fn tests_proof(scene: &MedialScene, params: &ViewshedParams) -> bool {
     params.unproven == UnprovenAs::Reported && scene.proof().is_some()
 }
@@ -256,7 +252,7 @@ struct ViewshedTree<'a> {
     params: &'a ViewshedParams,
 }
 
-/// How threads are shared.
+/// Use of threads: shared by all observers, or one each.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Threading {
     /// All threads work for one observer.
@@ -265,7 +261,7 @@ enum Threading {
     OneEach,
 }
 
-/// What up to 32 observers see.
+/// Targets that up to 32 observers see.
 struct ObserverBand {
     /// Bit i: observer i sees the target, (M).
     seen: Vec<u32>,
@@ -331,13 +327,13 @@ impl ViewshedTree<'_> {
         Ok(ObserverBand { seen, unproven, seen_counts })
     }
 
-    /// Whether any line of sight of an observer is curved, or crosses far terrain.
+    /// Returns true if any line of sight of an observer is curved, or crosses far terrain.
     fn needs_single_lines(&self, observer: &Observer) -> bool {
         self.scene.is_on_far_terrain(observer.eye)
             || self.tree.any_corner(|corner| self.params.earth.bends(corner, observer.eye))
     }
 
-    /// What one observer sees, all threads at work: (M), blocked where the observer does not look.
+    /// Returns the answers of one observer, with all threads at work, (M); blocked where the observer does not look.
     fn seen_by(&self, observer: &Observer, control: &Control<'_>) -> Result<Vec<Answer>> {
         let allowed = |target: [f32; 3]| observer.limits.allow(observer.eye, target.map(f64::from));
         if !self.needs_single_lines(observer) {
@@ -388,10 +384,11 @@ fn add(result: &mut Viewshed, band: ObserverBand, masks: Masks) {
     }
 }
 
-/// How high above the ground a thing must reach in each cell for its top to be seen by one of the observers, metres: 0
-/// where the ground is seen, +∞ where nothing up to `ceiling` metres is, NaN where no ground is known or no observer is
-/// turned to the cell. At most 2 mm above the exact figure for the balls, and 0 where targets on the ground are visible
-/// ([`GROUND_TOLERANCE`]); pulses are not used. Limits of elevation are those of the ground.
+/// Computes the minimum height above the ground, metres, at which an object in each cell is visible to one of the
+/// observers. It is 0 where the ground is visible, and +∞ where nothing up to `ceiling` metres is. It is NaN where no
+/// ground is known or no observer is turned to the cell. The result exceeds the exact figure for the balls by at most 2
+/// mm, and is 0 where targets on the ground are visible ([`GROUND_TOLERANCE`]); pulses are not used. Limits of
+/// elevation are those of the ground.
 ///
 /// # Errors
 /// As [`viewshed`], and for a ceiling below zero, and for an observer on far terrain: the terrain before it is not

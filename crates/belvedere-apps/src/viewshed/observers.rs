@@ -1,4 +1,4 @@
-//! Who looks, and how far and where to.
+//! Observers, with limits of distance and direction.
 
 use belvedere_data::{Error, Parameter, Result};
 use std::f64::consts::TAU;
@@ -6,21 +6,21 @@ use std::f64::consts::TAU;
 /// Someone, or a camera, that looks around.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Observer {
-    /// Where the eye is, local metres.
+    /// Position of the eye, local metres.
     pub eye: [f64; 3],
-    /// What it is turned to.
+    /// Limits of distance and direction.
     pub limits: SightLimits,
 }
 
 /// Directions and distances that an observer looks at; targets outside are not tested.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SightLimits {
-    /// From and to, radians clockwise from grid north: from 5.2 to 1 runs through north. `None`, the default: all
-    /// around.
+    /// First and last azimuth, radians clockwise from grid north: from 5.2 to 1 runs through north. `None`, the
+    /// default: all around.
     pub azimuth: Option<[f64; 2]>,
-    /// Least and greatest angle above the horizon, radians, −π/2 to π/2. `None`, the default: all.
+    /// Minimum and maximum angle above the horizon, radians, −π/2 to π/2. `None`, the default: all.
     pub elevation: Option<[f64; 2]>,
-    /// Least and greatest distance on the map, metres, 0 or more; the second may be infinite. Default: 0 to infinity.
+    /// Minimum and maximum distance on the map, metres, 0 or more; the second may be infinite. Default: 0 to infinity.
     pub distance: [f64; 2],
 }
 
@@ -61,7 +61,8 @@ impl SightLimits {
         Ok(())
     }
 
-    /// Whether an eye so limited looks at `target`, both local metres. False for a target that is not finite.
+    /// Returns true if an eye with these limits looks at `target`, both local metres. False for a target that is not
+    /// finite.
     #[must_use]
     pub fn allow(&self, eye: [f64; 3], target: [f64; 3]) -> bool {
         let [x, y, z]: [f64; 3] = std::array::from_fn(|i| target[i] - eye[i]);
@@ -82,8 +83,8 @@ impl SightLimits {
     }
 }
 
-/// Places `step` metres apart along a path through `corners`, measured on the map, local metres: its first and last
-/// corner are among them, so that the last piece may be shorter. Heights run linearly between corners; NaN stays NaN.
+/// Returns places `step` metres apart along a path through `corners`, measured in plan, local metres. The first and
+/// last corner are included, so that the last piece may be shorter. Heights are linear between corners; NaN stays NaN.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a step that is not above zero or gives more than a million places.

@@ -1,23 +1,23 @@
-//! How likely observers see targets.
+//! Probabilities that observers see targets.
 
 use super::Observer;
 use belvedere_core::query::{Certainty, MedialScene, Viewer};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 
-/// How likely targets are seen.
+/// Probabilities that targets are visible.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeenProbabilities {
     /// Expected number of observers that see each target: of one observer the probability that it does, (M); NaN where
     /// no observer has an answer.
     pub expected: Vec<f32>,
-    /// How many of their answers are less certain than was wanted, (M); NaN where no observer has an answer.
+    /// Number of their answers below the wanted certainty, (M); NaN if no observer has an answer.
     pub uncertain: Option<Vec<f32>>,
 }
 
-/// How likely each of `observers` sees each of `targets`, (M, 3) local metres; progress counts observers times targets.
-/// An observer whose eye is not finite has no answer, nor has one for a target that it is not turned to, or that lies
-/// beyond the cloud.
+/// Computes the probability that each of `observers` sees each of `targets`, (M, 3) local metres; progress counts
+/// observers times targets. There is no answer for an observer whose eye is not finite. Neither is there one for a
+/// target that it is not turned to, or that lies beyond the cloud.
 ///
 /// # Errors
 /// Those of [`MedialScene::visible_probabilities`].

@@ -25,7 +25,7 @@ const STEEPEST_NORMAL: f32 = std::f32::consts::FRAC_1_SQRT_2;
 /// Kinds of what is seen.
 const KINDS: usize = SeenKind::ALL.len();
 
-/// What one window has before it. All is NaN for a window without a position.
+/// View from one window. All is NaN for a window without a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindowView {
     /// Share of the half space before the window that is each of [`SeenKind::ALL`], by solid angle, 0 to 1; 1 together.
@@ -42,7 +42,7 @@ pub struct WindowView {
     pub unproven: f64,
 }
 
-/// What a ball or a mesh is.
+/// Kinds of balls and meshes.
 #[derive(Clone, Copy, Debug)]
 pub struct Kinds<'a> {
     /// Kind of each ball of the model, (B), as [`balls_seen`] has it.
@@ -63,9 +63,9 @@ pub fn view_directions(count: usize) -> Result<Vec<[f64; 3]>> {
     Ok(directions)
 }
 
-/// What each of the groups of `targets`, windows with normals, sees of `scene` in `directions`, unit vectors that each
-/// have the same solid angle ([`view_directions`]): those behind the plane of a window do not count. Places of a window
-/// count by their weight. Progress counts targets.
+/// Computes the view of each of the groups of `targets`, windows with normals, in `scene`. `directions` are unit
+/// vectors of equal solid angle ([`view_directions`]); those behind the plane of a window do not count. Places of a
+/// window count by their weight. Progress counts targets.
 ///
 /// # Errors
 /// [`Error::UnsupportedTargets`] for targets without normals, [`Error::LengthMismatch`] unless each target has one and
@@ -157,7 +157,7 @@ pub fn view_measures(views: &[WindowView], proof: Proving) -> Vec<Measure> {
     measures
 }
 
-/// Whether lines of sight were tested with pulses.
+/// Choice to test lines of sight with pulses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Proving {
     /// They were.
@@ -166,7 +166,7 @@ pub enum Proving {
     NotTested,
 }
 
-/// What the places of a window add up to.
+/// Sums over the places of a window.
 #[derive(Default)]
 struct Sums {
     weights: [f64; KINDS],

@@ -12,13 +12,13 @@ pub struct NamedView {
     pub windows: usize,
     /// Mean share of each of [`SeenKind::ALL`], 0 to 1; NaN where no window has a view.
     pub shares: [f64; SeenKind::ALL.len()],
-    /// Least and greatest share of vegetation and water of a window: the green and blue of the worst and of the best
+    /// Minimum and maximum share of vegetation and water of a window: the green and blue of the worst and of the best
     /// view.
     pub green_and_blue: [f64; 2],
 }
 
-/// The mean views of `views`, (W), by the name of each, (W), and its weight, (W), such as the area of a window; in the
-/// order in which names come first.
+/// Returns the mean of `views`, (W), for each name, (W), weighted by `weights`, (W), such as the area of a window.
+/// Names are in the order of their first occurrence.
 #[must_use]
 pub fn views_by_name(views: &[WindowView], names: &[&str], weights: &[f64]) -> Vec<NamedView> {
     let mut rows: std::collections::HashMap<&str, usize> = std::collections::HashMap::new();

@@ -1,19 +1,19 @@
-//! What is seen: kinds of things, and which kind a ball is.
+//! Kinds of visible objects, and the kind of a ball.
 
 use belvedere_core::medial::MedialBalls;
 use belvedere_data::vector::{length, sub};
 use belvedere_data::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// How far the surface of a ball may lie from the point that it was made at, metres: rules of carving move balls by
-/// less.
+/// Maximum distance between the surface of a ball and the point that it was made at, metres: rules of carving move
+/// balls by less.
 const FARTHEST_FROM_POINT: f64 = 1.0;
 
 /// A kind of what is seen from a window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SeenKind {
-    /// Nothing blocks, at the horizon or above it.
+    /// Sky: nothing blocks, at the horizon or above it.
     Sky,
     /// Trees, hedges and lower plants.
     Vegetation,
@@ -26,8 +26,7 @@ pub enum SeenKind {
     /// Whatever else blocks: cars, bridges, wires, and points without a class.
     #[default]
     Other,
-    /// Nothing in the cloud blocks, but this is no sky: below the horizon, where the cloud ends and no far terrain is
-    /// known.
+    /// Space beyond the cloud: nothing in it blocks, below the horizon, and no far terrain is known.
     Beyond,
 }
 
@@ -58,7 +57,7 @@ impl SeenKind {
     }
 }
 
-/// What the classes of points are.
+/// Meanings of the classes of points.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ClassMeanings([Option<SeenKind>; 256]);
 
@@ -88,7 +87,7 @@ impl ClassMeanings {
         self
     }
 
-    /// What `class` means; `None` where it says nothing.
+    /// Returns the meaning of `class`; `None` if it has none.
     #[must_use]
     pub fn of(&self, class: u8) -> Option<SeenKind> {
         self.0[usize::from(class)]
@@ -121,8 +120,8 @@ pub fn balls_seen(
     Ok(balls.source.iter().enumerate().map(kind).collect())
 }
 
-/// Whether `balls` were made from points at `positions`, (N, 3) in the same frame: most of them touch the point of
-/// their row to a metre.
+/// Returns true if `balls` were made from points at `positions`, (N, 3) in the same frame: most of them touch the point
+/// of their row to a metre.
 #[must_use]
 pub fn are_made_from(balls: &MedialBalls, positions: &[[f32; 3]]) -> bool {
     let touches = |row: &usize| {

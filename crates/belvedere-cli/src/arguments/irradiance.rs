@@ -68,7 +68,7 @@ pub(crate) struct IrradianceArguments {
     pub(crate) scene: SceneInput,
 }
 
-/// How radiation is modelled.
+/// Model of radiation.
 #[derive(Args)]
 #[command(next_help_heading = "Radiation")]
 pub(crate) struct RadiationModel {

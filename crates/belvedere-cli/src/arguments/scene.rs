@@ -118,7 +118,7 @@ impl CloudInput {
         Self { bounds: None, flight_lines: Vec::new(), dates: None, only_classes: Vec::new(), ..self }
     }
 
-    /// How the clouds are read.
+    /// Returns the options of reading the clouds.
     pub(crate) fn read_options(&self) -> ReadOptions {
         let mut options = ReadOptions::new().with_up(self.up.into());
         options.crs.clone_from(&self.crs);
@@ -165,7 +165,7 @@ pub(crate) struct SceneInput {
     pub(crate) balls: SceneBalls,
 }
 
-/// How the balls of a scene are made: what every command that builds them takes. The rest stands in a file.
+/// Construction of the balls of a scene, for every command that builds them. Further parameters are in a file.
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Scene")]
 pub(crate) struct SceneBalls {
@@ -213,7 +213,7 @@ pub(crate) struct BallShape {
     pub(crate) profile: Option<ProfileChoice>,
 }
 
-/// How much memory a survey may take.
+/// Maximum memory of a survey.
 #[derive(Args, Clone)]
 pub(crate) struct MemoryArgument {
     /// Memory that may be used, such as 3G or 800M [default: half of what is free]
@@ -227,7 +227,7 @@ pub(crate) struct MemoryArgument {
     pub(crate) memory: Option<MemoryAmount>,
 }
 
-/// What is planned: the scene as it will be.
+/// Plan: changes to the scene.
 #[derive(Args, Clone)]
 pub(crate) struct PlanArguments {
     /// Add a mesh to the scene, such as a planned building (.obj .ply .json); repeatable

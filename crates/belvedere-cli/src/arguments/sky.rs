@@ -47,7 +47,7 @@ pub(crate) struct SkyPlaces {
     pub(crate) edge_mask: Option<PathBuf>,
 }
 
-/// What stands beyond the cloud.
+/// Terrain beyond the cloud.
 #[derive(Args)]
 pub(crate) struct FarTerrainArguments {
     /// Terrain beyond the cloud: elevation raster (DTM) in the coordinate system of the cloud or in degrees (.tif)

@@ -107,16 +107,6 @@ pub(crate) struct SunHoursArguments {
     pub(crate) trees: ThroughTreesArguments,
     #[command(flatten)]
     pub(crate) outputs: SkyOutputs,
-    /// Also save the visibility matrix, for other days and rules with --load-matrix (.npz)
-    ///
-    /// NumPy arrays: bits (targets x words of 64 directions, lowest bit first), directions, targets, origin.
-    #[arg(long = "save-matrix", value_name = "OUT", help_heading = "Result")]
-    pub(crate) keep: Option<PathBuf>,
-    /// Use a matrix from --save-matrix of the same balls and targets, instead of computing visibility
-    ///
-    /// Each sun uses the nearest direction of the matrix, at most --sun-tolerance-deg away [default: 1].
-    #[arg(long = "load-matrix", value_name = "MATRIX", conflicts_with = "keep", help_heading = "Period")]
-    pub(crate) from_matrix: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) memory: MemoryArgument,
     #[command(flatten)]

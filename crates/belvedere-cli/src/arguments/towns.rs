@@ -14,7 +14,7 @@ pub(crate) struct Simulate {
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
     /// Side of the town in metres, 60 to 5000
-    #[arg(long, value_name = "M", default_value_t = EXTENT, value_parser = within::<60, 5000>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", default_value_t = EXTENT, value_parser = parse_within::<60, 5000>, allow_negative_numbers = true)]
     pub(crate) extent: f64,
     /// Type of laser scanner
     #[arg(long, value_enum, default_value_t = ScannerChoice::Airborne)]
@@ -43,13 +43,13 @@ pub(crate) struct AirborneFlags {
     #[arg(long, value_name = "PULSES_PER_M2", value_parser = density, allow_negative_numbers = true)]
     pub(crate) density: Option<f64>,
     /// Flying height above ground in metres, 50 to 5000 [default: 450]
-    #[arg(long, value_name = "M", value_parser = within::<50, 5000>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = parse_within::<50, 5000>, allow_negative_numbers = true)]
     pub(crate) flying_height: Option<f64>,
     /// Speed over ground in metres per second, 10 to 150 [default: 60]
-    #[arg(long, value_name = "M_PER_S", value_parser = within::<10, 150>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M_PER_S", value_parser = parse_within::<10, 150>, allow_negative_numbers = true)]
     pub(crate) speed: Option<f64>,
     /// Maximum scan angle from nadir in degrees, 1 to 60 [default: 25; conical: a constant 20]
-    #[arg(long, value_name = "DEG", value_parser = within::<1, 60>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", value_parser = parse_within::<1, 60>, allow_negative_numbers = true)]
     pub(crate) scan_angle: Option<f64>,
     /// Number of parallel flight strips [default: enough to see every place from both sides]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
@@ -69,7 +69,7 @@ pub(crate) struct TerrestrialFlags {
     #[arg(long = "angle-step-deg", value_name = "DEG", value_parser = angular_step, allow_negative_numbers = true)]
     pub(crate) angular_step: Option<f64>,
     /// Maximum range in metres, 1 to 5000 [default: 120]
-    #[arg(long, value_name = "M", value_parser = within::<1, 5000>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = parse_within::<1, 5000>, allow_negative_numbers = true)]
     pub(crate) max_range: Option<f64>,
     /// Write scans.ptx too: a grid for each scanner position, with the pulses that returned nothing
     ///
@@ -82,18 +82,18 @@ pub(crate) struct TerrestrialFlags {
 #[command(next_help_heading = "Pulses")]
 pub(crate) struct PulseFlags {
     /// Standard deviation of ranges in metres, 0 to 1 [default: 0.02; terrestrial: 0.005]
-    #[arg(long, value_name = "M", value_parser = within::<0, 1>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = parse_within::<0, 1>, allow_negative_numbers = true)]
     pub(crate) noise: Option<f64>,
     /// Share of pulses that get lost, 0 to 1 [default: 0.01]
-    #[arg(long, value_name = "SHARE", value_parser = within::<0, 1>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SHARE", value_parser = parse_within::<0, 1>, allow_negative_numbers = true)]
     pub(crate) dropout: Option<f64>,
     /// Full beam divergence in milliradians, 0 to 10 [default: 0.4; terrestrial: 0.3]
-    #[arg(long, value_name = "MRAD", value_parser = within::<0, 10>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MRAD", value_parser = parse_within::<0, 10>, allow_negative_numbers = true)]
     pub(crate) divergence: Option<f64>,
     /// Mean depth of pulses in tree crowns in metres, 0 to 100 [default: 1.5]
     ///
     /// With 0 all points lie on the mesh.
-    #[arg(long, value_name = "M", value_parser = within::<0, 100>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = parse_within::<0, 100>, allow_negative_numbers = true)]
     pub(crate) foliage_depth: Option<f64>,
 }
 
@@ -132,19 +132,19 @@ fn orders() -> impl TypedValueParser<Value = PointOrder> {
 }
 
 /// A number from `LOW` to `HIGH`, both included.
-fn within<const LOW: u16, const HIGH: u16>(text: &str) -> Result<f64, String> {
-    between(text, f64::from(LOW), f64::from(HIGH))
+fn parse_within<const LOW: u16, const HIGH: u16>(text: &str) -> Result<f64, String> {
+    parse_between(text, f64::from(LOW), f64::from(HIGH))
 }
 
 fn density(text: &str) -> Result<f64, String> {
-    between(text, 0.1, 200.0)
+    parse_between(text, 0.1, 200.0)
 }
 
 fn angular_step(text: &str) -> Result<f64, String> {
-    between(text, 0.01, 5.0)
+    parse_between(text, 0.01, 5.0)
 }
 
-fn between(text: &str, low: f64, high: f64) -> Result<f64, String> {
+fn parse_between(text: &str, low: f64, high: f64) -> Result<f64, String> {
     text.parse()
         .ok()
         .filter(|v| (low..=high).contains(v))

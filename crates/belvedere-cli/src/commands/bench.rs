@@ -94,7 +94,7 @@ impl StageRow {
     }
 }
 
-/// What was measured on.
+/// Machine of the measurements.
 #[derive(Serialize)]
 struct Machine {
     version: &'static str,

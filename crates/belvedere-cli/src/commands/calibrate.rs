@@ -27,7 +27,8 @@ pub(crate) fn run(arguments: &CalibrateArguments, global: &Global) -> Result<Sum
     let mut run = CommandContext::new(global);
     let cloud = pipeline::read(input, &mut run)?;
     let model = params::model(&parameters, balls, &cloud.frame.crs, &mut run)?;
-    let answers = ask::calibrate(&cloud, &model, &reliability, &run.control()).map_err(|error| named(input, error))?;
+    let answers =
+        ask::calibrate(&cloud, &model, &reliability, &run.control()).map_err(|error| name_clouds(input, error))?;
     run.answered(&answers);
     let (scenes, reports): (Vec<&Path>, Vec<&Path>) =
         output.iter().map(AsRef::as_ref).partition(|output| extension(output) == "npz");
@@ -55,7 +56,7 @@ fn refuse_balls(input: &CloudInput) -> Result<()> {
 }
 
 /// The error with the names of the clouds where they lack something, and the flags that help.
-fn named(input: &CloudInput, error: Error) -> anyhow::Error {
+fn name_clouds(input: &CloudInput, error: Error) -> anyhow::Error {
     match error {
         Error::MissingAttribute { .. } => {
             let what = format!("{}: {error} (--orient trajectory=FILE or scanner=X,Y,Z)", input.names().join(", "));

@@ -1,8 +1,8 @@
 //! `belvedere cameras`.
 
+mod camera_targets;
 mod places;
 mod results;
-mod what;
 
 use super::surroundings::ObserverUse;
 use super::{check_output, warn_of_geojson};
@@ -28,9 +28,9 @@ pub(crate) fn run(arguments: &CamerasArguments, global: &Global) -> Result<Summa
     let frame = scene.cloud.frame.clone();
     warn_of_geojson(&written, &frame.crs, &mut run.summary);
     let scene = scene.into_question_scene(Some(&arguments.targets.ground), arguments.giving_way.shell, &run)?;
-    let places = what::places(&arguments.targets, &frame, &mut question.targets, &mut run)?;
+    let places = camera_targets::places(&arguments.targets, &frame, &mut question.targets, &mut run)?;
     if let Some(path) = &arguments.lens.private {
-        question.targets.private = what::private(path, &frame, &mut run)?;
+        question.targets.private = camera_targets::private(path, &frame, &mut run)?;
     }
     if let Some(path) = &arguments.existing {
         question.existing = candidates_on_path(path, Some(f64::INFINITY), ObserverUse::Limits, &frame, &mut run)?;
@@ -90,7 +90,7 @@ fn question(arguments: &CamerasArguments) -> Result<ask::CamerasQuestion> {
 }
 
 fn check(arguments: &CamerasArguments) -> Result<()> {
-    let are_cells = what::are_cells(&arguments.targets);
+    let are_cells = camera_targets::are_cells(&arguments.targets);
     for output in &arguments.output {
         check_output("-o", output, &["geojson", "tif", "tiff", "png", "csv"])?;
         let is_map = ["tif", "tiff", "png"].contains(&super::extension(output).as_str());
@@ -108,5 +108,5 @@ fn check(arguments: &CamerasArguments) -> Result<()> {
             return Err(Usage("--footprints needs cells as targets".to_owned()).into());
         }
     }
-    what::check(&arguments.targets, are_cells)
+    camera_targets::check(&arguments.targets, are_cells)
 }

@@ -23,7 +23,7 @@ use std::time::Instant;
 
 /// Name and version of the program, as plans say them.
 pub(super) const PROGRAM: &str = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
-/// Most failures that are listed one by one.
+/// Maximum number of failures that are listed one by one.
 const MAX_LISTED: usize = 10;
 
 pub(crate) fn run(arguments: &City, global: &Global) -> Result<Summary> {

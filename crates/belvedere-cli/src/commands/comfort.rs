@@ -1,7 +1,7 @@
 //! `belvedere comfort`.
 
 use super::check_output;
-use super::shapes::{TypedAre, shapes, wrong_shape};
+use super::map_shapes::{TypedAre, shapes, wrong_shape};
 use super::sky_view::sky_parts;
 use super::windows::{FaceChoice, WindowColumn, WindowFile, coordinates};
 use crate::arguments::{ComfortArguments, CornersArgument, Global, Usage};
@@ -102,14 +102,14 @@ fn routes(route: &CornersArgument, frame: &Frame) -> Result<NamedRoutes> {
     Ok(routes)
 }
 
-/// What places were taken from.
+/// Source of places.
 enum PlaceSource {
     /// Routes with these names.
     Routes(Vec<String>),
     Windows(WindowFile),
 }
 
-/// What was found, to be written.
+/// Results to write.
 struct ComfortOutput<'a> {
     found: &'a ComfortResults,
     source: PlaceSource,

@@ -33,7 +33,7 @@ const PLANNED_M: [f64; 3] = [14.0, 10.0, 25.0];
 /// Cells of the raster of the terrain around the town, metres, and their number a side.
 const TERRAIN_CELL_M: f64 = 25.0;
 const TERRAIN_CELLS: usize = 480;
-/// Where hills begin, how far from there their crests are, and how high these are, metres.
+/// Distance of the hills, width up to their crests, and height, metres.
 const HILLS_M: [f64; 3] = [900.0, 2500.0, 260.0];
 /// Height of a pedestrian's chest above the ground, metres.
 const PEDESTRIAN: f64 = 1.5;
@@ -182,7 +182,7 @@ fn planned_building(town: &TriangleScene) -> TriangleScene {
     planned
 }
 
-/// How many answers the exact mesh contradicts, each kind of error for itself.
+/// Counts the answers that the exact mesh contradicts, for each kind of error.
 fn agreement(
     scene: &TriangleScene,
     scan: &Scan,

@@ -14,7 +14,7 @@ use belvedere::io::{Georeference, write_npy_f32_2d, write_npy_u32_2d, write_tif_
 use belvedere::raster::Raster;
 use belvedere::view::View;
 
-/// What GIS programs expect where a raster of heights or depths has no value.
+/// Nodata value of rasters of heights or depths in GIS programs.
 const NOTHING_HIT: f32 = -9999.0;
 
 pub(crate) fn run(arguments: &DepthMapArguments, global: &Global) -> Result<Summary> {
@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &DepthMapArguments, global: &Global) -> Result<Summ
     let mut run = CommandContext::new(global);
     let mut scene = pipeline::scene(&arguments.scene, KeepPoints::LetGo, &mut run)?;
     scene.profile = arguments.shape.profile.map_or(scene.profile, Profile::from);
-    let from = arguments.view.from(&scene, &mut run.summary)?;
+    let from = arguments.view.view_from(&scene, &mut run.summary)?;
     let question = ask::DepthMapQuestion { from: Some(from), ball_ids: arguments.balls_id.is_some() };
     let scene = scene.into_question_scene(None, None, &run)?;
     let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
@@ -75,7 +75,7 @@ fn picture(from: &ViewFrom, depth: &Raster<f32>) -> Picture {
     }
 }
 
-/// Where the picture lies on the map, if it looks straight down or up.
+/// Returns the position of the picture in plan, if it looks straight down or up.
 fn georeference(frame: &Frame, view: &View) -> Option<Georeference> {
     let [corner, column_step, row_step] = view.ground_grid()?;
     let crs = frame.crs.clone();

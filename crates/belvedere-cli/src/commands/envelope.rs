@@ -2,7 +2,7 @@
 
 use super::check_output;
 use super::heights::write_heights;
-use super::shapes::{NamedShape, TypedAre, shapes, wrong_shape};
+use super::map_shapes::{NamedShape, TypedAre, shapes, wrong_shape};
 use crate::arguments::{CornersArgument, EnvelopeArguments, Global, Usage};
 use crate::pipeline::{self, KeepPoints, LoadedScene, is_file, mesh_in};
 use crate::run::CommandContext;
@@ -127,7 +127,7 @@ fn parcel(arguments: &EnvelopeArguments, frame: &Frame) -> Result<Vec<Vec<[f64; 
     Ok(rings)
 }
 
-/// What keeps its sun.
+/// Returns the objects that keep their sun.
 fn protect(arguments: &EnvelopeArguments, frame: &Frame, run: &mut CommandContext) -> Result<Vec<Protected>> {
     let mut all = Vec::new();
     for protect in &arguments.protect {
@@ -153,7 +153,7 @@ fn protect(arguments: &EnvelopeArguments, frame: &Frame, run: &mut CommandContex
     Ok(all)
 }
 
-/// Whether a .json is GeoJSON rather than CityJSON, by its first bytes.
+/// Returns true if a .json is GeoJSON and not CityJSON, by its first bytes.
 fn is_geojson(path: &Path) -> bool {
     let mut start = Vec::new();
     let read = Source::path(path).into_reader().map(|(file, _)| file.take(1 << 16).read_to_end(&mut start));

@@ -1,8 +1,8 @@
 //! Colours of what is uncertain.
 
-/// What is unproven, which is always uncertain and has a colour of its own.
+/// Colour of unproven answers, which are always uncertain.
 pub(crate) const UNPROVEN_COLOR: [u8; 3] = [90, 150, 240];
-/// What colours fade to, and by how much.
+/// Colour that others fade to, and the share of fading.
 const PALE: [f32; 3] = [236.0, 236.0, 236.0];
 const SHARE: f32 = 0.45;
 

@@ -21,12 +21,12 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// What was typed of a question about cells.
+/// Typed arguments of a question about cells.
 pub(crate) struct TypedCells<'a> {
     pub(crate) scene: &'a SceneInput,
     pub(crate) memory: &'a MemoryArgument,
     pub(crate) cells: GridCells,
-    /// What stands beyond the survey.
+    /// Terrain beyond the survey.
     pub(crate) far: Option<&'a FarTerrainArguments>,
     pub(crate) trees: Option<&'a ThroughTreesArguments>,
     pub(crate) output: &'a [PathBuf],
@@ -38,7 +38,7 @@ pub(crate) struct TypedCells<'a> {
 pub(crate) struct PlannedSurvey {
     pub(crate) plan: Plan,
     folder: SurveyFolder,
-    /// Whether nobody keeps the tiles.
+    /// True if nobody keeps the tiles.
     is_temporary: bool,
     /// Memory that may be used, bytes.
     limit: u64,
@@ -48,7 +48,7 @@ pub(crate) struct PlannedSurvey {
 pub(crate) type DrawnMap<'a> = &'a dyn Fn(&Answers<SurveyCells>, &HighestPoints) -> belvedere::Result<Picture>;
 
 impl<'a> TypedCells<'a> {
-    /// Those of a question about sun and sky.
+    /// Collects the arguments of a question about sun and sky.
     pub(crate) fn of_sky(
         (scene, memory): (&'a SceneInput, &'a MemoryArgument),
         places: &'a SkyPlaces,
@@ -151,7 +151,7 @@ impl<'a> TypedCells<'a> {
         Ok(answers)
     }
 
-    /// What was typed that tiles do not know.
+    /// Returns the typed arguments that tiles do not support.
     fn unknown(&self, question: &Question) -> Option<String> {
         let SceneInput { input, balls, .. } = self.scene;
         let flags = [

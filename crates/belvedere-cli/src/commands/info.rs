@@ -133,7 +133,7 @@ fn of_facades(facades: &FacadeSummary) -> Summary {
     section
 }
 
-/// What a ball file holds.
+/// Summarises a ball file.
 fn of_balls(model: &ModelParts) -> Summary {
     let mut summary = Summary::default();
     let (low, high) = model.bounds.corners();
@@ -156,7 +156,7 @@ fn of_balls(model: &ModelParts) -> Summary {
     summary
 }
 
-/// What is known of buildings, and how well the median edge is.
+/// Summarises the outlines of buildings, with the accuracy of the median edge.
 fn of_outlines(outlines: &BuildingOutlines) -> Summary {
     let mut section = Summary::default();
     section
@@ -168,7 +168,7 @@ fn of_outlines(outlines: &BuildingOutlines) -> Summary {
     section
 }
 
-/// How many patches of each kind there are, and how large.
+/// Summarises the number and area of the patches of each kind.
 fn of_patches(patches: &SurfacePatches) -> Summary {
     let mut section = Summary::default();
     section.add("triangles", patches.len()).add("area_m2", rounded(patches.area_m2(), 1));

@@ -69,7 +69,7 @@ fn check_pictures(arguments: &IsovistArguments, count: usize) -> Result<()> {
     }
 }
 
-/// Where each eye is, in the coordinates of the file, and all that describes what it sees.
+/// Returns the columns of isovists: the position of each eye, in the coordinates of the file, and the measures.
 fn columns(found: &IsovistsResults, scene: &Scene) -> Vec<IsovistColumn> {
     let places: Vec<[f64; 3]> = found.eyes.places.iter().map(|&place| scene.frame().file_from_local(place)).collect();
     let place = |(axis, name): (usize, &'static str)| IsovistColumn {

@@ -1,7 +1,7 @@
 //! `belvedere landmark`.
 
+pub(super) mod landmark_shape;
 mod results;
-pub(super) mod what;
 
 use super::surroundings::{ObserverUse, observer_rows, rows_as_given};
 use super::{check_output, extension};
@@ -22,7 +22,7 @@ pub(crate) fn run(arguments: &LandmarkArguments, global: &Global) -> Result<Summ
     let mut run = CommandContext::new(global);
     let scene = pipeline::scene(&arguments.scene, KeepPoints::Keep, &mut run)?;
     let scene = scene.into_question_scene(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
-    let shape = what::shape(&arguments.shape, scene.frame(), &mut run)?;
+    let shape = landmark_shape::shape(&arguments.shape, scene.frame(), &mut run)?;
     let question = question(arguments, shape, scene.frame(), &mut run)?;
     let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
     run.answered(&answers);

@@ -190,7 +190,7 @@ fn write(output: &Path, found: &SightsResults, scene: &Scene, rows: &TextRows) -
     write_table(output, &with_columns_read(&read, &ENDS, &columns))
 }
 
-/// How much of the first line no pulse came near to, metres, where that is why its answer is unproven.
+/// Returns the length of the first line that no pulse came near to, metres, if that makes its answer unproven.
 fn unproven_length(found: &SightsResults, scene: &Scene) -> Option<f64> {
     let is_unproven = found.answers.first() == Some(&Answer::Unproven);
     found.columns(scene).unproven.and_then(|lengths| lengths.first().copied()).filter(|_| is_unproven)

@@ -14,7 +14,7 @@ use belvedere::results::FaceRows;
 use belvedere::view::View;
 use std::path::Path;
 
-/// Longest side of a piece, metres: what points of usual airborne surveys tell of a wall.
+/// Longest side of a piece, metres: the resolution of usual airborne surveys on a wall.
 pub(super) const SPACING: f64 = 0.5;
 
 /// Refuses flags of meshes for targets that are points.
@@ -44,7 +44,7 @@ pub(super) fn run(arguments: &Query, path: &Path, global: &Global) -> Result<Sum
     let mesh = mesh_of(path, &scene, &mut run)?;
     let views = arguments.view.views(&scene, &mut run.summary)?;
     let giving_way = GivingWay { shell: arguments.shell, unproven: arguments.unproven };
-    let (blockers, unproven) = sights::proving_blockers(&scene, profile, &giving_way, &mut run)?;
+    let (blockers, unproven) = view_obstacles::proving_blockers(&scene, profile, &giving_way, &mut run)?;
     if let Some(view) = views.first().filter(|view| view.is_central()) {
         run.summary.remarks(ask::remark_on_inside(&blockers, view.frame.eye, "eye"));
     }

@@ -1,4 +1,4 @@
-//! From which north azimuths are counted: true north, or grid north where that is wanted or true north is unknown.
+//! North of azimuths: true north, or grid north if that is wanted or true north is unknown.
 
 use crate::arguments::NorthArguments;
 use crate::pipeline::LoadedScene;
@@ -7,21 +7,21 @@ use belvedere::Frame;
 use belvedere::apps::ask;
 use belvedere::apps::horizon::convergence;
 
-/// Where azimuths are from if the scene does not say where true north is.
+/// Name of the north of azimuths if the scene does not give true north.
 const UNKNOWN_NORTH: &str =
     "grid north, because true north is unknown: the scene has no usable reference system (see --crs)";
 
 /// The north of the azimuths of a command.
 #[derive(Clone, Copy)]
 pub(crate) struct CommandNorth {
-    /// Azimuth of grid north, clockwise from the north that azimuths are counted from, radians: subtract it from a
-    /// given azimuth to get one in the grid, and add it to an azimuth in the grid to report it.
+    /// Azimuth of grid north, clockwise from the north of azimuths, radians. Subtract it from a given azimuth to get
+    /// one in the grid, and add it to an azimuth in the grid to report it.
     pub(crate) of_grid: f64,
     name: &'static str,
 }
 
 impl NorthArguments {
-    /// What was typed.
+    /// Returns the typed north.
     pub(crate) fn choice(&self) -> ask::North {
         if self.grid_north { ask::North::Grid } else { ask::North::True }
     }

@@ -36,7 +36,7 @@ fn is_las(path: &Path) -> bool {
     matches!(extension(path).as_str(), "las" | "laz")
 }
 
-/// Whether an output is meant as a folder: it is one, or its name has no extension.
+/// Returns true if an output is a folder: it exists as one, or its name has no extension.
 pub(super) fn is_folder(path: &Path) -> bool {
     path.is_dir() || extension(path).is_empty()
 }
@@ -90,8 +90,8 @@ pub(super) fn check_folder(path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Whether a folder in the layout of masbcpp is written where it was read. Its coordinates then stay as they are: they
-/// may be finer than the f32 of the layout.
+/// Returns true if a folder in the layout of masbcpp is written where it was read. Its coordinates then stay unchanged:
+/// they may be finer than the f32 of the layout.
 pub(super) fn is_written_back(inputs: &[PathBuf], folder: &Path) -> bool {
     let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
     inputs.iter().any(|input| same(input, folder) || same(input, &folder.join("coords.npy")))

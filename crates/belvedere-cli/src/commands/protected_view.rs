@@ -35,7 +35,7 @@ pub(crate) fn run(arguments: &ProtectedViewArguments, global: &Global) -> Result
     question.check()?;
     let mut run = CommandContext::new(global);
     let scene = pipeline::scene(&arguments.scene, KeepPoints::Keep, &mut run)?;
-    question.landmark = Some(SharedObject::new(what::surface(&arguments.shape, &scene, &mut run)?.0));
+    question.landmark = Some(SharedObject::new(landmark_shape::surface(&arguments.shape, &scene, &mut run)?.0));
     question.observers = arguments.eyes.standing(&scene.cloud.frame, &mut run)?;
     let ground = &arguments.eyes.ground;
     let scene = scene.into_question_scene(Some(ground), arguments.giving_way.shell, &run)?;

@@ -80,7 +80,7 @@ pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     run.summary.remarks(ask::remark_on_targets_inside(counts.inside_obstacle, answers.len()));
     let unproven_as = arguments.unproven.map_or(UnprovenAs::Reported, UnprovenAs::from);
     let codes: Vec<u8> = answers.iter().map(|&answer| unproven_as.settle(answer) as u8).collect();
-    run.summary.add("answers", counted(&answers, unproven_as, section));
+    run.summary.add("answers", count_answers(&answers, unproven_as, section));
     let report = run.stage("writing", 0, |_| {
         if extension(output) == "npy" {
             return write_npy_u8(output, &codes).map(|()| WriteReport::default());
@@ -176,7 +176,7 @@ fn by_lines_of_sight(
         section.add("balls_around_eye", scene.around_eye_count(eye));
         run.summary.remarks(ask::remark_on_inside(&scene, eye, "eye"));
     }
-    sights::add_proof(&scene, section);
+    view_obstacles::add_proof(&scene, section);
     // the sun, a direction and a panorama only say from where: without a picture there is nothing beside it
     let has_picture = arguments.view.kind.viewport.is_some() || arguments.view.kind.eye.is_some();
     let scope = if has_picture { Scope::View } else { Scope::Viewer };
@@ -207,8 +207,8 @@ fn by_lines_of_sight(
     Ok((answers, Some(probabilities)))
 }
 
-/// How many targets got which answer.
-fn counted(answers: &[Answer], unproven_as: UnprovenAs, how: Summary) -> Summary {
+/// Counts the targets for each answer.
+fn count_answers(answers: &[Answer], unproven_as: UnprovenAs, how: Summary) -> Summary {
     let settled: Vec<Answer> = answers.iter().map(|&answer| unproven_as.settle(answer)).collect();
     let [raw, counts] = [answers, &settled].map(AnswerCounts::of);
     let mut section = Summary::default();

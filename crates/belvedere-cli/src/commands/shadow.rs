@@ -107,11 +107,11 @@ fn check(arguments: &ShadowArguments, question: &ask::ShadowQuestion) -> Result<
 struct Maps<'a> {
     suns: &'a [NamedSun],
     measures: &'a [Measure],
-    /// Which light of the one sun is unproven.
+    /// Unproven light of the one sun.
     doubts: Option<&'a [f32]>,
-    /// Which answers of each sun are uncertain; empty where that was not wanted.
+    /// Flags of the uncertain answers of each sun; empty if not wanted.
     uncertain: Vec<&'a [f32]>,
-    /// Whether places see parts of the sun: said of all frames alike, so that they are of one size.
+    /// True if places see parts of the sun; the same for all frames, so that they have one size.
     has_parts: bool,
 }
 
@@ -120,7 +120,7 @@ impl<'a> Maps<'a> {
         Self::new(&answers.found.suns, &answers.measures)
     }
 
-    /// Of the measures of each sun, and what follows them.
+    /// Splits measures into those of each sun and those that follow.
     fn new(suns: &'a [NamedSun], measures: &'a [Measure]) -> Self {
         let (measures, rest) = measures.split_at(suns.len().min(measures.len()));
         let doubts = rest.iter().find(|measure| measure.name == UNPROVEN).map(|measure| &measure.values[..]);

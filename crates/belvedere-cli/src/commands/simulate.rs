@@ -17,8 +17,8 @@ use belvedere_scenes::{
 use std::io::Write;
 use std::path::Path;
 
-/// Most pulses: a scan of more would fill the memory of most machines, so that a slipped digit is an error and no
-/// crash.
+/// Maximum number of pulses: a scan of more would fill the memory of most machines, so that a slipped digit is an error
+/// and no crash.
 const MAX_PULSES: f64 = 5e8;
 
 pub(crate) fn run(arguments: &Simulate, global: &Global) -> Result<Summary> {

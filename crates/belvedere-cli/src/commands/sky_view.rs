@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &SkyViewArguments, global: &Global) -> Result<Summa
     Ok(run.finish())
 }
 
-/// How the sky is parted.
+/// Returns the division of the sky.
 pub(super) fn sky_parts(patches: Option<PatchesChoice>, directions: Option<usize>) -> SkyParts {
     match patches {
         Some(PatchesChoice::Tregenza) => SkyParts::Tregenza,

@@ -1,4 +1,4 @@
-//! Where on earth a scene lies, how clocks run there, and which days were typed.
+//! Location of a scene on earth, its clock, and the typed days.
 
 use crate::arguments::{ElevationChoice, NorthArguments, SunPeriod, SunPlaceArguments, Usage};
 use anyhow::Result;
@@ -6,7 +6,7 @@ use belvedere::apps::ask;
 use belvedere::apps::sun::Refraction;
 
 impl SunPlaceArguments {
-    /// What was typed, with the north of azimuths.
+    /// Returns the typed place, with the north of azimuths.
     pub(crate) fn place(&self, north: &NorthArguments) -> Result<ask::SunPlace> {
         Ok(ask::SunPlace {
             location: self.location.as_ref().map(|location| location.0),
@@ -16,12 +16,12 @@ impl SunPlaceArguments {
         })
     }
 
-    /// What was typed, where no azimuth is.
+    /// Returns the typed place, without azimuths.
     pub(crate) fn place_from_true_north(&self) -> Result<ask::SunPlace> {
         self.place(&NorthArguments { grid_north: false })
     }
 
-    /// By how much air lifts the sun.
+    /// Returns the refraction of the sun by the air.
     pub(crate) fn refraction(&self) -> Result<Refraction> {
         match (self.elevation, &self.air) {
             (ElevationChoice::Geometric, Some(_)) => {
@@ -49,7 +49,7 @@ impl SunPeriod {
         }
     }
 
-    /// Whether any day was typed.
+    /// Returns true if any day was typed.
     pub(crate) fn is_given(&self) -> bool {
         !self.date.is_empty() || self.from.is_some()
     }

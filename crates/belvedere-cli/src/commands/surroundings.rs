@@ -45,10 +45,10 @@ impl EyesArguments {
     }
 }
 
-/// What a command uses of observers in a file.
+/// Use of observers in a file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum ObserverUse {
-    /// Where they are.
+    /// Positions only.
     Places,
     /// And how far and where they look.
     Limits,
@@ -68,7 +68,7 @@ pub(super) fn observer_rows(
     Ok(rows)
 }
 
-/// How many observers there are at least: those typed, or the rows of a table; one for other files.
+/// Returns the minimum number of observers: those typed, or the rows of a table; one for other files.
 pub(super) fn min_count(typed: usize, observers: Option<&Path>) -> Result<usize> {
     Ok(typed.max(rows_as_given(observers)?.row_count()).max(1))
 }

@@ -19,7 +19,7 @@ use belvedere::{Mesh, PointCloud};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What targets were taken from.
+/// Source of targets.
 pub(crate) enum TargetSource {
     Cells,
     /// Places that were typed.
@@ -47,7 +47,7 @@ pub(crate) struct HighestPoints {
 }
 
 impl GroundChoice {
-    /// Which points of the cloud are ground.
+    /// Returns the source of ground points.
     pub(crate) fn points(&self) -> GroundPoints {
         match self {
             Self::OfScene(points) => *points,
@@ -91,12 +91,12 @@ impl SkyPlaces {
         Ok(())
     }
 
-    /// Whether places are cells of a grid.
+    /// Returns true if places are cells of a grid.
     pub(crate) fn is_grid(&self) -> bool {
         !self.places.own && self.places.targets.is_none() && self.places.at.is_empty()
     }
 
-    /// Whether the points of the scene are needed.
+    /// Returns true if the points of the scene are needed.
     pub(crate) fn needs_points(&self) -> bool {
         self.places.targets.is_none()
     }
@@ -185,7 +185,7 @@ impl<'a> TargetOutput<'a> {
         Self { on, source, scene }
     }
 
-    /// What maps are drawn on; `None` where targets are no cells.
+    /// Returns the relief below maps; `None` if targets are no cells.
     pub(crate) fn relief(&self) -> Option<HighestPoints> {
         let (ground, cloud) = (self.on.targets.ground()?, self.scene.ground_cloud().ok()?);
         let mut heights = highest_points(&cloud.positions, ground);
@@ -279,7 +279,7 @@ impl<'a> TargetOutput<'a> {
     }
 }
 
-/// What a user must know of a file that has room for one of several measures.
+/// Warns of a file that has room for one of several measures.
 pub(super) fn remark_on_first(output: &Path, measures: &[Measure]) -> Option<Remark> {
     let (output, count, name) = (output.display(), measures.len(), &measures.first()?.name);
     let text = || format!("{output}: shows {name}, the first of {count} results; .tif and .csv hold all of them");

@@ -1,4 +1,4 @@
-//! What gets through trees, as typed.
+//! Typed light through trees.
 
 use crate::arguments::{LeavesChoice, ThroughTreesArguments, ThroughTreesChoice, Usage};
 use anyhow::Result;
@@ -6,7 +6,7 @@ use belvedere::apps::ask;
 use belvedere::apps::tree_light::Leaves;
 
 impl ThroughTreesArguments {
-    /// What was typed.
+    /// Returns the typed light through trees.
     pub(crate) fn choice(&self) -> Result<ask::ThroughTrees> {
         if self.leaves.is_some() && self.through_trees != ThroughTreesChoice::Seasons {
             return Err(Usage("--leaves needs --through-trees seasons".to_owned()).into());

@@ -28,9 +28,9 @@ use std::time::{Duration, Instant};
 /// Memory that making balls takes beside the cloud, bytes for each of its points: 600 were measured with 10 million
 /// points of AHN3.
 const BYTES_PER_POINT: u64 = 650;
-/// How long a page may take to open and to read why nothing is shown.
+/// Maximum time for a page to open and to read why nothing is shown.
 const PATIENCE: Duration = Duration::from_secs(3);
-/// How often Ctrl-C is looked for.
+/// Interval of checks for Ctrl-C.
 const POLL: Duration = Duration::from_millis(20);
 
 pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
@@ -130,7 +130,7 @@ fn refuse_flags_of_files(arguments: &ViewPage) -> Result<()> {
     }
 }
 
-/// What the page is called: the name of its first file.
+/// Returns the title of the page: the name of its first file.
 fn title(files: &[PathBuf]) -> String {
     files.first().and_then(|path| path.file_name()).unwrap_or_default().to_string_lossy().into_owned()
 }

@@ -1,7 +1,7 @@
 //! `belvedere viewshed`.
 
 mod results;
-mod who;
+mod viewshed_observers;
 
 use super::far_terrain::set_terrain;
 use super::heights::write_heights;
@@ -24,12 +24,12 @@ use std::path::{Path, PathBuf};
 
 /// Outputs that hold points rather than cells.
 const OF_POINTS: [&str; 4] = ["laz", "las", "ply", "csv"];
-/// What --heights writes.
+/// Description of the raster of --heights.
 const VISIBLE_HEIGHTS: &str = "minimum visible height above the ground in metres; -9999: none, or nodata";
 
 pub(crate) fn run(arguments: &ViewshedArguments, global: &Global) -> Result<Summary> {
     check_outputs(arguments)?;
-    who::check(arguments)?;
+    viewshed_observers::check(arguments)?;
     let mut question = question(arguments)?;
     question.check()?;
     let mut run = CommandContext::new(global);
@@ -46,7 +46,7 @@ pub(crate) fn run(arguments: &ViewshedArguments, global: &Global) -> Result<Summ
     let scene = scene.into_question_scene(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
     let areas: Vec<PathBuf> = arguments.output.iter().chain(&arguments.far_output).cloned().collect();
     warn_of_geojson(&areas, &scene.frame().crs, &mut run.summary);
-    question.observers = who::observers(arguments, scene.frame(), &mut run)?;
+    question.observers = viewshed_observers::observers(arguments, scene.frame(), &mut run)?;
     let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
     run.answered(&answers);
     write(arguments, &answers.found, &scene, &mut run)?;
@@ -74,7 +74,7 @@ fn question(arguments: &ViewshedArguments) -> Result<ask::ViewshedQuestion> {
         reverse: arguments.who.target.is_some(),
         observer_height: looking.observer_height,
         target_height: looking.target_height,
-        limits: who::limits(arguments),
+        limits: viewshed_observers::limits(arguments),
         north: looking.north.choice(),
         earth: arguments.earth.params()?,
         unproven: arguments.giving_way.unproven.map(UnprovenAs::from),
@@ -87,7 +87,7 @@ fn question(arguments: &ViewshedArguments) -> Result<ask::ViewshedQuestion> {
     })
 }
 
-/// How far typed observers look at most; `None` where that is any distance, or known only with the scene.
+/// Returns the maximum range of typed observers; `None` without a limit, or if only the scene gives it.
 fn reach(arguments: &ViewshedArguments) -> Option<f64> {
     let is_bounded = arguments.who.observers.is_none() && arguments.terrain.is_none();
     arguments.looking.max_distance.filter(|_| is_bounded)
@@ -112,7 +112,7 @@ fn in_tiles(arguments: &ViewshedArguments, question: &ask::ViewshedQuestion, run
         ],
     };
     let Some(survey) = cells.survey(&ask::Question::Viewshed(question.clone()), run)? else { return Ok(false) };
-    let observers = who::observers(arguments, &survey.plan.frame()?, run)?;
+    let observers = viewshed_observers::observers(arguments, &survey.plan.frame()?, run)?;
     let question = ask::Question::Viewshed(ask::ViewshedQuestion { observers, ..question.clone() });
     let is_reverse = arguments.who.target.is_some();
     let map = |answers: &Answers<SurveyCells>, relief: &HighestPoints| map_of_survey(answers, relief, is_reverse);

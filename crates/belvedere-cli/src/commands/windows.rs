@@ -1,6 +1,6 @@
 //! Windows: from files to places.
 
-use super::landmark::what::objects_of;
+use super::landmark::landmark_shape::objects_of;
 use crate::arguments::Usage;
 use crate::pipeline::mesh_in;
 use crate::run::CommandContext;
@@ -14,7 +14,7 @@ use std::path::Path;
 /// Name, values and decimals.
 pub(crate) type WindowColumn = (&'static str, Vec<f64>, usize);
 
-/// Which faces of a mesh are windows, and how they are cut.
+/// Choice of the faces of a mesh that are windows, and their division.
 pub(crate) struct FaceChoice<'a> {
     /// Longest side of a piece, metres.
     pub(crate) spacing: Option<f64>,
@@ -25,7 +25,7 @@ pub(crate) struct FaceChoice<'a> {
 /// Windows of a file as it gives them.
 pub(crate) struct WindowFile {
     pub(crate) given: GivenWindows,
-    /// What a table says of each window.
+    /// Columns of the table of windows.
     columns: Vec<WindowColumn>,
     /// The rows of a table.
     pub(crate) rows: TextRows,
@@ -50,7 +50,7 @@ impl WindowFile {
         table(path, frame)
     }
 
-    /// Whether the building of each window is known.
+    /// Returns true if the building of each window is known.
     pub(crate) fn names_buildings(&self) -> bool {
         match &self.given {
             GivenWindows::Each(_) => !self.buildings(&[]).is_empty(),
@@ -67,7 +67,7 @@ impl WindowFile {
         }
     }
 
-    /// Where and what each window is; the azimuth of grid north is `grid_north`, radians.
+    /// Returns the position and properties of each window; the azimuth of grid north is `grid_north`, radians.
     pub(crate) fn columns(&self, windows: &[Window], frame: &Frame, grid_north: f64) -> Vec<WindowColumn> {
         if matches!(self.given, GivenWindows::Each(_)) {
             return self.columns.clone();

@@ -1,4 +1,4 @@
-//! From flags to the parameters of a scene model.
+//! Converts flags to the parameters of a scene model.
 
 use crate::arguments::{Cleaning, MethodChoice, NeighborChoice, OrientChoice, Shrinking, Usage};
 use crate::run::CommandContext;
@@ -69,7 +69,7 @@ impl Cleaning {
         params
     }
 
-    /// What becomes of flight lines that differ.
+    /// Returns the treatment of flight lines that differ.
     pub(crate) fn strips(&self) -> StripHeights {
         if self.keep_strips { StripHeights::Kept(StripParams::default()) } else { StripHeights::default() }
     }

@@ -44,18 +44,18 @@ fn with_figures(text: &str, entries: &Map<String, Value>) -> Option<String> {
 
 /// The answer, remarks and files.
 pub(super) fn text(headlines: &[String], entries: &Map<String, Value>) -> String {
-    let files = limited(files(entries), MAX_FILES + 1, "files");
+    let files = limit_lines(files(entries), MAX_FILES + 1, "files");
     let mut remarks = Vec::new();
     add_remarks(entries, &mut remarks);
-    let remarks = limited(remarks, MAX_REMARKS, "remarks, with -v");
+    let remarks = limit_lines(remarks, MAX_REMARKS, "remarks, with -v");
     let room = MAX_LINES - files.len() - remarks.len();
     let answer = if headlines.is_empty() { last_figures(entries) } else { headlines.to_vec() };
-    let lines = [limited(answer, room, "lines, with -v"), remarks, files].concat();
+    let lines = [limit_lines(answer, room, "lines, with -v"), remarks, files].concat();
     lines.into_iter().map(|line| line + "\n").collect()
 }
 
-/// At most `max` lines, of which the last counts those left out.
-fn limited(mut lines: Vec<String>, max: usize, what: &str) -> Vec<String> {
+/// Shortens the lines to at most `max`; the last one counts those left out.
+fn limit_lines(mut lines: Vec<String>, max: usize, what: &str) -> Vec<String> {
     if lines.len() > max {
         let more = lines.len() + 1 - max;
         lines.truncate(max - 1);

@@ -1,4 +1,4 @@
-//! What cannot be answered is not answered: places outside the cloud, and observers that cannot look.
+//! Refused answers: places outside the cloud, and observers that cannot look.
 
 use crate::common::{EAST, NORTH, Workplace, at, column, house, remarks};
 

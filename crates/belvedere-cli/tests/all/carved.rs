@@ -11,8 +11,8 @@ fn answers(place: &Workplace, flags: &str) -> Vec<u8> {
     npyz::NpyFile::new(&fs::read(place.path("answers.npy")).unwrap()[..]).unwrap().into_vec().unwrap()
 }
 
-/// What is true of each point, and whether it lies on something else than a tree: crowns let pulses in, where points
-/// have no light by the mesh.
+/// Returns the true answer for each point, and true if it lies on something else than a tree. Crowns let pulses in,
+/// where points have no light by the mesh.
 fn truth(place: &Workplace) -> Vec<(bool, bool)> {
     let mut reader = las::Reader::from_path(place.path("town/cloud.laz")).unwrap();
     let points = reader.read_all().unwrap();

@@ -1,4 +1,5 @@
-//! What is given against what is known, through whole commands. Right values are closed forms of how inputs are made.
+//! Contradictions between arguments and known data, through whole commands. Right values are closed forms of the
+//! inputs.
 
 use crate::common::{EAST, NORTH, Workplace, column, house, house_in_a_field, shared_data};
 use belvedere::crs::Crs;

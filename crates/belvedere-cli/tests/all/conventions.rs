@@ -1,5 +1,4 @@
-//! What holds on every command: where azimuths are counted from, the file of ball parameters, progress, and the list of
-//! commands.
+//! Conventions of all commands: north of azimuths, the file of ball parameters, progress, and the list of commands.
 
 use crate::common::{EAST, NORTH, Workplace, at, house};
 use serde_json::Value;

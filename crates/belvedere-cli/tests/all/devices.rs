@@ -23,7 +23,7 @@ fn with_field() -> Workplace {
     place
 }
 
-/// Whether the depths in two NPY files of single precision differ by at most 10⁻⁵ of themselves.
+/// Returns true if the depths in two NPY files of single precision differ by at most 10⁻⁵ of themselves.
 fn are_depths_within(expected: &[u8], drawn: &[u8]) -> bool {
     // headers of version 1 take 128 bytes
     let depths = |bytes: &[u8]| -> Vec<f32> {

@@ -7,7 +7,7 @@ use belvedere::{Attributes, PointCloud};
 
 /// Half the width of the hole, metres.
 const HOLE: f64 = 25.0;
-/// How far from the nearest return a cell may lie and have a value, metres.
+/// Maximum distance of a cell with a value from the nearest return, metres.
 const NEAR: f64 = 5.0;
 
 /// A field of 100 m with the house in its south-west, and a hole of 50 m in its middle.

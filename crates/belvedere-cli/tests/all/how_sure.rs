@@ -1,4 +1,4 @@
-//! How sure answers are, on the command line: bands and columns of probabilities, uncertain answers, intervals.
+//! Certainty of answers on the command line: bands and columns of probabilities, uncertain answers, intervals.
 
 use crate::common::{Workplace, column};
 use belvedere::control::Control;
@@ -104,7 +104,7 @@ fn hours_of_sun_and_views_of_the_sky_have_intervals() {
     assert!(low.iter().zip(&high).filter(|(low, _)| low.is_finite()).all(|(low, high)| low <= high && *high <= 1.0));
 }
 
-/// That `sums` lie about the ends of their intervals, which are ordered and of which some are wide.
+/// Asserts that `sums` lie within their intervals, whose ends are ordered, and that some intervals are wide.
 fn assert_intervals([sums, low, high]: [&[f64]; 3], wide: f64) {
     let rows = (0..sums.len()).filter(|&row| sums[row].is_finite());
     let mut widest = 0.0_f64;

@@ -1,4 +1,4 @@
-//! What `info` says of a file.
+//! Output of `info` about a file.
 #![expect(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
 use crate::common::{Workplace, house};

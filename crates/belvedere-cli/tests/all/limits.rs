@@ -85,7 +85,7 @@ fn threads_of_the_environment_are_bounded_like_those_of_the_flag() {
     assert_eq!(run("3").0, Some(0));
 }
 
-/// What the system refuses ends in a sentence, and no output is half written.
+/// Refusals of the system end in a sentence, and no output is half written.
 #[cfg(target_os = "linux")]
 #[test]
 fn limits_of_the_system_are_named() {

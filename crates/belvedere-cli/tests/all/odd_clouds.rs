@@ -2,7 +2,7 @@
 
 use crate::common::{Workplace, house};
 
-/// What can be run on a cloud.
+/// Commands for a cloud.
 const COMMANDS: [&str; 8] = [
     "info",
     "normals -o out.laz",

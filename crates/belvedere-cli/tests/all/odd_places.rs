@@ -1,4 +1,4 @@
-//! Where eyes stand, what they look at and where the sun is: what contradicts the cloud is said.
+//! Messages about positions of eyes, targets and the sun that contradict the cloud.
 
 use crate::common::{Workplace, at, column, house, remarks};
 use belvedere::random::uniform;

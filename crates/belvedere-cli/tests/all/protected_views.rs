@@ -4,7 +4,7 @@ use crate::common::{Workplace, at, house_in_a_field};
 
 const BALLS: &str = "--orient given --scene-config ../tau.json";
 
-/// A house in a field, and a wall of 10 m by 6 m as a mesh 30 m east of it that faces west and stands 3 m above the
+/// Creates a house in a field, and a wall of 10 m by 6 m as a mesh 30 m east of it that faces west, 3 m above the
 /// ground.
 fn place() -> Workplace {
     let place = Workplace::new();

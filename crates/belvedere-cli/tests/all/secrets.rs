@@ -7,7 +7,7 @@ use std::fs;
 use std::io::Read;
 use std::path::Path;
 
-/// What is searched for: a user with a password, and the key of [`KEY`].
+/// Searched secrets: a user with a password, and the key of [`KEY`].
 const SECRETS: [&str; 4] = ["s3cretpw", "ann:", "sig=a", "a/b.c"];
 
 fn leaks(bytes: &[u8]) -> Option<&'static str> {

@@ -1,4 +1,4 @@
-//! What `simulate` writes: all of it, in agreement, the same for the same seed.
+//! Output of `simulate`: complete, consistent, and the same for the same seed.
 #![expect(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
 use std::collections::BTreeMap;

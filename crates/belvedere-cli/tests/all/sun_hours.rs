@@ -68,44 +68,16 @@ fn hours_are_those_of_the_exact_house() {
 }
 
 #[test]
-fn rules_and_periods_have_columns_and_a_kept_matrix_answers_the_same() {
+fn rules_and_periods_have_columns() {
     let place = place();
     let rules = "--rule bre-equinox --rule 11@03-21 --rule 1@shortest-day>5";
-    let first =
-        place.summary(&format!("sun-hours {HOUSE} {rules} --targets places.csv -o rules.csv --save-matrix seen.npz"));
+    let first = place.summary(&format!("sun-hours {HOUSE} {rules} --targets places.csv -o rules.csv"));
     let met = |name: &str| ["bre_equinox", "rule_1", "rule_2"].map(|rule| column(&place, name, rule));
     // two hours everywhere; eleven only where the house does not stand before the sun
     assert_eq!(met("rules.csv")[0], [1.0; 4]);
     assert_eq!(met("rules.csv")[1], [0.0, 1.0, 0.0, 1.0]);
     assert_eq!(met("rules.csv")[2][3], 1.0);
     assert!(first["period"]["rule_1"].as_str().unwrap().contains("11 h on 03-21"), "{}", first["period"]);
-    let bits: Vec<u64> = place.npz("seen.npz", "bits");
-    let directions: Vec<f64> = place.npz("seen.npz", "directions");
-    assert_eq!(bits.len(), 4 * (directions.len() / 3).div_ceil(64));
-    let again =
-        place.summary(&format!("sun-hours {HOUSE} {rules} --targets places.csv -o again.csv --load-matrix seen.npz"));
-    assert_eq!(place.text("again.csv"), place.text("rules.csv"));
-    assert!(again.get("lines_of_sight").is_none(), "nothing is looked at again");
-    // another day than those kept, other places, other balls, a file that is none
-    for (status, flags, words) in [
-        (2, "--date 2026-06-21 --targets places.csv --load-matrix seen.npz", "degrees"),
-        (1, "--rule bre-equinox --cell 5 --load-matrix seen.npz", "targets"),
-        (1, "--rule bre-equinox --targets places.csv --shell 0.3 --load-matrix seen.npz", ""),
-        (1, "--rule bre-equinox --targets places.csv --load-matrix places.csv", "places.csv"),
-        (1, "--rule bre-equinox --targets places.csv --load-matrix missing.npz", "missing.npz"),
-        (2, "--rule bre-equinox --targets places.csv --load-matrix seen.npz --save-matrix other.npz", "--save-matrix"),
-    ] {
-        let run = place.run(&format!("sun-hours {HOUSE} {flags} -o no.csv"));
-        assert!(run.status != 0 && run.stderr.contains(words), "{flags}: {run:?}");
-        assert!(status == run.status || flags.contains("--shell"), "{flags}: {run:?}");
-    }
-    let whole = place.bytes("seen.npz");
-    place.write("cut.npz", &whole[..whole.len() / 2]);
-    place.refusal(
-        1,
-        &format!("sun-hours {HOUSE} {rules} --targets places.csv -o no.csv --load-matrix cut.npz"),
-        &["cut.npz"],
-    );
     // a span between two times, on a grid
     place.summary(&format!(
         "sun-hours {HOUSE} --from 2026-03-20T12:00+01:00 --to 2026-03-22T12:00+01:00 --time-step-min 30 --cell 4 -o grid.csv -o grid.tif -o grid.png"
@@ -145,7 +117,6 @@ fn what_cannot_be_is_refused_with_advice() {
         ("--rule sunny", "nl-light"),
         ("--rule bre-equinox --rule bre-equinox", "once"),
         ("--rule bre-equinox --year 999", "1000"),
-        ("--rule bre-equinox --save-matrix seen.txt", "--save-matrix"),
     ] {
         let run = place.run(&format!("sun-hours {HOUSE} {flags} --targets places.csv -o no.csv"));
         assert!(run.status == 2 && run.stderr.contains(words), "{flags}: {run:?}");

@@ -26,7 +26,7 @@ fn beside([x, y, _]: [f64; 3], [a, b]: [[f64; 3]; 2]) -> f64 {
     (x - a[0] - share * way[0]).hypot(y - a[1] - share * way[1])
 }
 
-/// Whether a place lies within a triangle in plan.
+/// Returns true if a place lies within a triangle in plan.
 fn holds(corners: &[[f64; 3]; 3], [x, y, _]: [f64; 3]) -> bool {
     let side = |a: [f64; 3], b: [f64; 3]| (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
     let [a, b, c] = *corners;

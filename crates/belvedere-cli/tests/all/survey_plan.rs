@@ -3,11 +3,11 @@
 use crate::common::{Workplace, at, column, house_in_a_field, is_hidden};
 use serde_json::Value;
 
-/// Where the tripod stood, from the middle of the house.
+/// Position of the tripod, from the middle of the house.
 const TRIPOD: [f64; 3] = [-12.0, 0.5, 1.8];
 
-/// The points of a house in a field that a tripod in the west sees; and two places for the next station, with the
-/// height of a tripod: one in a corner of the field, and one beside lines that run behind the house.
+/// Creates the points of a house in a field that a tripod in the west sees. Also creates two places for the next
+/// station, with the height of a tripod: one in a corner of the field, and one beside lines behind the house.
 fn place() -> Workplace {
     let place = Workplace::new();
     let cloud = house_in_a_field();

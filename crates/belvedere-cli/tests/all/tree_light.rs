@@ -183,13 +183,7 @@ fn what_cannot_be_is_refused_with_advice() {
             assert!(run.status == 2 && run.stderr.contains(words), "{command} {trees}: {run:?}");
         }
     }
-    place.write("seen.npz", "");
-    for flags in ["--save-matrix seen.npz", "--load-matrix seen.npz"] {
-        let command =
-            format!("sun-hours {TREES} --date 2026-06-21 --through-trees 0.5 --targets places.csv {flags} -o no.csv");
-        place.refusal(2, &command, &["--through-trees", "--save-matrix"]);
-    }
-    assert!(!place.path("no.csv").exists() && place.bytes("seen.npz").is_empty());
+    assert!(!place.path("no.csv").exists());
     // commands that ask no pulses know no --unproven
     for command in ["sun-hours", "sky-view", "irradiance", "comfort", "envelope"] {
         place.refusal(2, &format!("{command} {TREES} --unproven report"), &["--unproven"]);

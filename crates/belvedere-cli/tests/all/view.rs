@@ -29,7 +29,7 @@ fn town(place: &Workplace) -> (Page, [f64; 3]) {
     (page, low.map(|v| (v * 1000.0).round() / 1000.0))
 }
 
-/// Whether a place lies in the inner part of the cloud, where roofs are whole.
+/// Returns true if a place lies in the inner part of the cloud, where roofs are whole.
 fn is_in_the_middle(place: &[f64; 3], points: &[[f64; 3]]) -> bool {
     let middle = [0, 1].map(|i| points.iter().map(|p| p[i]).sum::<f64>() / points.len() as f64);
     (0..2).all(|i| (place[i] - middle[i]).abs() < 20.0)

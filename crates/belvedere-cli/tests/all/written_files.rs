@@ -97,7 +97,7 @@ fn every_path_of_a_result_is_known_as_an_output() {
     assert!(count > 30, "{count}");
 }
 
-/// What is said of a file that the system does not let grow.
+/// Message about a file that the system does not let grow.
 #[cfg(target_os = "linux")]
 const TOO_LARGE: &str =
     "it would be larger than the system lets a file be; raise the limit (ulimit -f), or write to another disk";

@@ -8,8 +8,8 @@ use super::grid::{SortedGrid, squared_distance};
 use belvedere_data::Result;
 use belvedere_data::control::{Control, Stop};
 
-/// Cells this many times the distance: a point then mostly has to look into its own cell only, and even a heap of
-/// points in one cell keeps no more than some hundreds of them.
+/// Side of the cells, in multiples of the distance. A point then mostly needs its own cell only, and a heap of points
+/// in one cell keeps at most some hundreds of them.
 const CELL_PER_DISTANCE: f64 = 8.0;
 /// Points looked at between two looks at whether to go on.
 const CHUNK: usize = 4096;
@@ -89,7 +89,7 @@ impl StayingPoints {
         Self { cells, slots: vec![0; indices.len()], cell_size }
     }
 
-    /// Whether no staying point is close to this one, which then stays as well.
+    /// Keeps a point if no kept point is close to it, and returns true if it was kept.
     fn admit(&mut self, positions: &[[f32; 3]], index: u32, distance: f64, close: &impl Fn(u32, u32) -> bool) -> bool {
         let p = positions[index as usize].map(f64::from);
         let low = cell_of(p.map(|v| v - distance), self.cell_size);

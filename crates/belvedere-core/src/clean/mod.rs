@@ -16,7 +16,7 @@ use serde::{Serialize, Serializer};
 /// LAS flag of a point that its producer withdrew.
 const WITHHELD_FLAG: u8 = 4;
 
-/// What to do with points of one kind.
+/// Treatment of points of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Treatment {
     /// Leave them out.
@@ -25,7 +25,7 @@ pub enum Treatment {
     Keep,
 }
 
-/// Which points to leave out.
+/// Selection of points to leave out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CleanParams {
     /// Points flagged as withheld. Default: dropped, as the LAS specification recommends.
@@ -86,7 +86,7 @@ impl CleanParams {
     }
 }
 
-/// How many points each step left out, in the order of the steps. All counts together are the points of the cloud.
+/// Number of points that each step left out, in the order of the steps. The counts add up to the points of the cloud.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct CleanReport {
     /// Points before.
@@ -130,9 +130,10 @@ fn in_centimetres<S: Serializer>(radius: &Option<f64>, serializer: S) -> std::re
 /// index. The result is the same for any number of threads.
 ///
 /// # Errors
-/// [`Error::LengthMismatch`] where an attribute has another length than the cloud, [`Error::InvalidParameter`] for a
-/// distance, radius or multiple that is not positive and finite or that is too large, and for more points than u32
-/// counts; [`Error::Cancelled`].
+/// - [`Error::LengthMismatch`] if an attribute has another length than the cloud.
+/// - [`Error::InvalidParameter`] for a distance, radius or multiple that is not positive and finite or that is too
+///   large, and for more points than u32 counts.
+/// - [`Error::Cancelled`].
 pub fn clean(cloud: &PointCloud, params: &CleanParams, control: &Control<'_>) -> Result<(Vec<u32>, CleanReport)> {
     let expected = cloud.len();
     if let Some((what, found)) = cloud.attributes.columns().into_iter().find(|&(_, length)| length != expected) {

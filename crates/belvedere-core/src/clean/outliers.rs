@@ -16,23 +16,23 @@ const SPACING_SAMPLE_COUNT: usize = 2000;
 /// The nearest neighbour is looked for at up to 2 to this power times the first guess.
 const SPACING_DOUBLINGS: i32 = 5;
 
-/// How far above and below a point others may lie between which it stands, metres: no house but a tower is higher, and
-/// a tower has more points.
+/// Maximum height of points above and below a point that stands between them, metres. Only towers are higher, and a
+/// tower has more points.
 const COLUMN: f64 = 100.0;
 
-/// When a point is alone: few others lie about it, and it does not lie below some and above others. A stray echo hangs
-/// in the air or lies below the ground. A point of a wall has the edge of the roof above it and the ground below, how
-/// few pulses the wall may have met.
+/// Detection of isolated points: few others lie around them, and not some below and some above. A stray echo hangs in
+/// the air or lies below the ground. A point of a wall has the edge of the roof above and the ground below, however few
+/// pulses hit the wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IsolatedPoints {
-    /// How far to look for other points.
+    /// Search radius for other points.
     pub radius: IsolationRadius,
     /// A point stays with this many others within the radius, at least 1. Default 2: two birds, or the two returns of
     /// one stray pulse, still go, whereas points on a wire or a sparse facade have more.
     pub min_neighbors: usize,
 }
 
-/// How far to look for the neighbours of a point that may be alone.
+/// Search radius for the neighbours of a point that may be isolated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IsolationRadius {
     /// This many metres, above 0 and at most 1000.
@@ -45,7 +45,7 @@ pub enum IsolationRadius {
     SpacingMultiple(f64),
 }
 
-/// Least radius from a multiple of the spacing.
+/// Minimum radius from a multiple of the spacing.
 const MIN_RADIUS_M: f64 = 1.0;
 
 impl Default for IsolatedPoints {
@@ -87,9 +87,9 @@ impl IsolatedPoints {
     }
 }
 
-/// Leaves out of `kept` (ascending) the points with fewer than `min_neighbors` others within `radius` metres, unless as
-/// many lie above it, and as many below it, within this radius in plan; returns how many. Neighbours are counted among
-/// all that were kept before, so that the order does not matter.
+/// Removes from `kept` (ascending) the points with fewer than `min_neighbors` others within `radius` metres, and
+/// returns their number. A point stays if as many lie above it, and as many below it, within this radius in plan.
+/// Neighbours are counted before any point is removed, so that the order does not matter.
 ///
 /// # Errors
 /// [`Error::Cancelled`].
@@ -126,8 +126,8 @@ pub(super) fn drop_isolated(
     Ok(remove_sorted(kept, &alone))
 }
 
-/// Whether `count` points lie above a point, and as many below it, farther from it than `radius`, but no farther in
-/// plan.
+/// Returns true if `count` points lie above a point, and as many below it, farther from it than `radius`, but no
+/// farther in plan.
 fn is_between(positions: &[[f32; 3]], grid: &SortedGrid, index: u32, radius: f64, count: usize) -> bool {
     let p = positions[index as usize];
     let [mut above, mut below] = [0, 0];
@@ -143,8 +143,8 @@ fn is_between(positions: &[[f32; 3]], grid: &SortedGrid, index: u32, radius: f64
     visited.is_break()
 }
 
-/// Median distance in metres from a sample of points to their nearest neighbours, or `None` for fewer than two points
-/// or where half of them are farther apart than any guess.
+/// Returns the median distance from a sample of points to their nearest neighbours, metres. `None` for fewer than two
+/// points, or if half of them are farther apart than any guess.
 fn median_spacing(positions: &[[f32; 3]], kept: &[u32], control: &Control<'_>) -> Result<Option<f64>> {
     if kept.len() < 2 {
         return Ok(None);

@@ -1,4 +1,4 @@
-//! How large a ball is drawn so that it bounds the depth of every point of a pixel.
+//! Radius with which a ball is drawn, so that it bounds the depth of every point of a pixel.
 
 use crate::blocking::BlockRule;
 
@@ -8,27 +8,28 @@ const ROUNDING: f64 = 4e-6;
 /// Rounding of f32 near the origin of the view, metres.
 const MIN_ROUNDING: f64 = 1e-6;
 
-/// Which of both bounds is drawn.
+/// Bound that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BoundSide {
     Lower,
     Upper,
 }
 
-/// How a ball counts for a bound.
+/// Parameters of a ball drawn as a bound.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BallBound {
     pub(super) side: BoundSide,
     pub(super) rule: BlockRule,
-    /// Where lines of sight end on the viewer's side, the nearest and the farthest of them, metres.
+    /// Nearest and farthest end of the lines of sight on the viewer's side, metres.
     pub(super) start: [f64; 2],
-    /// Whether lines of sight end at the eye.
+    /// True if lines of sight end at the eye.
     pub(super) is_to_eye: bool,
 }
 
 impl BallBound {
-    /// What a ball of `radius` whose centre is `distance` metres from the eye counts with, metres, within `margin`: at
-    /// least that for the lower bound, and for the upper one no more than it counts with for any target.
+    /// Returns the radius that bounds a ball of `radius` whose centre is `distance` metres from the eye, metres, within
+    /// `margin`. The result is at least the radius for the lower bound, and at most the radius for any target for the
+    /// upper one.
     pub(super) fn radius_at_eye(&self, radius: f64, distance: f64, margin: f64) -> f64 {
         let (outside, shell) = (distance - radius, self.rule.shell_of(radius));
         match self.side {
@@ -70,7 +71,7 @@ impl BallBound {
     }
 }
 
-/// By how much a ball is drawn too large or too small, metres.
+/// Returns the margin by which a ball is drawn too large or too small, metres.
 pub(super) fn margin(size: f64, radius: f64) -> f64 {
     ROUNDING * (size + radius) + MIN_ROUNDING
 }

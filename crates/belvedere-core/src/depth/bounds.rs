@@ -10,16 +10,16 @@ use belvedere_data::raster::Raster;
 use belvedere_data::view::{Projection, View};
 use belvedere_data::{Error, Parameter, Result};
 
-/// What bounds of depth are to allow for.
+/// Parameters of bounds of depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundsParams {
-    /// How far balls may give way to a target, or an eye, near their surface, metres, 0 or more, never more than half
+    /// Maximum reduction of balls near a target or an eye at their surface, metres, 0 or more, never more than half
     /// their radius: see [`BlockRule::shell`]. Default 0.
     pub shell: f64,
-    /// Where lines of sight end on the viewer's side, as a depth or, in a view from an eye, as a range in metres: balls
+    /// End of lines of sight on the viewer's side, as a depth or, in a view from an eye, as a range in metres: balls
     /// that reach before it block nothing. −∞ for a viewer infinitely far away. Default 0, the picture plane or the
-    /// eye. In a perspective view a plane of this depth. At an eye balls give way to it, and one that holds it even so
-    /// blocks all.
+    /// eye. In a perspective view it is a plane of this depth. At an eye balls give way to it, and one that holds it
+    /// even so blocks all.
     pub start: f64,
 }
 
@@ -30,7 +30,7 @@ impl Default for BoundsParams {
 }
 
 impl BoundsParams {
-    /// Where lines of sight of `view` end on the viewer's side, the nearest and the farthest of them: depths in a
+    /// Returns the nearest and the farthest end of the lines of sight of `view` on the viewer's side: depths in a
     /// parallel view, ranges in all others, metres.
     #[must_use]
     pub fn starts(&self, view: &View) -> [f64; 2] {
@@ -48,22 +48,23 @@ impl BoundsParams {
 pub struct DepthBounds {
     /// The view they were made for.
     pub view: View,
-    /// For each pixel, metres (depth in parallel views, range from the eye in all others): at most the depth of the
-    /// first surface at any point of it, +∞ where no ball touches it; and at least that depth at every point of it,
-    /// even where balls give way by the shell, +∞ where no single ball covers it.
+    /// Bounds for each pixel, metres (depth in parallel views, range from the eye in all others). The first is at most
+    /// the depth of the first surface at any point of the pixel, +∞ if no ball touches it. The second is at least that
+    /// depth at every point of it, even with balls reduced by the shell, +∞ if no single ball covers it.
     pub bounds: Raster<[f32; 2]>,
 }
 
-/// Bounds of depth in `view` over the balls given as centre (local) and radius, metres; those that are not finite are
-/// left out. Where lines of sight end at the eye of the view, balls near it count with the radius that they give way to
-/// ([`BlockRule::radius_for`]), and the lower bound is 0 everywhere where a ball holds the eye even so.
+/// Returns bounds of depth in `view` over the balls, given as centre (local) and radius, metres; balls that are not
+/// finite are left out. If lines of sight end at the eye of the view, balls near it have the radius reduced for it
+/// ([`BlockRule::radius_for`]). The lower bound is 0 everywhere if a ball holds the eye even so.
 ///
-/// Over the square of a pixel the front of a ball is nearest at the point nearest to the ball's middle and farthest at
-/// a corner. The lower bound is the least of the former over all balls that touch the square, the upper bound the least
-/// of the latter over all balls that cover it even when they give way by the shell. Balls that cover it only with all
-/// of their radius count too, but from the depth on from which no target lies within the shell of them. In views from
-/// an eye the circle of directions around the square takes its place. Balls are drawn a little too large for the one
-/// and too small for the other, by more than f32 can err.
+/// Over the square of a pixel the front of a ball is nearest at the point nearest to the ball's middle, and farthest at
+/// a corner. The lower bound is the minimum of the former over all balls that touch the square. The upper bound is the
+/// minimum of the latter over all balls that cover it even when reduced by the shell. Balls that cover it only with
+/// their whole radius count beyond the depth at which no target lies within their shell.
+///
+/// In views from an eye the circle of directions around the square takes its place. Balls are drawn a little too large
+/// for the one and too small for the other, by more than the error of f32.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for 2³² balls or more, and [`Error::Cancelled`].

@@ -1,7 +1,7 @@
 //! Balls in views from an eye: how far away a ball's surface is in the direction of a pixel.
 //!
-//! Only the angle between that direction and the direction of the ball's centre matters, so one test is enough for
-//! every projection; only the directions of the pixels and the outline of a ball differ.
+//! Only the angle between that direction and the direction of the ball's centre matters, so that one test covers every
+//! projection. The directions of the pixels and the outline of a ball differ.
 
 use super::ball_bound::{BallBound, BoundSide, margin};
 use super::outline::{ALL, outline};
@@ -17,7 +17,7 @@ pub(super) struct CentralSplat {
     radius: f32,
     /// More than f32 errs by at this ball, metres.
     margin: f32,
-    /// At most the depth that is drawn anywhere.
+    /// Lower bound of the depth that is drawn anywhere.
     near: f32,
     /// Columns and rows, pixels.
     extent: [[f32; 2]; 2],
@@ -25,8 +25,8 @@ pub(super) struct CentralSplat {
     ball: u32,
 }
 
-/// Where a direction of sight runs past a ball: along it to the point nearest to the centre, and from there to the
-/// centre, metres.
+/// Position of a ball relative to a direction of sight: distance along it to the point nearest to the centre, and
+/// squared distance from there to the centre.
 #[derive(Clone, Copy)]
 struct DirectionPassing {
     along: f32,
@@ -84,24 +84,24 @@ impl Turn {
     }
 }
 
-/// What the pixels of a tile have in common.
+/// Directions and bounds shared by the pixels of a tile.
 pub(super) struct Directions {
     /// Unit vectors along right, down and forward.
     directions: [[f32; TILE * TILE]; 3],
     /// Depth per range of each pixel, and the least of them.
     depth_per_range: [f32; TILE * TILE],
     min_depth_per_range: f32,
-    /// From the middle of a block to anywhere within its pixels.
+    /// Turn from the middle of a block to anywhere within its pixels.
     block: Turn,
-    /// From the middle of a pixel to anywhere within it.
+    /// Turn from the middle of a pixel to anywhere within it.
     pixel: [Turn; 2],
 }
 
-/// What is drawn of a ball in a view from an eye.
+/// Surface of a ball that is drawn in a view from an eye.
 pub(super) trait CentralSurface: Sync {
     /// Pixels beyond the outline of a ball whose depth may be finite.
     const BEYOND_PX: f32;
-    /// Whether depths are ranges whatever the view.
+    /// True if depths are ranges in every view.
     const IN_RANGE: bool;
     /// The radius to draw with, or `None` where a ball does not count. `fronts` is the least and the most range of its
     /// front; nothing smaller than `min_cover` covers a pixel at its range.
@@ -112,8 +112,8 @@ pub(super) trait CentralSurface: Sync {
     }
     /// Limits of depth of what is drawn.
     fn limits(&self, view: &View) -> [f64; 2];
-    /// What a ball covers when its surface passes through the eye, or it holds the eye, where its outline gives no
-    /// information; `None` where it is nothing.
+    /// Returns the area that a ball covers when its surface passes through the eye, or it holds the eye, so that its
+    /// outline gives no information; `None` for no area.
     fn at_eye(&self, _distance: f64, _radius: f64, _margin: f64) -> Option<[[f64; 2]; 2]> {
         None
     }
@@ -134,7 +134,7 @@ pub(super) struct PixelRay<'a> {
 pub(super) struct Central<S> {
     view: View,
     limits: [f32; 2],
-    /// At most the sine of the angle from the middle of any pixel to its corners.
+    /// Lower bound of the sine of the angle from the middle of any pixel to its corners.
     min_pixel: f64,
     surface: S,
 }
@@ -154,8 +154,8 @@ impl<S: CentralSurface> Central<S> {
         S::IN_RANGE || matches!(self.view.projection, Projection::Hemispherical { .. })
     }
 
-    /// At least the angle between two directions through places of the picture, per pixel between them, where the
-    /// nearer of all such places to the middle of the picture lies this far from it, pixels.
+    /// Returns a lower bound of the angle between two directions through places of the picture, per pixel between them.
+    /// The nearest such place is `off_middle` pixels from the middle of the picture.
     fn angle_per_pixel(&self, off_middle: f64) -> f64 {
         let (scale, steepness) = match self.view.projection {
             Projection::Orthographic { pixels_per_metre } => (pixels_per_metre, 0.0),
@@ -212,7 +212,7 @@ impl<S: CentralSurface> SplatSurface for Central<S> {
         splat.ball
     }
 
-    fn near(splat: &CentralSplat) -> f32 {
+    fn nearest_depth(splat: &CentralSplat) -> f32 {
         splat.near
     }
 
@@ -301,8 +301,8 @@ impl<S: CentralSurface> Central<S> {
     }
 }
 
-/// How a unit vector of sight passes a centre. The distance beside it is that of a vector product, which does not
-/// cancel.
+/// Returns the position of a centre relative to a unit vector of sight. The distance beside it is that of a vector
+/// product, which does not cancel.
 #[inline(always)]
 fn passing([cx, cy, cz]: [f32; 3], [x, y, z]: [f32; 3]) -> DirectionPassing {
     let (across, down, forward) = (cy * z - cz * y, cz * x - cx * z, cx * y - cy * x);

@@ -28,8 +28,9 @@ pub struct DepthMap {
     pub around_eye_count: usize,
 }
 
-/// The depth map of `balls` in `view`. Balls that never shrank, or whose centre or radius is not finite, are left out,
-/// and those that hold the eye of the view (its distance to their centre is at most their radius), which are counted.
+/// Draws the depth map of `balls` in `view`. Balls that never shrank, or whose centre or radius is not finite, are left
+/// out. Balls that hold the eye of the view (its distance to their centre is at most their radius) are left out and
+/// counted.
 ///
 /// Cost: reading every ball once, then work in proportion to what is seen. Balls are drawn tile by tile from front to
 /// back, and blocks of pixels that are already nearer than a ball can come are skipped. The result is the same for any
@@ -40,9 +41,9 @@ pub struct DepthMap {
 /// [`Profile::PaperCone`] in a view that is not parallel, and [`Error::Cancelled`].
 ///
 /// # Source
-/// Peters, Ledoux & Biljecki 2015, section 3.2 and Algorithm 1 (`WRITEBALL`), of which [`Profile::PaperCone`] is the
-/// printed form and [`Profile::Sphere`] the corrected one: the printed depth describes a cone inside the ball. Skipping
-/// hidden blocks: Greene, Kass & Miller 1993.
+/// Peters, Ledoux & Biljecki 2015, section 3.2 and Algorithm 1 (`WRITEBALL`). [`Profile::PaperCone`] is the printed
+/// form and [`Profile::Sphere`] the corrected one: the printed depth describes a cone inside the ball. Skipping hidden
+/// blocks: Greene, Kass & Miller 1993.
 pub fn depth_map(
     balls: &MedialBalls,
     view: &View,
@@ -104,13 +105,14 @@ impl DepthMap {
     /// The bias, metres, by which a target may lie behind the depth of its pixel and still count as visible, unless the
     /// caller knows better.
     ///
-    /// A target on a surface lies behind the depth at its pixel's centre by what noise and balls deviate along the
-    /// normal (0.1 m, or a pixel where pixels are finer, as for small objects), seen at a slope of 2, and by that slope
-    /// over half the diagonal of the pixel. On simulated towns this is close to the best for the cloud's own points
-    /// under suns 15° to 60° high, with pixels of 0.05 and of 0.25 m; targets in free air hardly depend on it. The
-    /// paper's algorithm has no bias, so [`Profile::PaperCone`] has 0. In views from an eye, where pixels widen with
-    /// the range, that of a pixel as far away as the mean of what is seen: where that matters, ask exact lines of
-    /// sight.
+    /// A target on a surface lies behind the depth at its pixel's centre by the deviation of noise and balls along the
+    /// normal, seen at a slope of 2. That is 0.1 m, or a pixel if pixels are finer, as for small objects. Half the
+    /// diagonal of the pixel times that slope is added. On simulated towns this is close to the best for the cloud's
+    /// own points, under suns 15° to 60° high, with pixels of 0.05 and of 0.25 m. Targets in free air hardly depend on
+    /// it.
+    ///
+    /// The paper's algorithm has no bias, so [`Profile::PaperCone`] has 0. In views from an eye, where pixels widen
+    /// with the range, it is that of a pixel at the mean visible range. Use exact lines of sight where that matters.
     #[must_use]
     #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
     pub fn default_depth_bias(&self) -> f32 {

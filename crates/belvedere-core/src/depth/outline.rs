@@ -1,13 +1,13 @@
-//! Which part of the picture a ball covers in views from an eye.
+//! Outline of a ball in views from an eye.
 
 use belvedere_data::view::{Projection, View};
 
 /// The outline of what covers everything.
 pub(super) const ALL: [[f64; 2]; 2] = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
 
-/// Least and most column, and least and most row, in pixels from the upper left corner, of the outline of a ball in a
-/// view from an eye; `None` where nothing of it lies beyond the near limit or it holds the eye. Infinite where the
-/// outline has no end.
+/// Returns the range of columns and of rows, in pixels from the upper left corner, of the outline of a ball in a view
+/// from an eye. `None` if nothing of it lies beyond the near limit or it holds the eye. Infinite if the outline has no
+/// end.
 ///
 /// The ball is given by its centre along right, down and forward of the view's frame, and its radius, metres.
 pub(super) fn outline(view: &View, center: [f64; 3], radius: f64) -> Option<[[f64; 2]; 2]> {
@@ -45,10 +45,10 @@ pub(super) fn outline(view: &View, center: [f64; 3], radius: f64) -> Option<[[f6
     }
 }
 
-/// Least and most slope across / forward at which a circle of `radius` around (`across`, `forward`) is seen from the
-/// origin beyond the depth `near`. The circle is the ball's shadow on the plane of that axis and forward, so that these
-/// are the exact bounds of the ball: where a tangent touches before the near limit, the circle's chord there takes its
-/// place.
+/// Returns the minimum and maximum slope across / forward at which a circle of `radius` around (`across`, `forward`) is
+/// seen from the origin beyond the depth `near`. The circle is the ball's shadow on the plane of that axis and forward,
+/// so that these are the exact bounds of the ball. If a tangent touches before the near limit, the circle's chord there
+/// takes its place.
 ///
 /// # Source
 /// Mara & McGuire 2013, section 2.

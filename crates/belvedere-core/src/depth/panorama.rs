@@ -11,16 +11,16 @@ use belvedere_data::vector::{cross, dot, length, sub};
 use belvedere_data::view::{View, panorama_direction};
 use rayon::prelude::*;
 
-/// Range in every direction from an eye. A column is an azimuth, clockwise from south at the left edge over west, north
-/// in the middle and east to south again; a row is an elevation, from the zenith to the nadir. All pixels are equally
+/// Range in every direction from an eye. A column is an azimuth: clockwise from south at the left edge over west, north
+/// in the middle and east to south again. A row is an elevation, from the zenith to the nadir. All pixels are equally
 /// wide and high in angle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panorama {
     /// Range in metres from the eye; +∞ where nothing is hit.
     pub range: Raster<f32>,
-    /// As [`DepthMap::balls`](super::DepthMap::balls).
+    /// Index of the ball in each pixel, see [`DepthMap::balls`](super::DepthMap::balls).
     pub balls: Option<Raster<u32>>,
-    /// As [`DepthMap::around_eye_count`](super::DepthMap::around_eye_count).
+    /// Number of balls around the eye, see [`DepthMap::around_eye_count`](super::DepthMap::around_eye_count).
     pub around_eye_count: usize,
 }
 
@@ -38,9 +38,9 @@ fn front(balls: &MedialBalls, ball: usize, eye: [f64; 3], direction: [f64; 3]) -
 
 /// The panorama of `balls` around `eye`, local metres, `width` pixels wide (made even) and half as high.
 ///
-/// Which ball a pixel shows is looked up in two stereographic depth maps with pixels of a third to two thirds of its
-/// own; the range is that of this ball in the very direction of the pixel, or, where it just misses the ball, that of
-/// the map.
+/// The ball of a pixel is looked up in two stereographic depth maps with pixels of a third to two thirds of its own.
+/// The range is that of this ball in the very direction of the pixel. If the direction just misses the ball, it is that
+/// of the map.
 ///
 /// # Errors
 /// As [`View::panorama`] and [`depth_map`].

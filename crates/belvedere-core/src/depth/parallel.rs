@@ -72,7 +72,7 @@ impl<S: ParallelSurface> SplatSurface for Parallel<S> {
         splat.ball
     }
 
-    fn near(splat: &ParallelSplat) -> f32 {
+    fn nearest_depth(splat: &ParallelSplat) -> f32 {
         splat.z - splat.radius
     }
 

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 /// Value of the item buffer where no ball is hit.
 pub const NO_BALL: u32 = u32::MAX;
 
-/// Whether a depth map also says which ball each pixel shows.
+/// Choice of an item buffer: the index of the ball in each pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ItemBuffer {
     /// Depths only.
@@ -39,20 +39,20 @@ const CHUNK: usize = 8192;
 pub(super) trait SplatSurface: Sync {
     /// A ball in the view.
     type Splat: Copy + Send + Sync;
-    /// What the pixels of one tile have in common.
+    /// Data shared by the pixels of one tile.
     type PixelTile;
     /// A ball, its centre local, or `None` where it cannot be seen or is no ball of finite size.
     fn place(&self, center: [f32; 3], radius: f32, ball: u32) -> Option<Self::Splat>;
     /// Row of the ball.
     fn ball(splat: &Self::Splat) -> u32;
-    /// At most the least depth of the ball at any pixel.
-    fn near(splat: &Self::Splat) -> f32;
-    /// Least and most column, and least and most row, that pixel centres on the ball may have, in pixels.
+    /// Returns a lower bound of the depth of the ball at any pixel.
+    fn nearest_depth(splat: &Self::Splat) -> f32;
+    /// Returns the range of columns and of rows that pixel centres on the ball may have, in pixels.
     fn extent(&self, splat: &Self::Splat) -> [[f32; 2]; 2];
     /// The tile whose upper left pixel stands at a column and a row.
     fn tile(&self, left: usize, top: usize) -> Self::PixelTile;
-    /// At most the least depth of the ball at any pixel of the block at a column and a row of the tile, +∞ where it
-    /// touches none.
+    /// Returns a lower bound of the depth of the ball at any pixel of the block at a column and a row of the tile, +∞
+    /// if it touches none.
     fn min_depth(&self, tile: &Self::PixelTile, splat: &Self::Splat, block: [usize; 2]) -> f32;
     /// Depths at the pixels of one row of a block, which starts at a column and a row of the tile; +∞ beside the ball.
     fn depths(&self, tile: &Self::PixelTile, splat: &Self::Splat, first: [usize; 2]) -> [f32; BLOCK];
@@ -123,10 +123,10 @@ pub(super) fn draw<S: SplatSurface>(
     Ok((depth, nearest))
 }
 
-/// Which splats each tile has to look at.
+/// Splats that each tile has to test.
 struct TileLists {
     columns: usize,
-    /// Where the list of each tile begins, row by row, and the end of the last.
+    /// Start of the list of each tile, row by row, and the end of the last.
     starts: Vec<usize>,
     listed: Vec<u32>,
     /// Splats over so many tiles that each tile looks at them itself.
@@ -223,16 +223,16 @@ fn pixel_range([min, max]: [f32; 2], size: usize) -> [usize; 2] {
 
 struct Tile<'a, S: SplatSurface> {
     shape: &'a S,
-    /// What its pixels have in common.
+    /// Data shared by its pixels.
     pixels: S::PixelTile,
     /// First pixel.
     left: usize,
     top: usize,
     depth: [f32; TILE * TILE],
     nearest: [u32; TILE * TILE],
-    /// At least the farthest depth of each block.
+    /// Upper bound of the depth of each block.
     farthest: [f32; BLOCKS * BLOCKS],
-    /// Whether a block was drawn on since its farthest depth was taken.
+    /// True for blocks that were drawn on since their farthest depth was taken.
     stale: [bool; BLOCKS * BLOCKS],
 }
 

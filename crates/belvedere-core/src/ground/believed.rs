@@ -1,21 +1,21 @@
-//! Which points of the class of ground are believed: small groups metres below or above the ground around are not.
+//! Flags consistent ground points: small groups metres below or above the ground around are removed.
 
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use rayon::prelude::*;
 
-/// Most points of a group that is doubted: more are a pit, a terrace or a roof of which nobody can say what it is.
+/// Maximum number of points of a group that is doubted: more are a pit, a terrace or a roof of unknown kind.
 const MAX_GROUP_POINTS: usize = 30;
-/// Most cells between the sides of such a group.
+/// Maximum number of cells between the sides of such a group.
 const MAX_GROUP_CELLS: i32 = 8;
-/// How far below or above the ground around a group is not believed, metres, beside a slope of 45° on the way there:
-/// more than classification errs by beside walls, hedges and cars.
+/// Maximum height difference between a group and the ground around it, metres, beside a slope of 45° on the way there.
+/// It is more than errors of classes beside walls, hedges and cars.
 const MAX_STEP: f32 = 2.0;
-/// Least side of the cells in which points are joined, metres.
+/// Minimum side of the cells in which points are joined, metres.
 const MIN_CELL: f32 = 1.0;
-/// Most side of these cells, metres: larger ones would join what lies metres apart.
+/// Maximum side of these cells, metres: larger ones would join points metres apart.
 const MAX_CELL: f32 = 4.0;
-/// How far ground is looked for around a group, cells.
+/// Search radius for ground around a group, cells.
 const SEARCH: i32 = 30;
 /// Neighbours that say how high the ground around is.
 const NEIGHBORS: usize = 8;
@@ -27,7 +27,7 @@ struct Level {
     row: i32,
     low: f32,
     high: f32,
-    /// Where its points start in the order of cells and heights, and how many they are.
+    /// First of its points in the order of cells and heights, and their number.
     first: usize,
     count: usize,
 }
@@ -47,7 +47,7 @@ struct Groups {
     parents: Vec<usize>,
 }
 
-/// What is known of a group.
+/// Extent and size of a group.
 #[derive(Clone, Copy, Debug)]
 struct Group {
     count: usize,
@@ -55,8 +55,8 @@ struct Group {
     high: [i32; 2],
 }
 
-/// Which of `points`, (N, 3) local metres, are believed to be ground, (N,). Small groups that do not hang together with
-/// the rest, and lie metres below or above it, are not. All are where no large group is.
+/// Flags the `points`, (N, 3) local metres, that are consistent with the ground around, (N). Small groups that are not
+/// connected with the rest, and lie metres below or above it, are not. All are flagged if no large group exists.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -106,7 +106,7 @@ fn cell_of(points: &[[f32; 3]]) -> f32 {
 }
 
 /// Row and column of a point in cells of a side, metres.
-pub(super) fn place(point: &[f32; 3], cell: f32) -> [i32; 2] {
+fn place(point: &[f32; 3], cell: f32) -> [i32; 2] {
     #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
     let at = |v: f32| (v / cell).floor() as i32;
     [at(point[1]), at(point[0])]
@@ -263,7 +263,7 @@ fn ground_around(levels: &[Level], level: &Level, is_large: &impl Fn(usize) -> b
     around
 }
 
-/// Whether a level lies metres below or above most of the ground around.
+/// Returns true if a level lies metres below or above most of the ground around.
 fn is_off(level: &Level, around: &[(Level, f32)], cell: f32) -> bool {
     let is_below = |(ground, cells): &&(Level, f32)| level.high + MAX_STEP + cells * cell < ground.low;
     let is_above = |(ground, cells): &&(Level, f32)| level.low - MAX_STEP - cells * cell > ground.high;
@@ -284,7 +284,7 @@ mod tests {
         (0..count).map(|i| (random(1, i), random(2, i))).map(|(x, y)| [x, y, ground(x, y)]).collect()
     }
 
-    /// How many of a scene are doubted, and how many of what was added to it.
+    /// Counts the doubted points of a scene, and those of the points added to it.
     fn doubted(mut points: Vec<[f32; 3]>, added: &[[f32; 3]]) -> [usize; 2] {
         let count = points.len();
         points.extend(added);

@@ -12,11 +12,11 @@ const POINTS_OF_SQUARE: f64 = 32.0;
 /// Triangles that lie in more squares than this are kept beside the others.
 const MAX_SQUARES: usize = 64;
 
-/// What shows the ground of a cloud, ready for grids of few cells anywhere: each takes a moment then, where
-/// [`Ground::of_cloud`] looks at the whole cloud again. The results are the same bits.
+/// Index of the ground of a cloud for grids of few cells anywhere. Each grid takes a moment, where [`Ground::of_cloud`]
+/// reads the whole cloud again. The results are the same bits.
 pub struct GroundBySquares {
     params: GroundParams,
-    /// Without cells.
+    /// Report without cells.
     report: GroundReport,
     points: Vec<[f32; 3]>,
     nearest: NeighborIndex,
@@ -56,7 +56,7 @@ impl GroundBySquares {
             let corners = corners.map(|row| points[row as usize]);
             let low = [0, 1].map(|axis| corners.iter().map(|p| f64::from(p[axis])).fold(f64::INFINITY, f64::min));
             let high = [0, 1].map(|axis| corners.iter().map(|p| f64::from(p[axis])).fold(f64::NEG_INFINITY, f64::max));
-            let [columns, rows] = squares.between(low, high);
+            let [columns, rows] = squares.squares_between(low, high);
             if columns.clone().count().saturating_mul(rows.clone().count()) > MAX_SQUARES {
                 large.push(number);
             } else {
@@ -71,7 +71,7 @@ impl GroundBySquares {
         Ok(Self { params: *params, report, points, nearest, squares, triangles, of_squares, large, returns })
     }
 
-    /// Which points are ground.
+    /// Returns the parameters of the ground.
     #[must_use]
     pub fn params(&self) -> &GroundParams {
         &self.params
@@ -81,10 +81,10 @@ impl GroundBySquares {
     ///
     /// # Errors
     /// [`belvedere_data::Error::Cancelled`].
-    pub fn on(&self, grid: MapGrid, control: &Control<'_>) -> Result<(Ground, GroundReport)> {
+    pub fn make(&self, grid: MapGrid, control: &Control<'_>) -> Result<(Ground, GroundReport)> {
         let (low, high) = (grid.corner_at([0, grid.height]), grid.corner_at([grid.width, 0]));
         let mut numbers = self.large.clone();
-        numbers.extend(self.of_squares.held(&self.squares, low, high));
+        numbers.extend(self.of_squares.items_within(&self.squares, low, high));
         // in the order of the whole: a cell on a side takes the height of the last
         numbers.sort_unstable();
         numbers.dedup();
@@ -92,7 +92,7 @@ impl GroundBySquares {
         let heights = triangulate::heights_of(triangles, &self.points, &grid);
         let ground = Ground::near_points(&self.points, &self.nearest, (grid, heights), self.params.reach, control)?;
         let gap = self.params.max_gap_from_returns;
-        let near = self.returns.held(&self.squares, low.map(|v| v - gap), high.map(|v| v + gap));
+        let near = self.returns.items_within(&self.squares, low.map(|v| v - gap), high.map(|v| v + gap));
         let near = cells_near_returns(near.map(|place| place.map(f64::from)), &grid, gap);
         Ok(ground.known_near_returns(&near, self.report))
     }
@@ -139,7 +139,7 @@ impl Squares {
     }
 
     /// The columns and rows that a box reaches into.
-    fn between(&self, low: [f64; 2], high: [f64; 2]) -> [RangeInclusive<u32>; 2] {
+    fn squares_between(&self, low: [f64; 2], high: [f64; 2]) -> [RangeInclusive<u32>; 2] {
         [0, 1].map(|axis| self.at(low[axis], axis)..=self.at(high[axis], axis))
     }
 
@@ -150,15 +150,15 @@ impl Squares {
     }
 }
 
-/// What lies in each square.
+/// Items by square.
 struct BySquare<T> {
-    /// Where those of a square begin, and after the last square their number.
+    /// First item of each square, and the number of items after the last square.
     starts: Vec<usize>,
     items: Vec<T>,
 }
 
 impl<T: Copy + Send> BySquare<T> {
-    /// Of items, each with its square.
+    /// Sorts items, each with its square.
     fn new(squares: &Squares, mut items: Vec<(u32, T)>) -> Self {
         items.par_sort_unstable_by_key(|(square, _)| *square);
         let mut starts = vec![0; squares.count() + 1];
@@ -171,9 +171,9 @@ impl<T: Copy + Send> BySquare<T> {
         Self { starts, items: items.into_iter().map(|(_, item)| item).collect() }
     }
 
-    /// What lies in the squares that a box reaches into.
-    fn held(&self, squares: &Squares, low: [f64; 2], high: [f64; 2]) -> impl Iterator<Item = T> + Clone {
-        let [columns, rows] = squares.between(low, high);
+    /// Returns the items in the squares that a box reaches into.
+    fn items_within(&self, squares: &Squares, low: [f64; 2], high: [f64; 2]) -> impl Iterator<Item = T> + Clone {
+        let [columns, rows] = squares.squares_between(low, high);
         let of_row = |row| {
             let [first, last] = [*columns.start(), *columns.end()].map(|column| squares.number([column, row]) as usize);
             self.items.get(self.starts[first]..self.starts[last + 1]).unwrap_or_default()
@@ -219,7 +219,7 @@ mod tests {
                 let (low, high) = (middle.map(|v| v - 4.0), middle.map(|v| v + 6.0));
                 let grid = MapGrid::covering(low, high, cell, [0.3, 0.2]).unwrap();
                 let expected = Ground::of_cloud(&cloud, grid, &params, &Control::none()).unwrap();
-                let found = kept.on(grid, &Control::none()).unwrap();
+                let found = kept.make(grid, &Control::none()).unwrap();
                 assert_eq!(bits(&found.0.heights), bits(&expected.0.heights), "{grid:?}");
                 assert_eq!(bits(&found.0.gaps), bits(&expected.0.gaps), "{grid:?}");
                 assert_eq!(found.1, expected.1);

@@ -1,4 +1,4 @@
-//! Which points are ground, where no class says so: the simple morphological filter.
+//! Ground detection for points without classes: the simple morphological filter.
 
 use super::morphology::opened;
 use super::{Ground, MapGrid, WITHHELD};
@@ -11,14 +11,14 @@ use rayon::prelude::*;
 
 /// Classes that are never ground: noise, low and high.
 const NOISE: [u8; 2] = [7, 18];
-/// How far below its surroundings a cell is taken for an error, metres (Pingel et al.: a slope of 500 % from cell to
-/// cell).
+/// Depth below its surroundings at which a cell counts as an error, metres (Pingel et al.: a slope of 500 % from cell
+/// to cell).
 const PIT: f32 = 5.0;
 
 /// Points between two looks at whether to go on.
 const CHUNK: usize = 65_536;
 
-/// How ground is found among all points.
+/// Parameters of ground detection among all points.
 ///
 /// # Source
 /// Pingel, Clarke & McBride 2013, "An improved simple morphological filter for the terrain classification of airborne
@@ -32,10 +32,10 @@ pub struct FinderParams {
     /// Half the width of the widest building, metres, above 0. Default 40: halls and blocks of 80 m (the source has
     /// 18).
     pub window: f64,
-    /// How far a ground point may lie from the surface found, metres, 0 or more, on level ground. Default 0.3: the
+    /// Maximum distance of a ground point from the surface found, metres, 0 or more, on level ground. Default 0.3: the
     /// source's 0.5 takes cars' bonnets and low hedges for ground.
     pub tolerance: f64,
-    /// How much farther on a slope, metres for a slope of 1, 0 or more. Default 1.25, as in the source.
+    /// Increase of the tolerance with the slope, metres for a slope of 1, 0 or more. Default 1.25, as in the source.
     pub slope_tolerance: f64,
 }
 
@@ -148,7 +148,7 @@ fn lowest_points(positions: &[[f32; 3]], grid: &MapGrid) -> Raster<u32> {
     lowest
 }
 
-/// Which cells hold something that stands on the ground, or a pit that no ground has.
+/// Flags the cells of objects above the ground, and of pits below any ground.
 fn standing_cells(
     positions: &[[f32; 3]],
     lowest: &Raster<u32>,

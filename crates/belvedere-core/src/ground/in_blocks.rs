@@ -8,14 +8,14 @@ use std::collections::BTreeMap;
 
 /// Side of the blocks, metres, on the grid of the reference system.
 const BLOCK: f64 = 64.0;
-/// How far beyond a block points are looked at, metres: farther than half the widest building.
+/// Margin around a block within which points are used, metres: more than half the widest building.
 const MARGIN: f64 = 48.0;
 
-/// How far from a point others decide whether it is ground, metres.
+/// Radius around a point within which others decide whether it is ground, metres.
 pub(crate) const GROUND_REACH: f64 = BLOCK + MARGIN;
 
-/// Whether each point of a cloud is ground, by [`find_ground`] in blocks of 64 m with 48 m about them. Where a block
-/// has none, no point of it is.
+/// Flags the ground points of a cloud by [`find_ground`], in blocks of 64 m with 48 m around them. A block without
+/// ground has no ground points.
 ///
 /// # Errors
 /// [`Error::Cancelled`].

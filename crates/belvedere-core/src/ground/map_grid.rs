@@ -2,7 +2,7 @@
 
 use belvedere_data::{Error, Parameter, Result};
 
-/// Most cells of a grid: what a few bytes each still fit into the memory of a usual machine.
+/// Maximum number of cells of a grid: a few bytes each still fit into the memory of a usual machine.
 const MAX_CELLS: f64 = 1e8;
 /// Cells up to this side may be larger than the area that they divide, metres: a small area still is one cell.
 const MIN_SIDE: f64 = 100.0;
@@ -26,10 +26,10 @@ pub struct MapGrid {
 }
 
 impl MapGrid {
-    /// The grid over the box on the map from `low` to `high`, local metres, whose edges lie at whole multiples of
-    /// `cell` metres counted from where `origin`, metres, counts from: grids of neighbouring surveys fit together. A
-    /// box that ends at such a multiple gets no cells beyond it, so that adjoining boxes share no cell; one without an
-    /// extent gets one cell.
+    /// Creates the grid over the box in plan from `low` to `high`, local metres. Its edges lie at whole multiples of
+    /// `cell` metres from the zero of `origin`, metres, so that grids of neighbouring surveys fit together. A box that
+    /// ends at such a multiple gets no cells beyond it, so that adjoining boxes share no cell. A box without an extent
+    /// gets one cell.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a cell that is not above zero or longer than the box and than 100 m, a box that
@@ -73,7 +73,7 @@ impl MapGrid {
         self.width * self.height
     }
 
-    /// Whether there is no cell.
+    /// Returns true if there is no cell.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -85,14 +85,15 @@ impl MapGrid {
         [self.corner[0] + (column as f64 + 0.5) * self.cell, self.corner[1] - (row as f64 + 0.5) * self.cell]
     }
 
-    /// Where a corner of cells lies, in whole columns from the west and rows from the north, local metres.
+    /// Returns the position of a corner of cells, given in whole columns from the west and rows from the north, local
+    /// metres.
     #[must_use]
     pub fn corner_at(&self, [column, row]: [usize; 2]) -> [f64; 2] {
         [self.corner[0] + column as f64 * self.cell, self.corner[1] - row as f64 * self.cell]
     }
 
-    /// Where a local position lies, in columns from the west and rows from the north, fractions counted; `None` outside
-    /// the grid, whose outer edges are all inside: what is interpolated between cells has a value on them.
+    /// Returns a local position in columns from the west and rows from the north, with fractions. `None` outside the
+    /// grid; its outer edges are inside, so that interpolation between cells has a value on them.
     #[must_use]
     pub fn cell_position(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
         let on_axis = |position: f64, count: usize| {

@@ -42,32 +42,32 @@ const WITHHELD: u8 = 4;
 /// sparse surveys.
 const MAX_EXTRAPOLATION: f32 = 5.0;
 
-/// How the ground of a cloud is made.
+/// Parameters of the ground of a cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundParams {
-    /// Which points are ground. Default: class 2 where there is one, else those found.
+    /// Source of ground points. Default: class 2 if there are any, else detection.
     pub points: GroundPoints,
-    /// How ground is found.
+    /// Parameters of ground detection.
     pub finder: FinderParams,
-    /// How far from the next ground point a height is still given, metres, above 0. Default 60: the middle of large
-    /// halls has a ground below it.
+    /// Maximum distance from the next ground point for which a height is given, metres, above 0. Default 60: the middle
+    /// of large halls has a ground below it.
     pub reach: f64,
-    /// How far on the map the middle of a cell may lie from the nearest return, a point of the cloud of any class, and
-    /// still have a height, metres, above 0. Default 5: a hole in the survey, such as a missing tile or wide water, has
-    /// no ground. Ground beside and below buildings keeps its height, because walls and roofs are returns.
+    /// Maximum horizontal distance of the middle of a cell from the nearest return, a point of the cloud of any class,
+    /// for which it has a height, metres, above 0. Default 5: a hole in the survey, such as a missing tile or wide
+    /// water, has no ground. Ground beside and below buildings keeps its height, because walls and roofs are returns.
     pub max_gap_from_returns: f64,
 }
 
-/// Which points are ground.
+/// Source of ground points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum GroundPoints {
     /// Class 2 and water where at least one point in a thousand has class 2, else [`GroundPoints::Found`].
     #[default]
     Auto,
-    /// Those of class 2, less small groups metres below or above the rest, and the surface of water (9, 41).
+    /// Points of class 2, except small groups metres below or above the rest, and the surface of water (9, 41).
     Classed,
-    /// Those that [`find_ground`] finds, whatever their class.
+    /// Points that [`find_ground`] finds, of any class.
     Found,
 }
 
@@ -95,7 +95,7 @@ impl Default for GroundParams {
     }
 }
 
-/// Where the ground of a [`Ground`] came from.
+/// Source of the ground of a [`Ground`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GroundReport {
     /// [`GroundPoints::Classed`] or [`GroundPoints::Found`].
@@ -115,7 +115,7 @@ pub struct GroundReport {
 /// Heights of the ground on a grid.
 #[derive(Clone, Debug)]
 pub struct Ground {
-    /// Where the cells lie.
+    /// Position of the cells.
     pub grid: MapGrid,
     /// Height of the ground at the middle of each cell, local metres; NaN where nothing is known.
     pub heights: Raster<f32>,
@@ -144,7 +144,7 @@ struct GroundRows {
     rows: Vec<u32>,
     from: GroundPoints,
     doubted_count: usize,
-    /// Whether some of the rows are water.
+    /// True if some of the rows are water.
     has_water: bool,
 }
 
@@ -180,7 +180,7 @@ impl GroundRows {
         }
     }
 
-    /// Without cells.
+    /// Returns the report without cells.
     fn report(&self, point_count: usize, shift: Option<GroundShift>) -> GroundReport {
         let Self { from, doubted_count, .. } = *self;
         GroundReport { from, point_count, doubted_count, shift, cell_count: 0 }
@@ -341,9 +341,9 @@ impl Ground {
         Ok(Self { grid, heights, gaps })
     }
 
-    /// Between which heights most of the ground lies `radius` metres around a place on the map, local metres: the 5 %
-    /// lowest and the 5 % highest cells left out, and those within a quarter of the radius; `None` where it is not
-    /// known.
+    /// Returns the range of heights of most of the ground within `radius` metres of a place in plan, local metres. The
+    /// 5 % lowest and the 5 % highest cells are left out, and those within a quarter of the radius. `None` if the
+    /// ground is not known.
     #[must_use]
     pub fn heights_around(&self, [x, y]: [f64; 2], radius: f64) -> Option<[f64; 2]> {
         let middle = self.grid.cell_position([x, y])?;

@@ -3,7 +3,7 @@
 use belvedere_data::raster::Raster;
 use rayon::prelude::*;
 
-/// What a square window is replaced by.
+/// Operation on a square window.
 #[derive(Clone, Copy)]
 enum Extreme {
     Min,

@@ -10,7 +10,7 @@ pub struct HighestPoints {
 }
 
 impl HighestPoints {
-    /// Without a point so far.
+    /// Creates a grid without points.
     #[must_use]
     pub fn new(grid: MapGrid) -> Self {
         Self { grid, heights: Raster::filled(grid.width, grid.height, f32::NAN) }
@@ -56,8 +56,8 @@ impl HighestPoints {
     }
 }
 
-/// Height of the highest of `positions`, (N, 3) local metres, in each cell of `ground`; in cells without any the mean
-/// of the filled neighbours, else the ground, NaN where that is not known.
+/// Returns the height of the highest of `positions`, (N, 3) local metres, in each cell of `ground`. Cells without any
+/// have the mean of the filled neighbours, else the ground, NaN if that is not known.
 #[must_use]
 pub fn highest_points(positions: &[[f32; 3]], ground: &Ground) -> Raster<f32> {
     let mut highest = HighestPoints::new(ground.grid);
@@ -65,14 +65,14 @@ pub fn highest_points(positions: &[[f32; 3]], ground: &Ground) -> Raster<f32> {
     highest.filled(|cell| ground.heights.values().get(cell).copied().unwrap_or(f32::NAN))
 }
 
-/// Least distance to the next ground point for a cell to count as hidden, metres: a few spacings of usual airborne
+/// Minimum distance to the next ground point for a cell to count as hidden, metres: a few spacings of usual airborne
 /// surveys.
 const HIDDEN_GAP: f32 = 1.0;
-/// Least height of what hides it, metres: more than cars and hedges.
+/// Minimum height of the object that hides it, metres: more than cars and hedges.
 const HIDDEN_BELOW: f32 = 2.0;
 
-/// Which cells of `ground` no survey saw the ground of: nothing was measured on it within a metre, and something of
-/// more than 2 m stands there, (cells). Mostly these lie under buildings, where a height of the ground is no place.
+/// Flags the cells of `ground` whose ground no survey saw, (cells): no ground point lies within a metre, and something
+/// of more than 2 m stands there. Most lie under buildings, where a height of the ground is no place for a target.
 #[must_use]
 pub fn hidden_ground(positions: &[[f32; 3]], ground: &Ground) -> Vec<bool> {
     let highest = highest_points(positions, ground);

@@ -1,4 +1,4 @@
-//! Which cells of a grid lie near a return of the survey: in a hole of the survey nothing is known.
+//! Flags the cells of a grid that lie near a return of the survey. In a hole of the survey nothing is known.
 
 use super::MapGrid;
 use rayon::prelude::*;
@@ -7,8 +7,8 @@ use rayon::prelude::*;
 /// buildings and sparse surveys stay below it; a missing tile and wide water do not.
 pub const MAX_GAP_FROM_RETURNS: f64 = 5.0;
 
-/// Side of the squares that settle most cells at once, for a distance of 1: with a diagonal below it, so that a return
-/// is near to all of its square.
+/// Side of the squares that settle most cells at once, for a distance of 1. Their diagonal is shorter than that, so
+/// that a return is near to all of its square.
 const SQUARE: f64 = 0.7;
 /// Squares from that of a return to the farthest that holds a place within the distance.
 const AROUND: usize = 2;
@@ -62,9 +62,9 @@ fn mark([x, y]: [f64; 2], grid: &MapGrid, distance: f64, near: &mut [bool]) {
 /// Squares over a grid, and two more on each side.
 struct Squares {
     squares: MapGrid,
-    /// Whether a square holds a return.
+    /// True for squares that hold a return.
     are_filled: Vec<bool>,
-    /// Whether a square over the grid that is at most two squares away holds none.
+    /// True for squares with an empty square over the grid at most two squares away.
     are_open_around: Vec<bool>,
 }
 

@@ -1,29 +1,24 @@
-//! Whether a part of the points of class 2 lies off by a metre or more: what they themselves, the strips of the survey
-//! and the other returns say against it.
+//! Detects areas of class-2 points that are offset by 0.7 m or more from other points of class 2: at the same places, or
+//! in the next strip.
 //!
-//! A step alone is no evidence: quays, terraces and pits have one. What no terrain does is to lie at two heights in the
-//! same places over an area, to step where one strip ends and the next begins, to lie above most other returns, or to
-//! lie below a layer of them that continues the ground on all sides. Areas are squares of a few cells, so that a wall,
+//! A step alone is no evidence: quays, terraces and pits have one. No terrain lies at two heights in the same places
+//! over an area, or steps where one strip ends and the next begins. Areas are squares of a few cells, so that a wall,
 //! which has two heights along a line, is none.
 
 use super::believed::{Placed, placed};
-use super::{GROUND, WITHHELD};
 use belvedere_data::control::Control;
 use belvedere_data::{PointCloud, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// How far ground must lie off, metres: more than kerbs, stairs and steep slopes do within a cell.
+/// Minimum offset of the ground, metres: more than kerbs, stairs and steep slopes do within a cell.
 const MIN_SHIFT: f32 = 0.7;
-/// Least gap between two levels of a cell, and how far below the ground a return contradicts it, metres: beside noise
-/// and slopes.
+/// Minimum gap between two levels of a cell, metres: beside noise and slopes.
 const MIN_GAP: f32 = 0.5;
-/// Most that the quartiles of a shift differ, as a share of it: a strip lies off by the same everywhere.
+/// Maximum difference between the quartiles of a shift, as a share of it: a strip is off by the same everywhere.
 const MAX_SPREAD: f32 = 0.4;
-/// The same of a layer of other returns: crowns and crops are rougher.
-const MAX_LAYER_SPREAD: f32 = 0.3;
-/// Least and most side of cells, metres.
+/// Minimum and maximum side of cells, metres.
 const CELLS: [f32; 2] = [1.0, 8.0];
 /// Ground points that a cell should have.
 const POINTS_OF_CELL: usize = 4;
@@ -33,43 +28,31 @@ const SQUARE: i32 = 6;
 const MIN_CELLS: usize = 8;
 /// Squares that must say the same.
 const MIN_SQUARES: usize = 2;
-/// Least share of the cells of a square that have two levels: a wall across it crosses a third.
+/// Minimum share of the cells of a square that have two levels: a wall across it crosses a third.
 const MIN_TWO_LEVELS: f32 = 0.6;
-/// How far the upper level of the cells of a square may lie to one side of the lower one at most, as a share of a cell:
-/// on a slope it lies uphill.
+/// Maximum mean horizontal offset between the upper and the lower level of the cells of a square, as a share of a cell.
+/// On a slope the upper level lies uphill.
 const MAX_LEAN: f32 = 0.25;
-/// How many squares away the ground around those with two levels is looked for.
+/// Search radius for the ground around squares with two levels, squares.
 const AROUND: i32 = 2;
-/// Least share of the cells of a square with a return below its ground.
-const MIN_BELOW: f32 = 0.5;
-/// How many squares away the ground around is looked for, and where it counts whatever its height.
-const SEARCH: [i32; 2] = [8, 6];
-/// Directions that need ground, of eight, and the least share of them whose ground continues a layer of other returns.
-const MIN_AROUND: usize = 5;
-const MIN_CONTINUED: f32 = 0.75;
-/// How far this ground may lie from the layer, metres.
-const MAX_FROM_LAYER: f32 = 0.35;
 /// Places where two strips must meet.
 const MIN_MEETINGS: usize = 15;
-/// Classes that are no evidence: noise, and water and what lies in it, which is below the ground.
-const NO_EVIDENCE: [u8; 7] = [7, 9, 18, 40, 41, 42, 45];
-
 /// Ground points that contradict other points.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GroundShift {
     /// Points of class 2 that lie off.
     pub point_count: usize,
-    /// How far above what contradicts them they lie, metres; below 0 where they lie below it.
+    /// Height of the points above the evidence, metres; negative if they lie below it.
     pub rise: f32,
     /// South-western corner of the box around them on the map, local metres.
     pub low: [f32; 2],
     /// Its north-eastern corner.
     pub high: [f32; 2],
-    /// What contradicts them.
+    /// Evidence against the points.
     pub against: ShiftEvidence,
 }
 
-/// What contradicts ground points.
+/// Evidence against ground points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ShiftEvidence {
     /// More points of class 2 at the same places.
@@ -81,15 +64,13 @@ pub enum ShiftEvidence {
         /// Source of the others.
         other: u16,
     },
-    /// Returns of other classes at the same places.
-    OtherReturns,
 }
 
 /// A cell with ground points.
 #[derive(Clone, Copy, Debug)]
 struct Cell {
     at: [i32; 2],
-    /// Where its points start in the order of cells and heights, and how many they are.
+    /// First of its points in the order of cells and heights, and their number.
     first: usize,
     count: usize,
 }
@@ -97,18 +78,15 @@ struct Cell {
 /// Some cells together.
 #[derive(Clone, Debug, Default)]
 struct Square {
-    point_count: usize,
     /// Lowest ground point of each cell.
     heights: Vec<f32>,
     /// Cells with points enough for two levels.
     measured: usize,
-    /// How far apart the levels of those lie that have two, how many points are at either, and the sum of the ways on
-    /// the map from the lower to the upper level, metres.
+    /// Height difference of the two levels of each cell that has two, the points at either, and the sum of the
+    /// horizontal offsets from the lower to the upper level, metres.
     steps: Vec<f32>,
     level_counts: [usize; 2],
     lean: [f32; 2],
-    /// How far above the lowest ground point the lowest other return is, of cells with both.
-    gaps: Vec<f32>,
 }
 
 impl Square {
@@ -122,8 +100,8 @@ impl Square {
 /// Squares by row and column.
 type Squares = BTreeMap<[i32; 2], Square>;
 
-/// Of the ground `points` of a cloud, (N, 3) local metres, which are its `rows`, those that lie off by a metre or more
-/// over an area, with the most telling evidence; `None` where nothing contradicts them.
+/// Returns the ground `points` of a cloud, (N, 3) local metres, `rows` of it, that are offset over an area, with the
+/// strongest evidence. `None` if nothing contradicts them.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -136,17 +114,10 @@ pub(super) fn shift_of(
     let (side, placed) = placed_in_cells(points);
     control.check()?;
     let cells = cells_of(&placed);
-    let lowest = lowest_others(cloud, &cells, side);
-    control.check()?;
-    let squares = squares_of(&cells, &placed, points, &lowest);
+    let squares = squares_of(&cells, &placed, points);
     let strips = cloud.attributes.point_source_id.as_deref().unwrap_or_default();
     let strip = |point: &Placed| rows.get(point.number as usize).and_then(|&row| strips.get(row as usize).copied());
-    let found = [
-        two_levels(&squares, side),
-        against_others(&squares, side, above_others),
-        against_others(&squares, side, below_others),
-        strips_apart(&cells, &placed, side, &strip),
-    ];
+    let found = [two_levels(&squares, side), strips_apart(&cells, &placed, side, &strip)];
     Ok(found.into_iter().flatten().max_by_key(|shift| shift.point_count))
 }
 
@@ -187,38 +158,17 @@ fn find(cells: &[Cell], at: [i32; 2]) -> Option<usize> {
     cells.binary_search_by_key(&at, |cell| cell.at).ok()
 }
 
-/// For each cell the lowest height of the points that are no ground; infinite where there are none.
-fn lowest_others(cloud: &PointCloud, cells: &[Cell], side: f32) -> Vec<f32> {
-    let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
-    let flags = cloud.attributes.flags.as_deref().unwrap_or_default();
-    let is_evidence = |row: usize| {
-        classes.get(row).is_some_and(|class| *class != GROUND && !NO_EVIDENCE.contains(class))
-            && flags.get(row).is_none_or(|flags| flags & WITHHELD == 0)
-    };
-    let of = |(row, point): (usize, &[f32; 3])| {
-        let cell = is_evidence(row).then(|| find(cells, super::believed::place(point, side))).flatten()?;
-        Some((cell, point[2]))
-    };
-    let found: Vec<(usize, f32)> = cloud.positions.par_iter().enumerate().filter_map(of).collect();
-    let mut lowest = vec![f32::INFINITY; cells.len()];
-    for (cell, height) in found {
-        lowest[cell] = lowest[cell].min(height);
-    }
-    lowest
-}
-
-fn squares_of(cells: &[Cell], placed: &[Placed], points: &[[f32; 3]], lowest: &[f32]) -> Squares {
+fn squares_of(cells: &[Cell], placed: &[Placed], points: &[[f32; 3]]) -> Squares {
     let mut squares = Squares::new();
     let middle = |level: &[Placed]| {
         let sum =
             |axis: usize| level.iter().filter_map(|own| Some(points.get(own.number as usize)?[axis])).sum::<f32>();
         [sum(0), sum(1)].map(|sum| sum / level.len() as f32)
     };
-    for (cell, other) in cells.iter().zip(lowest) {
+    for cell in cells {
         let square = squares.entry(cell.at.map(|v| v.div_euclid(SQUARE))).or_default();
         let heights: Vec<f32> = cell.points(placed).iter().map(|point| point.height).collect();
         let Some(ground) = heights.first() else { continue };
-        square.point_count += heights.len();
         square.heights.push(*ground);
         if heights.len() >= POINTS_OF_CELL {
             square.measured += 1;
@@ -231,15 +181,12 @@ fn squares_of(cells: &[Cell], placed: &[Placed], points: &[[f32; 3]], lowest: &[
                 (0..2).for_each(|axis| square.lean[axis] += to[axis] - from[axis]);
             }
         }
-        if other.is_finite() {
-            square.gaps.push(other - ground);
-        }
     }
     squares
 }
 
-/// How far apart the two levels of ascending heights lie, and how many are at the lower one; `None` where there is one
-/// level: neither may be thicker than the gap between them, as the parts of a slope are.
+/// Returns the height difference of the two levels of ascending heights, and the number of points at the lower one.
+/// `None` if there is one level: neither may be thicker than the gap between them, as the parts of a slope are.
 fn step_of(heights: &[f32]) -> Option<(f32, usize)> {
     let gaps = heights.windows(2).map(|pair| pair[1] - pair[0]).enumerate();
     let (before, gap) = gaps.max_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -257,10 +204,10 @@ fn quartiles(values: &[f32]) -> Option<[f32; 3]> {
     Some([last / 4, last / 2, last - last / 4].map(|at| values[at]))
 }
 
-/// The median of values that are much the same, and far from 0.
-fn common(values: &[f32], max_spread: f32) -> Option<f32> {
+/// Returns the median of values that are nearly equal, and far from 0.
+fn common(values: &[f32]) -> Option<f32> {
     let [low, median, high] = quartiles(values)?;
-    (median.abs() >= MIN_SHIFT && high - low <= max_spread * median.abs()).then_some(median)
+    (median.abs() >= MIN_SHIFT && high - low <= MAX_SPREAD * median.abs()).then_some(median)
 }
 
 /// Ground at two heights in the same places.
@@ -273,7 +220,7 @@ fn two_levels(squares: &Squares, side: f32) -> Option<GroundShift> {
         if !is_measured || square.lean[0].hypot(square.lean[1]) > MAX_LEAN * side * count {
             continue;
         }
-        if let Some(step) = common(&square.steps, MAX_SPREAD) {
+        if let Some(step) = common(&square.steps) {
             found.insert(*at, step);
             (0..2).for_each(|level| level_counts[level] += square.level_counts[level]);
         }
@@ -283,14 +230,16 @@ fn two_levels(squares: &Squares, side: f32) -> Option<GroundShift> {
         Some(level) if level > 2.0 / 3.0 => 0,
         _ => usize::from(level_counts[1] < level_counts[0]),
     };
-    let mut of_area = FoundSquares::default();
-    found.into_iter().for_each(|(at, step)| of_area.add(at, step));
-    let sign = if off == 1 { 1.0 } else { -1.0 };
-    of_area.shift(side, level_counts[off], sign, ShiftEvidence::SecondLevel)
+    let corners = found.keys().fold(None, |corners, at| Some(widened(corners, *at)));
+    let [low, high] = on_map(corners.filter(|_| found.len() >= MIN_SQUARES)?, side * SQUARE as f32);
+    let [_, step, _] = quartiles(&found.into_values().collect::<Vec<f32>>())?;
+    let rise = if off == 1 { step } else { -step };
+    Some(GroundShift { point_count: level_counts[off], rise, low, high, against: ShiftEvidence::SecondLevel })
 }
 
-/// The mean level of the ground around squares with two levels, which lie so far apart: 0 for the lower one and 1 for
-/// the upper one; `None` without such ground. What a slope adds on one side it takes away on the other.
+/// Returns the mean level of the ground around squares with two levels, in units of their height difference: 0 for the
+/// lower one and 1 for the upper one. `None` without such ground. A slope adds on one side what it takes away on the
+/// other.
 fn level_around(squares: &Squares, steps: &BTreeMap<[i32; 2], f32>) -> Option<f32> {
     let (mut sum, mut count) = (0.0, 0.0);
     for (at, step) in steps {
@@ -309,83 +258,6 @@ fn level_around(squares: &Squares, steps: &BTreeMap<[i32; 2], f32>) -> Option<f3
     (count > 0.0).then(|| sum / count)
 }
 
-/// Ground that lies above, or below, what other returns show.
-fn against_others(
-    squares: &Squares,
-    side: f32,
-    rises: impl Fn(&Squares) -> Vec<([i32; 2], f32)>,
-) -> Option<GroundShift> {
-    let mut found = FoundSquares::default();
-    let mut point_count = 0;
-    for (at, rise) in rises(squares) {
-        found.add(at, rise);
-        point_count += squares.get(&at).map_or(0, |square| square.point_count);
-    }
-    found.shift(side, point_count, 1.0, ShiftEvidence::OtherReturns)
-}
-
-/// Squares whose ground lies above other returns, and how far.
-fn above_others(squares: &Squares) -> Vec<([i32; 2], f32)> {
-    let rise = |square: &Square| {
-        let below: Vec<f32> = square.gaps.iter().copied().filter(|gap| *gap < -MIN_GAP).collect();
-        let is_above = square.gaps.len() >= MIN_CELLS && below.len() as f32 >= MIN_BELOW * square.gaps.len() as f32;
-        let [_, median, _] = quartiles(&below).filter(|_| is_above)?;
-        (-median >= MIN_SHIFT).then_some(-median)
-    };
-    squares.iter().filter_map(|(at, square)| Some((*at, rise(square)?))).collect()
-}
-
-/// Squares whose ground lies below a layer of other returns that continues the ground around, and how far, as numbers
-/// below 0.
-fn below_others(squares: &Squares) -> Vec<([i32; 2], f32)> {
-    let layer = |square: &Square| {
-        let gap = common(&square.gaps, MAX_LAYER_SPREAD).filter(|gap| *gap > 0.0);
-        gap.filter(|_| square.gaps.len() >= MIN_CELLS)
-    };
-    let layers: BTreeMap<[i32; 2], f32> =
-        squares.iter().filter_map(|(at, square)| Some((*at, layer(square)?))).collect();
-    let height = |at: [i32; 2]| squares.get(&at).and_then(Square::height);
-    let is_continued = |at: [i32; 2], gap: f32| {
-        let Some(own) = height(at) else { return false };
-        let directions = (-1..=1).flat_map(|down| (-1..=1).map(move |right| [down, right]));
-        let around: Vec<f32> = directions
-            .filter(|direction| *direction != [0, 0])
-            .filter_map(|direction| {
-                (1..=SEARCH[0]).find_map(|step| {
-                    let beside = [0, 1].map(|axis| at[axis].saturating_add(step * direction[axis]));
-                    let rise = height(beside).filter(|_| !layers.contains_key(&beside))? - own;
-                    (rise.abs() >= 0.6 * gap || step >= SEARCH[1]).then_some(rise)
-                })
-            })
-            .collect();
-        let room = MAX_FROM_LAYER.max(MAX_LAYER_SPREAD * gap);
-        let continued = around.iter().filter(|rise| (*rise - gap).abs() <= room).count();
-        around.len() >= MIN_AROUND && continued as f32 >= MIN_CONTINUED * around.len() as f32
-    };
-    layers.iter().filter(|(at, gap)| is_continued(**at, **gap)).map(|(at, gap)| (*at, -gap)).collect()
-}
-
-/// Squares that say the same.
-#[derive(Default)]
-struct FoundSquares {
-    rises: Vec<f32>,
-    corners: Option<[[i32; 2]; 2]>,
-}
-
-impl FoundSquares {
-    fn add(&mut self, at: [i32; 2], rise: f32) {
-        self.rises.push(rise);
-        self.corners = Some(widened(self.corners, at));
-    }
-
-    fn shift(self, side: f32, point_count: usize, sign: f32, against: ShiftEvidence) -> Option<GroundShift> {
-        let [low, high] = self.corners.filter(|_| self.rises.len() >= MIN_SQUARES)?;
-        let [_, rise, _] = quartiles(&self.rises)?;
-        let [low, high] = on_map([low, high], side * SQUARE as f32);
-        Some(GroundShift { point_count, rise: sign * rise, low, high, against })
-    }
-}
-
 /// The rows and columns of a box, widened by one more place.
 fn widened(corners: Option<[[i32; 2]; 2]>, at: [i32; 2]) -> [[i32; 2]; 2] {
     let [low, high] = corners.unwrap_or([at; 2]);
@@ -397,10 +269,10 @@ fn on_map([low, high]: [[i32; 2]; 2], side: f32) -> [[f32; 2]; 2] {
     [[low[1] as f32, low[0] as f32], [(high[1] + 1) as f32, (high[0] + 1) as f32]].map(|v| v.map(|v| v * side))
 }
 
-/// What is known of two strips where they meet.
+/// Overlap of two strips.
 #[derive(Default)]
 struct Meeting {
-    /// How far the second strip lies above the first.
+    /// Height of the second strip above the first.
     rises: Vec<f32>,
     corners: Option<[[i32; 2]; 2]>,
 }
@@ -445,7 +317,7 @@ fn strips_apart(
     placed.iter().filter_map(strip).for_each(|strip| *counts.entry(strip).or_default() += 1);
     let count = |strip: u16| counts.get(&strip).copied().unwrap_or(0);
     let shift = |([first, second], meeting): ([u16; 2], Meeting)| {
-        let rise = common(&meeting.rises, MAX_SPREAD).filter(|_| meeting.rises.len() >= MIN_MEETINGS)?;
+        let rise = common(&meeting.rises).filter(|_| meeting.rises.len() >= MIN_MEETINGS)?;
         let (shifted, other, rise) =
             if count(first) < count(second) { (first, second, -rise) } else { (second, first, rise) };
         let [low, high] = on_map(meeting.corners?, side);
@@ -543,31 +415,6 @@ mod tests {
             assert_eq!(shift.against, ShiftEvidence::Strips { shifted: 7, other: 4 });
             assert!((shift.rise - rise).abs() < 0.1, "{shift:?}");
             assert!(shift.low[0] > 20.0 && shift.high[0] < 30.0, "{shift:?}");
-        }
-    }
-
-    /// Ground of two strips with low plants on a third of it, none higher than 0.4 m, and a house.
-    fn with_plants() -> Vec<Return> {
-        let plant = |(place, class, strip): Return| {
-            let is_plant = (13.0 * place[0] + 7.0 * place[1]).fract() < 0.3;
-            let height = if is_plant { 0.4 * (11.0 * place[1]).fract() } else { 0.0 };
-            ([place[0], place[1], place[2] + height], if is_plant { 1 } else { class }, strip)
-        };
-        let mut returns: Vec<Return> = strips(8.0, |x, _| 0.02 * x).into_iter().map(plant).collect();
-        let is_house = |place: [f32; 3]| (50.0..58.0).contains(&place[0]) && (5.0..15.0).contains(&place[1]);
-        returns.iter_mut().filter(|one| is_house(one.0)).for_each(|one| (one.0[2], one.1) = (7.0, 6));
-        returns
-    }
-
-    #[test]
-    fn an_area_that_other_returns_contradict_is_found() {
-        assert_eq!(found(&with_plants()), None);
-        for rise in [-3.0_f32, -1.5, 1.5, 3.0] {
-            let shift = found(&shifted(with_plants(), rise, |one| is_in_area(one.0))).unwrap();
-            assert_eq!(shift.against, ShiftEvidence::OtherReturns, "{rise}");
-            // plants stand on the ground
-            assert!((shift.rise - rise).abs() < 0.4, "{rise}: {shift:?}");
-            assert!(shift.low.iter().all(|low| *low > 10.0) && shift.high.iter().all(|high| *high < 50.0), "{shift:?}");
         }
     }
 

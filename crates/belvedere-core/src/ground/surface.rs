@@ -7,7 +7,7 @@ use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
-/// Greatest distance from the middle of a cell at which a point tells what covers the middle, metres: half of a cell
+/// Maximum distance from the middle of a cell at which a point shows the cover of the middle, metres: half of a cell
 /// that is larger.
 const NEAR: f64 = 0.5;
 /// Distance to the next point up to which it tells of the middle of a cell, metres: that of sparse surveys, or the side
@@ -18,21 +18,21 @@ const FEWEST: usize = 5;
 /// Determinant of the normal equations, in units of their diagonal, below which points lie on a line.
 const ON_A_LINE: f64 = 1e-3;
 
-/// How the surface at the middle of a cell is estimated from the points around it.
+/// Parameters of the surface height at the middle of a cell, estimated from the points around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceParams {
     /// Points around the middle that are looked at, 3 to 256. Default 12: a square metre of usual airborne surveys.
     pub neighbors: usize,
-    /// Greatest step between the heights of points of one layer, metres, above 0. Default 0.4: twelve points on a roof
+    /// Maximum step between the heights of points of one layer, metres, above 0. Default 0.4: twelve points on a roof
     /// of 60 degrees lie closer than that, eaves and chimneys stand higher.
     pub step: f64,
     /// Root mean squared distance in height of the points of a layer from their plane beyond which it is no plane,
     /// metres, 0 or more. Default 0.12: ranging noise and a ridge stay below it, crowns and shrubs do not.
     pub roughness: f64,
-    /// How far from the middle a point may lie and still be looked at, metres, above 0. Default: any distance.
+    /// Maximum distance from the middle for points that are used, metres, above 0. Default: any distance.
     pub farthest: f32,
-    /// How far on the map the middle of a cell without ground may lie from the nearest point and still have a height,
-    /// metres, above 0. Default 5: a hole in the survey has no surface.
+    /// Maximum horizontal distance between the middle of a cell without ground and the nearest point for which it has a
+    /// height, metres, above 0. Default 5: a hole in the survey has no surface.
     pub max_gap_from_returns: f64,
 }
 
@@ -44,7 +44,8 @@ impl Default for SurfaceParams {
 }
 
 impl SurfaceParams {
-    /// Greatest distance from a point, metres, at which [`top_surface`] may give a cell of this side a height.
+    /// Returns the maximum distance from a point, metres, at which [`top_surface`] may give a cell of this side a
+    /// height.
     #[must_use]
     pub fn reach(cell: f64) -> f64 {
         // to the middle of a cell, or to the next cell
@@ -73,11 +74,12 @@ impl SurfaceParams {
 
 /// Height of the top surface of `positions`, (N, 3) local metres, at the middle of each cell of `ground`.
 ///
-/// The layer on top at the middle is that of the highest point near it. Where its points, five at least, lie on a
-/// plane, as on roofs and streets, the plane's height at the middle is given, never beyond the heights of the points
-/// themselves; where they do not, as in crowns, the highest point of the cell, so that a place above it is outside.
-/// Cells far from any point are as in [`highest_points`], but for those in a hole of the survey
-/// ([`SurfaceParams::max_gap_from_returns`]), which have no height unless the ground has.
+/// The layer on top at the middle is that of the highest point near it. If its points, five at least, lie on a plane,
+/// as on roofs and streets, the result is the plane's height at the middle, clamped to the heights of the points.
+/// Otherwise, as in crowns, it is the highest point of the cell, so that a place above it is outside.
+///
+/// Cells far from any point are as in [`highest_points`]. Those in a hole of the survey
+/// ([`SurfaceParams::max_gap_from_returns`]) have no height unless the ground has.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a parameter outside its range or a point that is not finite, [`Error::Cancelled`].
@@ -166,9 +168,9 @@ fn at_middle(around: &[Around], near: f64, params: &SurfaceParams) -> Option<f32
     (roughness <= params.roughness).then(|| height.clamp(lowest, highest) as f32)
 }
 
-/// Height at the middle of the plane through a layer by weighted least squares, nearer points counting more, and the
-/// root mean squared distance of the points from it; the mean height where there is no plane; `None` for a layer
-/// without points.
+/// Fits a plane to a layer by weighted least squares, with larger weights for nearer points. Returns its height at the
+/// middle and the root mean squared distance of the points from it; the mean height if there is no plane. `None` for a
+/// layer without points.
 fn plane(layer: &[Around]) -> Option<(f64, f64)> {
     let reach = layer.iter().map(|point| point.distance_squared).fold(0.0, f64::max) * 1.1 + 1e-6;
     let weight = |point: &Around| 1.0 - point.distance_squared / reach;

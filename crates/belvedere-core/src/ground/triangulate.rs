@@ -5,8 +5,8 @@ use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Parameter, Result};
 use delaunator::{EMPTY, Point, triangulate};
 
-/// Height at the middle of each cell of `grid` on the triangulated `points`, (N, 3) local metres; NaN outside their
-/// hull, and everywhere with fewer than three points or all in one line.
+/// Returns the height at the middle of each cell of `grid` on the triangulated `points`, (N, 3) local metres. NaN
+/// outside their convex hull, and everywhere with fewer than three points or all in one line.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a point that is not finite.

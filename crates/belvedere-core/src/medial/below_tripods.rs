@@ -18,12 +18,12 @@ const MIN_APART: f32 = 0.1;
 /// may hide the others.
 const SECTORS: usize = 36;
 const MIN_SECTORS: usize = 24;
-/// Greatest distance of the floor's nearest points from the foot of a tripod, in heights of the scanner above them:
+/// Maximum distance of the floor's nearest points from the foot of a tripod, in heights of the scanner above them:
 /// scanners look down to 30° from straight down or more.
 const MAX_HEIGHTS: f32 = 1.2;
 /// A scanner is higher above the floor than that, metres; what is nearer is the tripod itself.
 const MIN_HEIGHT: f32 = 0.5;
-/// Greatest slope of a floor; what lies farther above or below the others is no part of it.
+/// Maximum slope of a floor; what lies farther above or below the others is no part of it.
 const MAX_SLOPE: f32 = 0.5;
 
 /// A place on the floor below a tripod.
@@ -48,7 +48,7 @@ pub(super) fn floors_below(
     tripods(free_segments).into_iter().flat_map(floor_below).collect()
 }
 
-/// Where many free segments end in one place.
+/// Returns the places where many free segments end.
 fn tripods(free_segments: &FreeSegments) -> Vec<[f32; 3]> {
     let mut found: BTreeMap<[i64; 3], (usize, [f32; 3])> = BTreeMap::new();
     for (start, direction, length) in
@@ -103,8 +103,8 @@ struct Edge {
     row: usize,
 }
 
-/// Where the floor begins in each sector about the foot of the tripod, by its own pulses; empty where it does in too
-/// few.
+/// Returns the nearest floor point in each sector around the foot of the tripod, seen by its own pulses. Empty if too
+/// few sectors have one.
 fn nearest_around(
     index: &NeighborIndex,
     positions: &[[f32; 3]],

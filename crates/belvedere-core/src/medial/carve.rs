@@ -13,7 +13,7 @@ use serde::Serialize;
 /// Balls handed to a thread at once; their searches share the cache.
 const CHUNK: usize = 512;
 
-/// What became of the balls in [`carve`].
+/// Counts of balls by outcome of [`carve`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CarveReport {
     /// Balls that a pulse made smaller.

@@ -17,16 +17,16 @@ use belvedere_data::control::Control;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// What became of the balls in [`carved_balls`].
+/// Counts of balls by outcome of [`carved_balls`].
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CarvedReport {
-    /// By the points.
+    /// Counts of shrinking by the points.
     #[serde(flatten)]
     pub shrinking: ShrinkReport,
-    /// By the pulses.
+    /// Counts of carving by the pulses.
     #[serde(flatten)]
     pub carving: CarveReport,
-    /// By the rules: names of the report and how many points or balls.
+    /// Counts of the rules: names of the report and numbers of points or balls.
     #[serde(flatten)]
     pub rules: BTreeMap<&'static str, usize>,
 }
@@ -42,23 +42,22 @@ impl CarvedReport {
 /// Balls of a survey.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CarvedBalls {
-    /// Those that are of use. [`MedialBalls::source`] and [`MedialBalls::touch`] are rows of the cloud; several balls
-    /// may have the same source.
+    /// The balls. [`MedialBalls::source`] and [`MedialBalls::touch`] are rows of the cloud; several balls may have the
+    /// same source.
     pub balls: MedialBalls,
-    /// Share of the pulses that got through the piece of crown that a ball is part of, (B), 0 to 1; NaN for balls that
-    /// are not vegetation, and 0 for all others where pulses cannot be separated. Empty where nothing is vegetation.
+    /// Share of the pulses that passed the piece of crown that a ball is part of, (B), 0 to 1. NaN for balls that are
+    /// not vegetation; 0 for vegetation where pulses cannot be separated. Empty if nothing is vegetation.
     pub transmission: Vec<f32>,
-    /// What each return tells of plants, (N); empty where scanners stood on the ground.
+    /// Evidence of each return about plants, (N); empty for scanners on the ground.
     pub returns: Vec<PlantReturn>,
-    /// What became of them.
+    /// Counts of balls by outcome.
     pub report: CarvedReport,
 }
 
 /// The interior balls of a survey as far as its pulses leave them, and those that rules add.
 ///
-/// The balls of a part of a survey ([`CarvedInput::statistics`]) whose points lie far enough from its edge are those of
-/// any other part that holds them so, bit by bit; how far that is follows from the rules
-/// ([`crate::model::SurveyStatistics::buffer`]).
+/// A part of a survey ([`CarvedInput::statistics`]) and the whole give the same balls, bit by bit, for points far
+/// enough from the edge of the part. The distance follows from the rules ([`crate::model::SurveyStatistics::buffer`]).
 ///
 /// # Errors
 /// Those of [`shrink`] and [`carve`]. Each rule is a stage of `control`.

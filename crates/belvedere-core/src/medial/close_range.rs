@@ -24,11 +24,12 @@ const MIN_RADIUS: f32 = 1e-3;
 /// Sizes of balls for scanners that stand among the things they measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloseRangeParams {
-    /// Most radius in spacings of the points around, above 0.5: below that there are gaps between points in squares.
+    /// Maximum radius in spacings of the points around, above 0.5: below that there are gaps between points in squares.
     /// Default 2, since scan lines are often twice as far apart as the points on them. 1.5 leaves gaps at the edges of
     /// rooms.
     pub max_spacings: f32,
-    /// Most radius, metres, above 0. Default 0.15: 0.25 blocks twice as much of what is visible behind cars and fences.
+    /// Maximum radius, metres, above 0. Default 0.15: 0.25 blocks twice as much of what is visible behind cars and
+    /// fences.
     pub max_radius: f32,
     /// Depth to which points and pulses may enter a ball before it gives way to them, as a share of the most radius, 0
     /// to 0.5. Default 0.25. The balls that are left end as deep below the surface, so that no pulse enters them at

@@ -14,10 +14,10 @@ use std::f32::consts::PI;
 
 /// Points handed to a thread at once.
 const CHUNK: usize = 512;
-/// Most neighbours that a spacing is taken from.
+/// Maximum number of neighbours from which a spacing is taken.
 const MAX_NEIGHBORS: usize = 64;
 
-/// How crowns are treated.
+/// Representation of crowns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Trees {
     /// Solid from the hull to the lowest return, as in full leaf.
@@ -44,12 +44,12 @@ impl Trees {
     }
 }
 
-/// How crowns are represented.
+/// Parameters of crowns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CrownParams {
-    /// How they are treated. Default measured.
+    /// Representation of crowns. Default measured.
     pub trees: Trees,
-    /// How much deeper than the first return of a pulse a later one must lie for it to have got through, metres,
+    /// Minimum depth of a later return below the first of its pulse for the pulse to have passed the crown, metres,
     /// above 0. Default 2.
     pub through_depth: f32,
     /// Height above the lowest point near by below which a return lies under the crown, metres, above 0. Default 1.
@@ -100,9 +100,9 @@ impl MarkingRule for CrownParams {
 
     /// Caps in crowns with gaps, balls centred about later returns, and fills of solid crowns.
     ///
-    /// Within a crown neither the normal of a point nor the side it was seen from says where the crown lies: a ball
-    /// that is tangent there stands out of it as often as not. Balls of later returns are therefore centred about their
-    /// points. A return that lies alone, on a trunk, has no larger a ball than one of the typical spacing.
+    /// Within a crown neither the normal of a point nor the side it was seen from shows where the crown lies. A ball
+    /// that is tangent there is outside the crown as often as not. Balls of later returns are therefore centred at
+    /// their points. The ball of an isolated return, on a trunk, is at most as large as one of the typical spacing.
     fn marks(&self, survey: &Survey<'_>, _: &MedialBalls, _: &Control<'_>) -> Result<Marks> {
         let with_gaps = |row| self.max_radius(survey, row).map(|radius| Cap::tangent(row, radius));
         let mut caps: Vec<Cap> = (0..survey.positions().len()).filter_map(with_gaps).collect();
@@ -153,9 +153,9 @@ impl CrownParams {
 
     /// Fills of solid crowns.
     ///
-    /// A crown returns pulses from all through its outer metre or two, which leaves the balls between these points
-    /// small and its inside hollow. Here a ball hangs straight down from each first return, as large as the lowest
-    /// vegetation within a metre or two and the pulses leave it, if that is more than the ball at that point.
+    /// A crown returns pulses from its outer metre or two, so that the balls between these points are small and its
+    /// inside is hollow. Here a ball hangs straight down from each first return. It is as large as the lowest
+    /// vegetation within a metre or two and the pulses allow, if that exceeds the ball at that point.
     fn fills(&self, survey: &Survey<'_>) -> Vec<Fill> {
         if self.trees == Trees::Measured && survey.transmission.is_empty() {
             return Vec::new();

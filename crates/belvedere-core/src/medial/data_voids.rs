@@ -18,8 +18,8 @@ use std::collections::HashMap;
 
 /// Smaller balls reach no middle of an empty cell, which lies half a metre or more from every point.
 const MIN_RADIUS: f32 = 0.25;
-/// How far around a void its lowest point is looked for, and around a point its voids, in cells: as far as a ball of 5
-/// m reaches.
+/// Search radius, in cells, for the lowest point around a void and for the voids around a point: the reach of a ball of
+/// 5 m.
 const FARTHEST: i32 = 10;
 /// Rings of cells about a void, from the nearest one with a pulse on, whose pulses show where the scanner was.
 const BORDER_WIDTH: i32 = 3;
@@ -28,16 +28,16 @@ const BALLS_AT_ONCE: usize = 1 << 16;
 /// Steps towards a scanner, metres on the map: half a cell; and how many are made at most.
 const STEP_M: f32 = 0.5;
 const MAX_STEPS: u16 = 4096;
-/// Least sine of the angle between a pulse and the vertical. Pulses that are assumed to fall straight down do not tell
-/// what lies in the shadow of something.
+/// Minimum sine of the angle between a pulse and the vertical. Pulses that are assumed to fall straight down show no
+/// shadow of objects.
 const MIN_LEAN: f32 = 1e-4;
 
-/// How balls are cut at data voids.
+/// Parameters of cutting balls at data voids.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DataVoidParams {
-    /// Greatest spacing of pulses around a void, metres, above 0. Default 0.75, a quarter of the side of the smallest
-    /// void, 3 m: the lidar base specification of the US Geological Survey calls an area without first returns a void
-    /// from four spacings squared on.
+    /// Maximum spacing of pulses around a void, metres, above 0. Default 0.75, a quarter of the side of the smallest
+    /// void, 3 m. The lidar base specification of the US Geological Survey defines a void as an area of at least four
+    /// spacings squared without first returns.
     pub max_spacing: f32,
     /// Height above the lowest point around a void from which on balls do not reach into it, metres, 0 or more. Default
     /// 0.5.
@@ -61,14 +61,14 @@ impl MarkingRule for DataVoidParams {
     }
 }
 
-/// What distinguishes voids from places in the shadow of something.
+/// Criteria that separate voids from places in the shadow of an object.
 struct DataVoids<'a> {
     params: &'a DataVoidParams,
     /// Heights of the highest points in cells.
     highest: &'a Cells<f32>,
     /// Heights of the lowest points in cells and those about them.
     lowest: &'a Cells<f32>,
-    /// How many pulses end in cells and those about them.
+    /// Number of pulses that end in each cell and its neighbours.
     counts: &'a Cells<u32>,
     /// Unit vectors towards the scanner of the steepest pulses that end in cells.
     ways: Cells<[f32; 3]>,
@@ -77,7 +77,7 @@ struct DataVoids<'a> {
 }
 
 impl<'a> DataVoids<'a> {
-    /// Those of a survey.
+    /// Finds the data voids of a survey.
     fn new(survey: &'a Survey<'_>, params: &'a DataVoidParams) -> Self {
         let Survey { highest, lowest, counts, free_segments, .. } = survey;
         let way = |number: usize| {
@@ -119,7 +119,7 @@ impl<'a> DataVoids<'a> {
                 let top = balls.centers[row][2] + balls.radii[row];
                 let is_below =
                     |middle| matches!(floors.get(&middle), Some(Some(floor)) if floor + self.params.min_height < top);
-                if about(cell).any(is_below) {
+                if cell_and_neighbors(cell).any(is_below) {
                     radii[row] = radii[row].min(touching(positions[row], normals[row], cell));
                 }
             }
@@ -128,7 +128,7 @@ impl<'a> DataVoids<'a> {
         cuts_of(balls, MIN_RADIUS, control, |row| radii[row])
     }
 
-    /// Whether neither a cell nor one beside it holds a point.
+    /// Returns true if neither a cell nor its neighbours hold a point.
     fn is_empty_around(&self, cell: Cell) -> bool {
         let (low, high) = square(cell, 1);
         self.highest.in_rectangle(low, high, f32::max).is_none()
@@ -156,8 +156,8 @@ impl<'a> DataVoids<'a> {
         });
     }
 
-    /// Height down to which pulses passed through a cell without points: that of the lowest point around it, if nothing
-    /// stands between there and the scanner of any pulse that ended beside the void.
+    /// Returns the height down to which pulses passed through a cell without points. It is that of the lowest point
+    /// around it, if nothing stands between there and the scanner of any pulse that ended beside the void.
     fn floor(&self, cell: Cell) -> Option<f32> {
         let (low, high) = square(cell, FARTHEST);
         let count = self.counts.in_rectangle(low, high, u32::max)?;
@@ -178,7 +178,7 @@ impl<'a> DataVoids<'a> {
         (!ways.is_empty() && !ways.into_iter().any(|way| self.is_shaded(cell, floor, way))).then_some(floor)
     }
 
-    /// Whether a point lies above the line from the middle of a cell at this height towards a scanner.
+    /// Returns true if a point lies above the line from the centre of a cell at this height towards a scanner.
     fn is_shaded(&self, (row, column): Cell, height: f32, way: [f32; 3]) -> bool {
         let lean = way[0].hypot(way[1]);
         let from = [column as f32 + 0.5, row as f32 + 0.5, height];
@@ -217,7 +217,7 @@ fn area((row, column): Cell) -> Cell {
 }
 
 /// A cell and those beside it.
-fn about((row, column): Cell) -> impl Iterator<Item = Cell> {
+fn cell_and_neighbors((row, column): Cell) -> impl Iterator<Item = Cell> {
     (row - 1..=row + 1).flat_map(move |row| (column - 1..=column + 1).map(move |column| (row, column)))
 }
 
@@ -239,8 +239,8 @@ mod tests {
     const WEST: [f32; 3] = [-0.5, 0.0, 1.0];
     const STRAIGHT_UP: [f32; 3] = [0.0, 0.0, 1.0];
 
-    /// Points of a survey of 20 m, 0.25 m apart, at the heights that `height` gives, where it gives one; before them
-    /// one point 3 m above the origin, whose inside lies to the east.
+    /// Creates points of a survey of 20 m, 0.25 m apart, at the heights that `height` gives, if any. The first point is
+    /// 3 m above the origin; its inside lies to the east.
     fn survey(height: impl Fn(f32, f32) -> Option<f32>) -> OrientedCloud {
         let (mut positions, mut normals) = (vec![[0.0, 0.0, 3.0]], vec![[-1.0, 0.0, 0.0]]);
         for i in 0_u8..80 {
@@ -255,8 +255,8 @@ mod tests {
         OrientedCloud::with_known_normals(positions, normals).unwrap()
     }
 
-    /// What is left of the radius of a ball of [`RADIUS`] at point `row`, for scanners towards `way`.
-    fn cut(oriented: &OrientedCloud, row: usize, way: [f32; 3]) -> f32 {
+    /// Returns the remaining radius of a ball of [`RADIUS`] at point `row`, for scanners towards `way`.
+    fn remaining_radius(oriented: &OrientedCloud, row: usize, way: [f32; 3]) -> f32 {
         let positions = oriented.positions();
         let scanner: Vec<[f32; 3]> =
             positions.iter().map(|p| std::array::from_fn(|axis| p[axis] + 400.0 * way[axis])).collect();
@@ -279,26 +279,26 @@ mod tests {
     #[test]
     fn a_ball_reaches_no_farther_over_water_than_the_middle_of_a_cell() {
         // the middles of the nearest cells lie 0.5 m east and 0.5 m to both sides: |d|² / 2 d·m with d = (0.5, 0.5)
-        assert!((cut(&survey(canal), 0, WEST) - 0.5).abs() < 1e-6);
+        assert!((remaining_radius(&survey(canal), 0, WEST) - 0.5).abs() < 1e-6);
     }
 
     #[test]
     fn what_lies_in_a_shadow_is_no_void() {
         let towered = |x: f32, y: f32| if (-4.0..-1.0).contains(&x) { Some(30.0) } else { canal(x, y) };
-        assert_eq!(cut(&survey(towered), 0, WEST), RADIUS);
+        assert_eq!(remaining_radius(&survey(towered), 0, WEST), RADIUS);
         // a scanner on the other side looks below it
-        assert!(cut(&survey(towered), 0, [0.5, 0.0, 1.0]) < 1.0);
+        assert!(remaining_radius(&survey(towered), 0, [0.5, 0.0, 1.0]) < 1.0);
     }
 
     #[test]
     fn assumed_pulses_tell_of_no_void() {
-        assert_eq!(cut(&survey(canal), 0, STRAIGHT_UP), RADIUS);
+        assert_eq!(remaining_radius(&survey(canal), 0, STRAIGHT_UP), RADIUS);
     }
 
     #[test]
     fn a_few_empty_cells_are_no_void() {
         let puddle = |x: f32, y: f32| (!(0.0..2.0).contains(&x) || y.abs() > 3.0).then_some(0.0);
-        assert_eq!(cut(&survey(puddle), 0, WEST), RADIUS);
+        assert_eq!(remaining_radius(&survey(puddle), 0, WEST), RADIUS);
     }
 
     #[test]
@@ -306,14 +306,14 @@ mod tests {
         // one point of each square metre
         let is_kept = |v: f32| (v + 9.9).rem_euclid(1.0) < 0.1;
         let sparse = |x: f32, y: f32| canal(x, y).filter(|_| is_kept(x) && is_kept(y));
-        assert_eq!(cut(&survey(sparse), 0, WEST), RADIUS);
+        assert_eq!(remaining_radius(&survey(sparse), 0, WEST), RADIUS);
     }
 
     #[test]
     fn balls_below_the_lowest_point_around_a_void_stay() {
         let oriented = survey(canal);
         let quay = (1..oriented.len()).find(|&row| (-0.5..0.0).contains(&oriented.positions()[row][0])).unwrap();
-        assert_eq!(cut(&oriented, quay, WEST), RADIUS);
+        assert_eq!(remaining_radius(&oriented, quay, WEST), RADIUS);
     }
 
     #[test]

@@ -12,7 +12,7 @@ pub struct FeatureSizeParams {
     /// A medial point counts if its bisector differs from those of its neighbours by less than this, radians, above 0;
     /// masbcpp: 2°.
     pub max_bisector_angle: f32,
-    /// How many neighbouring medial points it is compared with, 1 to 64; masbcpp: 3.
+    /// Number of neighbouring medial points for comparison, 1 to 64; masbcpp: 3.
     pub neighbor_count: usize,
 }
 
@@ -114,7 +114,7 @@ fn reliable_centers(
     Ok(centers.into_iter().zip(agrees).filter_map(|(center, agrees)| agrees.then_some(center)).collect())
 }
 
-/// Whether [`simplify`] counts points per column or per cube.
+/// Cells in which [`simplify`] counts points: columns or cubes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cells {
     /// Columns of any height.
@@ -135,7 +135,7 @@ pub struct SimplifyParams {
     /// A cell whose points differ in height by more than this, metres, keeps a hundred times as many: edges of roofs
     /// and kerbs. `None`: never; masbcpp: 0.5, which only columns can exceed with its cells.
     pub edge_height: Option<f32>,
-    /// Least and most points per square metre to leave.
+    /// Minimum and maximum number of points per square metre to leave.
     pub density_limits: [f32; 2],
     /// Seed of the random choice.
     pub seed: u64,
@@ -154,8 +154,8 @@ impl Default for SimplifyParams {
     }
 }
 
-/// Which points to keep, (N): in each cell of area A a random choice of A / (ε·m)² points, where m is the mean local
-/// feature size there. The same seed gives the same choice.
+/// Returns a mask of the points to keep, (N): in each cell of area A a random choice of A / (ε·m)² points, where m is
+/// the mean local feature size there. The same seed gives the same choice.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] unless there is one feature size per point, [`Error::InvalidParameter`] for parameters out

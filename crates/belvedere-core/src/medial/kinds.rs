@@ -1,4 +1,4 @@
-//! What points lie on, as far as their class and return number show it, and how large balls may be there.
+//! Kinds of points by class and return number, and the maximum size of balls for each.
 
 use belvedere_data::Attributes;
 
@@ -24,14 +24,14 @@ impl Default for KindCaps {
     }
 }
 
-/// What a point lies on, as far as its class and return number show it.
+/// Kind of the surface below a point, by its class and return number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Class 2.
     Ground,
     /// Classes 3 to 5.
     Vegetation,
-    /// Not the first return of its pulse, and neither ground nor vegetation.
+    /// Return after the first of its pulse, and neither ground nor vegetation.
     Later,
     /// Anything else.
     Other,

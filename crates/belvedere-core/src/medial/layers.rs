@@ -9,7 +9,7 @@ const STEP: f32 = 0.4;
 /// Voxels up and down that count as of the same height, which allows for slopes up to 45° and for the parapet of a
 /// balcony.
 const SAME_HEIGHT: i32 = 2;
-/// Most cells: beyond this the columns would take gigabytes.
+/// Maximum number of cells: beyond this the columns would take gigabytes.
 const MAX_CELLS: f32 = 5e8;
 
 /// East and north number of a cell.
@@ -26,13 +26,13 @@ pub(super) struct Layers {
     /// Number of the cell of the local origin, east and north, in the reference system.
     origin: [i64; 2],
     size: [i32; 2],
-    /// Where the voxels of each cell begin, and one more.
+    /// First voxel of each cell, and the number of voxels.
     first: Vec<u32>,
     /// Number of each voxel upward.
     level: Vec<i32>,
     /// Cell of each voxel.
     cell: Vec<u32>,
-    /// Whether a voxel holds a solid point.
+    /// True for voxels that hold a solid point.
     solid: Vec<bool>,
 }
 
@@ -120,8 +120,8 @@ impl Layers {
         Some(column.start + found)
     }
 
-    /// How many of the eight cells beside speak for a surface that goes on from a solid voxel: they hold solid points
-    /// of its height, or none at all, which says nothing. 0 for a voxel that is not solid.
+    /// Returns how many of the eight neighbouring cells continue the surface of a solid voxel, 0 to 8. They hold solid
+    /// points at its height, or none at all, which is no evidence. 0 for a voxel that is not solid.
     pub(super) fn count_beside(&self, voxel: usize) -> usize {
         let own = self.cell_of(voxel);
         let goes_on = |cell: Cell| self.same_height(cell, voxel).next().is_some() || self.column(cell).is_empty();
@@ -138,12 +138,13 @@ impl Layers {
     }
 
     /// Calls `visit` with the solid voxels of this and the eight cells about that lie at about the height of `voxel`.
-    pub(super) fn around(&self, voxel: usize, mut visit: impl FnMut(usize)) {
+    pub(super) fn visit_around(&self, voxel: usize, mut visit: impl FnMut(usize)) {
         square(self.cell_of(voxel)).for_each(|cell| self.same_height(cell, voxel).for_each(&mut visit));
     }
 
-    /// Calls `visit` with the voxels of each cell that a line crosses and where along it, metres, it enters and leaves
-    /// the cell: from `start` along the unit vector `up` for `length` metres, until `visit` says no or the raster ends.
+    /// Calls `visit` with the voxels of each cell that a line crosses, and the distances along it, metres, at which it
+    /// enters and leaves the cell. The line runs from `start` along the unit vector `up` for `length` metres. It ends
+    /// when `visit` returns false, or at the edge of the raster.
     pub(super) fn walk(
         &self,
         start: [f32; 3],

@@ -1,4 +1,4 @@
-//! What a rule of carving is: something that reads a survey and marks it.
+//! Interface of a carving rule: it reads a survey and returns marks.
 
 use super::marks::Marks;
 use super::survey::Survey;
@@ -6,7 +6,7 @@ use belvedere_data::Result;
 use belvedere_data::balls::MedialBalls;
 use belvedere_data::control::Control;
 
-/// When a rule marks.
+/// Phase in which a rule marks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Phase {
     /// Before there are balls: its caps shorten the search of the pulses.
@@ -17,12 +17,13 @@ pub(super) enum Phase {
 
 /// A rule that marks a survey. Its parameters are the rule.
 pub(super) trait MarkingRule: Sync {
-    /// When it marks, and what progress calls that; `None` for what the survey and the model do by these parameters.
+    /// Returns the phase in which it marks, and the name of the step for progress. `None` for parameters that the
+    /// survey and the model apply themselves.
     fn stage(&self) -> Option<(Phase, &'static str)> {
         None
     }
 
-    /// What it marks. Row i of `balls` is the ball of point i; there is none in [`Phase::Points`].
+    /// Returns the marks. Row i of `balls` is the ball of point i; there is none in [`Phase::Points`].
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).

@@ -1,4 +1,4 @@
-//! What rules mark in a survey, and what is done with the marks: a radius is capped, a ball is cut, a place is filled.
+//! Marks of the rules and their execution: a radius is capped, a ball is cut, a place is filled.
 
 use super::kinds::{Kind, KindCaps};
 use super::survey::Survey;
@@ -13,7 +13,7 @@ use rayon::prelude::*;
 /// Fills, or balls, handed to a thread at once.
 const CHUNK: usize = 512;
 
-/// What one rule marks.
+/// Marks of one rule.
 #[derive(Debug, Default)]
 pub(super) struct Marks {
     /// Balls that are smaller because of what their point is.
@@ -33,9 +33,9 @@ pub(super) struct Cap {
     pub(super) row: usize,
     /// Metres, 0 or more.
     pub(super) radius: f32,
-    /// Whether the ball lies centred about the point, as large as the pulses leave it, rather than tangent there.
+    /// True if the ball is centred at the point, as large as the pulses allow, instead of tangent there.
     pub(super) is_centred: bool,
-    /// Whether the rule fills here, so that rules after it leave the point alone.
+    /// True if the rule fills here, so that later rules skip the point.
     pub(super) is_claimed: bool,
 }
 
@@ -46,7 +46,7 @@ impl Cap {
     }
 }
 
-/// What is left of the ball at a point.
+/// New radius of the ball at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cut {
     /// Row of the point.
@@ -60,7 +60,7 @@ pub(super) struct Cut {
 pub(super) struct Fill {
     /// Row of the point that tells of the place.
     pub(super) row: usize,
-    /// Where the ball lies.
+    /// Position of the ball.
     pub(super) place: FillPlace,
     /// Largest radius, metres.
     pub(super) max_radius: f32,
@@ -68,7 +68,7 @@ pub(super) struct Fill {
     pub(super) min_radius: f32,
 }
 
-/// Where a fill lies, local metres.
+/// Position of a fill, local metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FillPlace {
     /// Around this centre.
@@ -84,7 +84,7 @@ pub struct RadiusCaps {
     pub radii: Vec<f32>,
     /// To which a ball is cut that neither a point nor a pulse bounds, metres.
     pub unbounded: f32,
-    /// Whether a ball lies centred about its point, (N); empty where none does.
+    /// True for balls that are centred at their point, (N); empty if there are none.
     pub(super) is_centred: Vec<bool>,
 }
 

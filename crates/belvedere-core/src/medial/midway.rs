@@ -3,8 +3,8 @@
 use rayon::slice::ParallelSliceMut;
 use std::cmp::Ordering;
 
-/// Of `rows`, ascending, one in each cell of this side, metres, whatever their order: dense clouds have thousands of
-/// points within reach of each other, and balls closer than that fill nothing more.
+/// Keeps one of `rows` in each cube of this side, metres, in ascending order, whatever the order of the points. Dense
+/// clouds have thousands of points within reach of each other, and more balls there fill nothing more.
 pub(super) fn one_in_each_cell(positions: &[[f32; 3]], mut rows: Vec<usize>, side: f32) -> Vec<usize> {
     #[expect(clippy::cast_possible_truncation, reason = "cells of centimetres over any cloud; `as` saturates")]
     let cell = |row: usize| positions[row].map(|v| (v / side).floor() as i32);
@@ -16,21 +16,23 @@ pub(super) fn one_in_each_cell(positions: &[[f32; 3]], mut rows: Vec<usize>, sid
     rows
 }
 
-/// Numbers of those places `near`, none of them `p`, that lie more than `least` metres from it, seen from above, with
-/// none of the others in the circle around the middle between both whose diameter is `share` of their distance: for a
-/// share of 1 neighbours in the graph of Gabriel & Sokal 1969, for less also others. Of two places one has the other,
-/// whatever their order.
+/// Returns the indices of the Gabriel neighbours of `p` (in plan) among `near` that are farther than `least` metres.
+/// `share` scales the diameter of the empty circle: 1 gives the graph of Gabriel & Sokal 1969, less gives more
+/// neighbours. Each pair is returned for one of its points only, whatever their order.
 pub(super) fn neighbors_after(p: [f32; 3], near: &[[f32; 3]], least: f32, share: f32) -> impl Iterator<Item = usize> {
     near.iter().enumerate().filter_map(move |(number, &q)| {
-        let (middle, gap) = ([(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0, 0.0], apart(p, q));
-        let has_third =
-            || near.iter().enumerate().any(|(third, &r)| third != number && apart(r, middle) < share * gap / 2.0);
+        let (middle, gap) = ([(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0, 0.0], distance_in_plan(p, q));
+        let has_third = || {
+            near.iter()
+                .enumerate()
+                .any(|(third, &r)| third != number && distance_in_plan(r, middle) < share * gap / 2.0)
+        };
         (gap > least && by_axes(p, q).is_lt() && !has_third()).then_some(number)
     })
 }
 
 /// Distance of two places, seen from above.
-pub(super) fn apart(a: [f32; 3], b: [f32; 3]) -> f32 {
+pub(super) fn distance_in_plan(a: [f32; 3], b: [f32; 3]) -> f32 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 

@@ -13,13 +13,13 @@ use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::sync::atomic::{AtomicBool, Ordering as Memory};
 
-/// Least cosine between the direction to a ball's centre and the inward normal for it to lie on the inner side.
+/// Minimum cosine between the direction to a ball's centre and the inward normal for it to lie on the inner side.
 const SAME_SIDE: f32 = 0.5;
 
-/// How [`prune`] works.
+/// Parameters of [`prune`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PruneParams {
-    /// How far a point may lie from the surface of the ball that stands in for its own, metres, 0 or more. Default
+    /// Maximum distance between a point and the surface of the ball that replaces its own, metres, 0 or more. Default
     /// 0.03: the noise of a range.
     pub deviation: f32,
 }
@@ -33,12 +33,13 @@ impl Default for PruneParams {
 /// Leaves out balls that larger ones make superfluous, and returns how many. Row i of `balls` must be the interior ball
 /// of point i of `oriented`, whose positions `index` holds; balls left out get [`NO_TOUCH`].
 ///
-/// Larger balls come first, and of equal ones that whose point is less in x, then y, then z. A ball is kept unless its
-/// point lies within [`PruneParams::deviation`] of the surface of a ball kept before, on its inner side. What is left
-/// therefore reaches every point that had a ball up to the deviation; between points spaced by h, balls of radius r
-/// fall short of their common tangent plane by h²/8r more. Blocks of 64 m, counted from the origin of the reference
-/// system, are pruned on their own: the result depends on neither order nor number of threads, and not on the tile but
-/// for its margin.
+/// Larger balls come first; of equal ones, that with the point of smallest x, then y, then z. A ball is removed if its
+/// point lies within [`PruneParams::deviation`] of the surface of a ball kept before, on its inner side. The remaining
+/// balls therefore reach every point that had a ball, up to the deviation. Between points spaced by h, balls of radius
+/// r fall short of their common tangent plane by h²/8r more.
+///
+/// Blocks of 64 m, counted from the origin of the reference system, are pruned independently. The result depends on
+/// neither order nor number of threads, and on the tile only within its margin.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] where they differ in length, [`Error::Cancelled`].

@@ -18,38 +18,38 @@ use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::{dot, sub};
 use rayon::prelude::*;
 
-/// Least upward part of the normal of a roof: 60° of slope.
+/// Minimum upward part of the normal of a roof: 60° of slope.
 pub(super) const MIN_UP: f32 = 0.5;
-/// How far below a point its neighbours may lie and still be of the same roof, metres.
+/// Maximum depth of neighbours below a point of the same roof, metres.
 const SAME_ROOF: f32 = 0.6;
-/// Least horizontal distance of neighbours that give a direction, metres: above noise.
+/// Minimum horizontal distance of neighbours that give a direction, metres: above noise.
 const MIN_DISTANCE: f32 = 0.05;
 /// Widest gap of an edge, radians: half a radian more than at a corner of 90°. Beyond it a point stands alone.
 const WIDEST_GAP: f32 = 5.2;
 /// Distance of a wall from the roof and from the ground at which it is taken to begin, metres.
 const ENDS: f32 = 0.3;
 
-/// How balls are cut below the edges of roofs, and where they reach above the roof. Defaults were chosen on three
-/// simulated towns of seed 7 at 8 pulses per m².
+/// Parameters of cutting balls below the edges of roofs and above roofs. Defaults were chosen on three simulated towns
+/// of seed 7 at 8 pulses per m².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoofEdgeParams {
     /// Distance within which a point on a roof has no neighbour on one side if it lies at the edge, in spacings of
     /// pulses, above 0. Default 3: with 4.5 fewer edges are found and a third of the gain is lost.
     pub around_spacings: f32,
-    /// Least angle without a neighbour at an edge, radians. Default 2.6: a straight edge leaves π less what the
-    /// raggedness of its points takes.
+    /// Minimum angle without a neighbour at an edge, radians. Default 2.6: a straight edge leaves π less the raggedness
+    /// of its points.
     pub min_gap: f32,
-    /// Least height of an edge above the lowest point near by, metres, above 0. Default 2.
+    /// Minimum height of an edge above the lowest point near by, metres, above 0. Default 2.
     pub min_height: f32,
-    /// How far beyond its outermost points a roof is taken to reach, in spacings of pulses, 0 or more. Default 0.3. 0.9
+    /// Distance by which a roof extends beyond its outermost points, in spacings of pulses, 0 or more. Default 0.3. 0.9
     /// gains nothing more on facades and lets more through houses.
     pub outside_spacings: f32,
     /// Distance of the places on a wall below each other, metres, above 0. Default 0.5.
     pub spacing: f32,
-    /// How far a ball may reach beyond these places, metres, above 0. Default 0.05.
+    /// Maximum penetration of a ball beyond these places, metres, above 0. Default 0.05.
     pub penetration: f32,
-    /// Least cosine between the way a wall faces and the way from a ball's centre to the place it touches. Default
-    /// 0.85: at 0.7 houses with few points on their walls begin to leak, at 0.9 a fifth of the gain is lost.
+    /// Minimum cosine between the direction that a wall faces and that from a ball's centre to the place it touches.
+    /// Default 0.85: at 0.7 houses with few points on their walls begin to leak, at 0.9 a fifth of the gain is lost.
     pub min_cosine: f32,
     /// Radius below which balls are not cut, metres, above 0. Default 0.5.
     pub min_radius: f32,
@@ -103,7 +103,7 @@ struct RoofEdges {
 }
 
 impl RoofEdges {
-    /// Those of a survey.
+    /// Finds the roof edges of a survey.
     ///
     /// # Errors
     /// Those of [`NeighborIndex::new`].
@@ -135,7 +135,7 @@ impl RoofEdges {
         Ok(Self { index: NeighborIndex::new(&places, control)?, places, outward })
     }
 
-    /// What is left of the radius of the ball at a point with this outward normal.
+    /// Returns the remaining radius of the ball at a point with this outward normal.
     fn radius(&self, point: [f32; 3], normal: [f32; 3], radius: f32, params: &RoofEdgeParams) -> f32 {
         // as in shrinking: the noise-free ball is tangent below the point
         let p: [f32; 3] = std::array::from_fn(|i| point[i] - params.penetration * normal[i]);

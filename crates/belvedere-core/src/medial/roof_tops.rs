@@ -10,36 +10,36 @@ use rayon::prelude::*;
 
 /// Heights of the highest points in cells of the map.
 pub(super) struct RoofTops<'a> {
-    /// Of all points.
+    /// Heights of all points.
     all: &'a Cells<f32>,
-    /// Of all points in a cell and those about it.
+    /// Highest point in a cell and its neighbours.
     near: Cells<f32>,
-    /// Of points on roofs and on level ground.
+    /// Heights of points on roofs and on level ground.
     level: Cells<f32>,
 }
 
 impl<'a> RoofTops<'a> {
-    /// Those of `oriented`, of which `all` are the heights that [`super::cells::highest`] gives.
+    /// Collects the roof tops of `oriented`; `all` are the heights that [`super::cells::highest`] returns.
     pub(super) fn new(oriented: &OrientedCloud, all: &'a Cells<f32>) -> Self {
         let points = oriented.positions().par_iter().zip(oriented.normals());
         let level = points.filter(|(_, normal)| normal[2] >= MIN_UP).map(|(&p, _)| (cell(p), p[2]));
         Self { all, near: all.with_neighbors(f32::max), level: Cells::new(level.collect(), f32::max) }
     }
 
-    /// What is left of the radius of a ball at a point of height `z`, whose outward normal has the upward part `up`: a
-    /// ball is cut where it reaches above every point over its whole width. Only where the highest of these points lies
-    /// on a roof is the top of the building known; other balls stay.
+    /// Returns the remaining radius of a ball at a point of height `z`, with an outward normal whose upward part is
+    /// `up`. A ball is cut where it rises above every point over its whole width. The top of the building is known only
+    /// if the highest of these points lies on a roof; other balls are unchanged.
     pub(super) fn radius(&self, (center, radius): ([f32; 3], f32), z: f32, up: f32, params: &RoofEdgeParams) -> f32 {
-        let top = if up < 1.0 { self.over(center, radius, params.penetration) } else { None };
+        let top = if up < 1.0 { self.roof_height(center, radius, params.penetration) } else { None };
         let Some(top) = top else { return radius };
         // the ball of radius r at this point ends r (1 - up) above it
         let left = (top + params.penetration - z) / (1.0 - up);
         radius.min(left.max(params.min_radius))
     }
 
-    /// Height of the roof over a ball: of the highest point over its whole width; `None` where the ball does not reach
-    /// above that, or where that point is more than `tolerance` metres above every roof.
-    fn over(&self, center: [f32; 3], radius: f32, tolerance: f32) -> Option<f32> {
+    /// Returns the height of the roof over a ball: that of the highest point over its whole width. `None` if the ball
+    /// does not rise above that, or if that point is more than `tolerance` metres above every roof.
+    fn roof_height(&self, center: [f32; 3], radius: f32, tolerance: f32) -> Option<f32> {
         let is_below = |highest: f32| highest >= center[2] + radius - tolerance;
         // most balls lie below the points about their middle
         if self.near.get(cell(center)).is_some_and(is_below) {

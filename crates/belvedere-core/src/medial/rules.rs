@@ -45,15 +45,15 @@ macro_rules! rules {
             }
         }
 
-        /// How carved balls are made. Every rule that is `Some` is applied; [`CarvedParams::default`] applies all: the
-        /// comparison of docs/methods/carving.md shows that they earn their place.
+        /// Parameters of carved balls. Every rule that is `Some` is applied. [`CarvedParams::default`] applies all;
+        /// docs/methods/carving.md compares their benefit.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct CarvedParams {
             /// Depth to which a point may enter a ball, metres, above 0. Default 0.02: a penetration of 0.05 m costs
             /// 1.3 points on facades. Pulses enter none.
             pub penetration: f32,
-            /// Radius every ball starts with, metres. Default 5: 15 m answer the same, cost 40 % more a query and bulge
-            /// farther where no pulse passes; 3 m let 1.2 points more of the shade of streets through.
+            /// Initial radius of every ball, metres. Default 5. Balls of 15 m answer the same, cost 40 % more a query,
+            /// and bulge farther where no pulse passes. With 3 m, 1.2 points more of the shade of streets are lost.
             pub initial_radius: f32,
             /// Largest radius of any ball, metres, above 0; +∞, the default, for no limit but those that pulses and
             /// rules set.
@@ -129,7 +129,7 @@ impl CarvedParams {
         self
     }
 
-    /// How balls shrink before they are carved.
+    /// Returns the parameters of shrinking before carving.
     #[must_use]
     pub fn shrinking(&self) -> ShrinkParams {
         ShrinkParams {

@@ -9,7 +9,7 @@ use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// How a ball stops shrinking in the presence of noise.
+/// Stopping criterion of a shrinking ball in the presence of noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ShrinkMethod {
     /// The heuristics of the paper, as its reference program masbcpp has them: the ball before the one whose separation
@@ -33,16 +33,16 @@ pub enum ShrinkMethod {
 /// Parameters of [`shrink`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShrinkParams {
-    /// How a ball stops shrinking.
+    /// Stopping criterion.
     pub method: ShrinkMethod,
     /// Radius every ball starts with, metres, up to 100 000.
     pub initial_radius: f32,
-    /// Most radius a ball is left with, metres, above 0; +∞ for no limit. A larger ball gives way to the one of this
-    /// radius within it that is tangent at the same point, and keeps its touch and separation angle. An interior ball
-    /// of [`ShrinkMethod::Tau`] that met no point gets this radius too: nothing lies behind its surface, as behind the
+    /// Maximum radius, metres, above 0; +∞ for no limit. A larger ball is replaced by the one of this radius within it
+    /// that is tangent at the same point, with the same touch and separation angle. An interior ball of
+    /// [`ShrinkMethod::Tau`] that met no point gets this radius too. Nothing lies behind its surface, as behind the
     /// outer walls of a scanned room, and that surface blocks.
     pub max_radius: f32,
-    /// Most radius of interior balls of [`ShrinkMethod::Tau`] in point spacings at their points, above 0; +∞ for no
+    /// Maximum radius of interior balls of [`ShrinkMethod::Tau`] in point spacings at their points, above 0; +∞ for no
     /// such limit. Where points are dense, balls need not be thick to leave no gap, and thick ones stand out of thin
     /// things. The penetration is then at most a quarter of the limit.
     pub max_spacings: f32,
@@ -66,19 +66,19 @@ impl ShrinkParams {
     /// Balls of bounded penetration: 0.05 m, started at 30 m, which is more than half the thickness of nearly every
     /// building, and cut down to half a metre.
     ///
-    /// The limit is there for airborne scans, where large balls bulge out through facades that hardly a pulse has hit.
-    /// On simulated towns of 11 points a square metre (seeds 1 and 2, sun 30° high) unlimited balls call nine tenths of
-    /// the sunlit street shadowed; limits of 2, 1 and 0.5 m leave 46 to 52, 22 to 24 and 9 to 10 %, while missed shadow
-    /// grows from 0.1 to 2.4 %. Clouds much sparser than that want about twice their point spacing.
+    /// The limit is for airborne scans, where large balls bulge out through facades with few returns. It was measured
+    /// on simulated towns of 11 points a square metre (seeds 1 and 2, sun 30° high). Unlimited balls call nine tenths
+    /// of the sunlit street shadowed. Limits of 2, 1 and 0.5 m leave 46 to 52, 22 to 24 and 9 to 10 %, while missed
+    /// shadow grows from 0.1 to 2.4 %. Much sparser clouds need about twice their point spacing.
     #[must_use]
     pub fn tau() -> Self {
         let method = ShrinkMethod::Tau { penetration: 0.05 };
         Self { method, initial_radius: 30.0, max_radius: 0.5, max_spacings: f32::INFINITY }
     }
 
-    /// The parameters for clouds that no pulse can carve. Among them are scans from the ground without the place of the
-    /// scanner, whose points lie millimetres apart near the scanner and decimetres far from it: balls of at most three
-    /// spacings, which overlap also where scan lines are ten times farther apart than the points on them.
+    /// Returns parameters for clouds that no pulse can carve, such as scans from the ground without the position of the
+    /// scanner. Their points lie millimetres apart near the scanner and decimetres apart far from it. Balls are limited
+    /// to three spacings, so that they overlap even if scan lines are ten times farther apart than the points on them.
     #[must_use]
     pub fn tau_by_spacing() -> Self {
         Self { max_spacings: 3.0, ..Self::tau() }
@@ -120,7 +120,7 @@ impl ShrinkParams {
     }
 }
 
-/// What became of the points of a cloud in [`shrink`].
+/// Counts of points by outcome of [`shrink`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct ShrinkReport {
     /// Balls that touch a second point.
@@ -152,9 +152,11 @@ const CHUNK: usize = 512;
 ///
 /// # Source
 /// Ma, Bae & Choi 2012 (shrinking ball); Peters, Ledoux & Biljecki 2015, section 3.1 (angle thresholds). The order of
-/// tests and the f32 arithmetic of `Angles` follow masbcpp. `Tau` is ours: the ball of radius r that every point q
-/// enters by at most τ is the noise-free ball of radius r − τ tangent τ below p, so r = τ + min |p′−q|² / 2 n·(p′−q)
-/// with p′ = p − τn; nested balls make the minimum independent of any order.
+/// tests and the f32 arithmetic of `Angles` follow masbcpp.
+///
+/// `Tau` is ours. Consider the ball of radius r that every point q enters by at most τ. It is the noise-free ball of
+/// radius r − τ that is tangent τ below p. With p′ = p − τn, therefore, r = τ + min |p′−q|² / 2 n·(p′−q). Nested balls
+/// make the minimum independent of any order.
 pub fn shrink(
     cloud: &OrientedCloud,
     index: &NeighborIndex,
@@ -247,7 +249,7 @@ struct Ball {
     center: [f32; 3],
     radius: f32,
     touch: u32,
-    /// Most radius that it is left with.
+    /// Maximum radius after shrinking.
     limit: f32,
 }
 
@@ -260,8 +262,8 @@ const LIMITED_PENETRATION: f32 = 0.25;
 /// Number of neighbours that give the spacing of points: enough to reach from one scan line to the next.
 const SPACING_NEIGHBORS: usize = 12;
 
-/// Least distance between points that counts, metres: above and below a tripod scan lines lie up to 0.03 m apart, while
-/// the points on them touch, and balls must close the gaps between the lines.
+/// Minimum point distance that counts, metres. Above and below a tripod, scan lines lie up to 0.03 m apart while the
+/// points on them touch; balls must close the gaps between the lines.
 const MIN_SPACING: f32 = 0.0135;
 
 /// Distance between points at `p`, metres, if those around it lay in squares; [`MIN_SPACING`] or more.

@@ -7,7 +7,7 @@ use super::cells::cell;
 use super::chains::Chain;
 use super::marking_rule::{MarkingRule, Phase};
 use super::marks::{Cap, Fill, Marks};
-use super::midway::{apart, neighbors_after, one_in_each_cell};
+use super::midway::{distance_in_plan, neighbors_after, one_in_each_cell};
 use super::survey::Survey;
 use crate::neighbors::{NeighborIndex, Tangent};
 use belvedere_data::Result;
@@ -16,31 +16,32 @@ use belvedere_data::control::{Control, Stop};
 use rayon::prelude::*;
 use std::f32::consts::FRAC_1_SQRT_2;
 
-/// How slender things are found and represented.
+/// Parameters of slender things: detection and representation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlenderParams {
-    /// A thing is slender where pulses enter the balls that touch its point from eight sides before any has this
-    /// radius, metres, above 0: into a wall, a car or a roof one of them can grow on. Default 0.5: some pulse passes
-    /// within that of most points of fences at eight pulses a square metre; 0.35 finds fewer.
+    /// Radius of the balls that decide whether a thing is slender, metres, above 0. It is slender if pulses enter all
+    /// balls of this radius that touch its point from eight sides; into a wall, a car or a roof one of them can grow
+    /// on. Default 0.5: at eight pulses a square metre, some pulse passes within that of most points of fences. 0.35
+    /// finds fewer.
     pub gap: f32,
-    /// How far below its point the balls touch, metres, 0 or more; above the lowest point near by in any case. Default
+    /// Depth below its point at which the balls touch, metres, 0 or more; never below the lowest point near by. Default
     /// 0.7: more than the gap, so that pulses that end beside the point, on the same roof, do not count.
     pub lowering: f32,
-    /// Most radius of the balls at its points, in spacings of pulses, above 0. Default 0.32: pulses pass closer on both
-    /// sides.
+    /// Maximum radius of the balls at its points, in spacings of pulses, above 0. Default 0.32: pulses pass closer on
+    /// both sides.
     pub radius_spacings: f32,
-    /// Least height above the lowest point near by, metres, 0 or more. Default 0.3: kerbs and noise are lower.
+    /// Minimum height above the lowest point near by, metres, 0 or more. Default 0.3: kerbs and noise are lower.
     pub min_height: f32,
     /// Height up to which it stands on the ground, rather than hang in the air, metres. Default 2.5: higher fences are
     /// rare, lower wires too.
     pub standing_height: f32,
-    /// Most radius of the balls that fill what stands, in spacings of pulses, above 0. Default 0.47: what pulses passed
-    /// by cannot be blocked, and 0.32 lets more through.
+    /// Maximum radius of the balls that fill standing things, in spacings of pulses, above 0. Default 0.47: space that
+    /// pulses passed cannot be blocked, and 0.32 lets more through.
     pub standing_spacings: f32,
     /// Distance of these balls below each other, metres, above 0. Default 0.2.
     pub spacing: f32,
-    /// Most distance of two points of one thing between which it is filled as well, metres, 0 or more. Default 1: twice
-    /// the distance of most hits along a fence; wider gaps may be gates.
+    /// Maximum distance of two points of one thing between which it is filled as well, metres, 0 or more. Default 1:
+    /// twice the distance of most hits along a fence; wider gaps may be gates.
     pub reach: f32,
 }
 
@@ -61,7 +62,7 @@ impl Default for SlenderParams {
 
 /// Half of the eight sides from which balls touch a point; the others are opposite.
 const SIDES: [[f32; 2]; 4] = [[1.0, 0.0], [FRAC_1_SQRT_2, FRAC_1_SQRT_2], [0.0, 1.0], [-FRAC_1_SQRT_2, FRAC_1_SQRT_2]];
-/// How far beside a point others say how high the thing is there, metres.
+/// Radius around a point in which the top of the thing is searched, metres.
 const TOP_REACH_M: f32 = 0.4;
 /// Points handed to a thread at once.
 const CHUNK: usize = 512;
@@ -71,9 +72,9 @@ impl MarkingRule for SlenderParams {
         Some((Phase::Points, "finding thin objects"))
     }
 
-    /// Caps at all slender things, and fills of those that stand on the ground: balls below each other, at each point
-    /// from the highest point of the thing close by down to the ground, and midway between points that have no other
-    /// between them.
+    /// Returns caps at all slender things, and fills of those that stand on the ground. Fills are balls below each
+    /// other, from the highest point of the thing close by down to the ground. They stand at each point, and midway
+    /// between neighbouring points.
     fn marks(&self, survey: &Survey<'_>, _: &MedialBalls, control: &Control<'_>) -> Result<Marks> {
         let heights = self.heights(survey, control)?;
         let rows = (0..heights.len()).filter(|&row| !heights[row].is_nan());
@@ -94,9 +95,9 @@ impl MarkingRule for SlenderParams {
 }
 
 impl SlenderParams {
-    /// Height of each point of a slender thing above the lowest point near by, NaN for all others: those of ground,
-    /// vegetation and buildings (class 6; what has no class and is higher than what stands), those too low, and those
-    /// not passed by pulses on all sides.
+    /// Returns the height of each point of a slender thing above the lowest point near by, NaN for all others. Points
+    /// of ground, vegetation and buildings are left out (class 6, or no class and higher than what stands). So are
+    /// points that are too low, or not passed by pulses on all sides.
     fn heights(&self, survey: &Survey<'_>, control: &Control<'_>) -> Result<Vec<f32>> {
         let stop = Stop::new(control);
         let positions = survey.positions();
@@ -158,15 +159,15 @@ impl SlenderParams {
     fn fills_at(&self, place: &Place, near: &[Place]) -> Vec<Fill> {
         let p = place.position;
         let beside: Vec<_> = near.iter().map(|other| other.position).collect();
-        let close_by = beside.iter().filter(|q| apart(p, **q) < TOP_REACH_M);
+        let close_by = beside.iter().filter(|q| distance_in_plan(p, **q) < TOP_REACH_M);
         let top = close_by.fold(p[2], |top, q| top.max(q[2]));
         let ground = p[2] - place.height;
         let chain = Chain { row: place.row, radius: self.standing_spacings * place.spacing, spacing: self.spacing };
-        let mut fills: Vec<_> = chain.below([p[0], p[1], top], ground).collect();
+        let mut fills: Vec<_> = chain.fills_below([p[0], p[1], top], ground).collect();
         for number in neighbors_after(p, &beside, self.spacing, 1.0) {
             let q = beside[number];
             let middle = [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0, p[2].max(q[2])];
-            fills.extend(chain.below(middle, ground.min(q[2] - near[number].height)));
+            fills.extend(chain.fills_below(middle, ground.min(q[2] - near[number].height)));
         }
         fills
     }

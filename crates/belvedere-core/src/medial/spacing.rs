@@ -1,4 +1,4 @@
-//! How far pulses pass from each other: the length that sizes of balls are given in.
+//! Spacing of pulses: the unit of the sizes of balls.
 //!
 //! What lies between two pulses nothing is known of. Balls that close a surface are as large as that, whatever the
 //! survey: half a metre for two pulses a square metre, half a decimetre for a hundred.
@@ -10,8 +10,8 @@ use rayon::prelude::*;
 /// Area that pulses are counted on, m²: a cell and those about it.
 const AREA_M2: f32 = 9.0;
 
-/// How many pulses end in each cell and those about it, by first returns; without return numbers all of `positions`,
-/// (N, 3) local metres, count.
+/// Counts the pulses that end in each cell and its neighbours, by first returns. Without return numbers all of
+/// `positions`, (N, 3) local metres, count.
 pub(super) fn pulse_counts(positions: &[[f32; 3]], attributes: &Attributes) -> Cells<u32> {
     let numbers = attributes.return_number.as_deref();
     let is_first = |row: usize| numbers.and_then(|numbers| numbers.get(row)).is_none_or(|&number| number <= 1);

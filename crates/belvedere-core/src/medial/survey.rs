@@ -1,4 +1,4 @@
-//! What rules read: the points of a survey, what each of them is, and the statistics of the whole.
+//! Input of the rules: the points of a survey, the kind of each, and statistics of the whole.
 
 use super::cells::{Cells, cell, highest, lowest_near};
 use super::kinds::{Kind, kinds};
@@ -21,9 +21,9 @@ const PLANTS_ABOVE: f32 = 0.5;
 /// Statistics of a whole survey that rules need, so that a part of it has the balls of the whole.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RuleStatistics {
-    /// Whether any point has class 2, ground.
+    /// True if any point has class 2, ground.
     pub has_ground: bool,
-    /// Whether any point has a class of vegetation, 3 to 5.
+    /// True if any point has a class of vegetation, 3 to 5.
     pub has_vegetation: bool,
     /// Share of all pulses that met a crown which got through it, 0 to 1.
     pub transmission: f64,
@@ -35,7 +35,7 @@ pub struct RuleStatistics {
     pub spacing: f32,
 }
 
-/// What carved balls are made from. All columns have a row for each point.
+/// Input of carved balls. All columns have a row for each point.
 #[derive(Clone, Copy)]
 pub struct CarvedInput<'a> {
     /// Points and outward normals.
@@ -47,9 +47,9 @@ pub struct CarvedInput<'a> {
     pub index: &'a NeighborIndex,
     /// Class, return number and return count are used where present.
     pub attributes: &'a Attributes,
-    /// What the pulses prove empty.
+    /// Space that the pulses prove empty.
     pub free_segments: &'a FreeSegments,
-    /// Which returns share a pulse, rows as in the cloud; without it no crown is measured.
+    /// Groups of returns that share a pulse, rows as in the cloud; without it no crown is measured.
     pub pulses: Option<&'a Pulses>,
     /// Statistics of the survey that the points are a part of; `None` where they are the whole.
     pub statistics: Option<&'a RuleStatistics>,
@@ -65,13 +65,13 @@ pub(super) struct Survey<'a> {
     pub(super) index: &'a NeighborIndex,
     /// Class, return number and return count, where present.
     pub(super) attributes: &'a Attributes,
-    /// What the pulses prove empty.
+    /// Space that the pulses prove empty.
     pub(super) free_segments: &'a FreeSegments,
-    /// What each point lies on.
+    /// Kind of each point.
     pub(super) kinds: Vec<Kind>,
-    /// How many of the kinds were found by shape and not given by a class.
+    /// Number of points whose kind was found by shape and not given by a class.
     pub(super) found_vegetation: usize,
-    /// How many pulses end in each cell and those about it.
+    /// Number of pulses that end in each cell and its neighbours.
     pub(super) counts: Cells<u32>,
     /// Mean distance of the pulses about each point, metres.
     pub(super) spacing: Vec<f32>,
@@ -133,12 +133,12 @@ impl<'a> Survey<'a> {
         self.attributes.classification.as_ref().and_then(|classes| classes.get(row)).copied()
     }
 
-    /// Whether a point is a return after the first of its pulse.
+    /// Returns true if a point is a return after the first of its pulse.
     pub(super) fn is_later(&self, row: usize) -> bool {
         self.attributes.return_number.as_ref().and_then(|numbers| numbers.get(row)).is_some_and(|&number| number > 1)
     }
 
-    /// Whether a point is neither ground nor vegetation.
+    /// Returns true if a point is neither ground nor vegetation.
     pub(super) fn is_solid(&self, row: usize) -> bool {
         matches!(self.kinds.get(row), Some(Kind::Other | Kind::Later))
     }
@@ -152,8 +152,8 @@ impl<'a> Survey<'a> {
         }
     }
 
-    /// What each return tells of plants: those of the kind are plants, those of no particular class (0 and 1) perhaps,
-    /// but for what lies on the ground.
+    /// Returns the evidence of each return about plants. Vegetation is a plant; points of no particular class (0 and 1)
+    /// may be. Points on the ground are neither.
     pub(super) fn plant_returns(&self) -> Vec<PlantReturn> {
         let of_row = |(row, (p, kind)): (usize, (&[f32; 3], &Kind))| {
             let is_low = self.lowest.get(cell(*p)).is_none_or(|lowest| p[2] < lowest + PLANTS_ABOVE);
@@ -167,7 +167,7 @@ impl<'a> Survey<'a> {
         self.measured.par_iter().zip(&self.kinds).enumerate().map(of_row).collect()
     }
 
-    /// Whether a rule represents a point by fills of its own.
+    /// Returns true if a rule represents a point by fills of its own.
     pub(super) fn is_claimed(&self, row: usize) -> bool {
         self.claimed.get(row).copied().unwrap_or(false)
     }

@@ -18,64 +18,63 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Cells beside a voxel, of eight, that must hold points of its height for pulses below it to be looked at. On a
 /// straight edge five do; one of these may be empty where points are sparse.
 const MIN_BESIDE: usize = 4;
-/// How far points may lie above or below a surface and still be part of it where a pulse runs below, metres: a voxel
-/// and half of another, so that slopes up to 40° count.
+/// Maximum vertical distance between points of one surface that a pulse passes below, metres: a voxel and half of
+/// another, so that slopes up to 40° count.
 const SAME_SURFACE: f32 = 0.6;
 /// Gap about a pulse that is never taken for one below a surface, radians: hardly more than the π of a pulse below the
 /// outermost points. The edge of the surface lies farther out than these points by half their spacing, and a wall below
 /// it would have stopped the pulse.
 const WIDEST_OF_ALL: f32 = 3.2;
-/// How far below a voxel a point no longer belongs to its surface, metres: more than a voxel is high.
+/// Minimum depth below a voxel of points that are not part of its surface, metres: more than the height of a voxel.
 const OF_THE_SURFACE: f32 = 0.5;
-/// Farthest neighbours that a surface goes on between, in spacings of pulses: hardly any of a surface are farther
-/// apart.
+/// Maximum distance of neighbours on one surface, in spacings of pulses: hardly any of a surface are farther apart.
 const FARTHEST_APART_SPACINGS: f32 = 3.0;
-/// Share of the gap between neighbours, about its middle, that is clear of others. Of a surface with points at random
-/// places 1.8 % stay uncovered at 0.75, with 3.4 balls more for each point, and 7.7 % at 1, with 1.9; 5 % did with
-/// balls at points only, half as large again.
+/// Share of the gap between neighbours, around its middle, that is clear of others. With points at random places, 0.75
+/// leaves 1.8 % of a surface uncovered and adds 3.4 balls for each point; 1 leaves 7.7 % and adds 1.9. Balls at points
+/// only, half as large again, left 5 %.
 const CLEAR_SHARE: f32 = 0.75;
 /// Nearest neighbours that anything is filled between, metres: above noise.
 const MIN_APART: f32 = 0.05;
-/// Most difference in height of neighbours on a surface, metres.
+/// Maximum difference in height of neighbours on a surface, metres.
 const SAME_LEVEL: f32 = 0.3;
 /// FreeSegments, or points, handed to a thread at once.
 const CHUNK: usize = 1024;
 /// FreeSegments between two looks at whether to go on.
 const CHECK_EACH: usize = 64;
 
-/// How thin surfaces are found, and how large balls may be at them.
+/// Parameters of thin surfaces: detection, and maximum size of balls.
 ///
-/// Defaults were chosen on three simulated towns of seed 7 at 8 pulses per m²; `widest_gap`, and how far a pulse must
-/// look below an edge, later on towns of seeds 1 to 3 at 10, where small stalls were missed.
+/// Defaults were chosen on three simulated towns of seed 7 at 8 pulses per m². `widest_gap`, and the depth to which a
+/// pulse must pass below an edge, were chosen later, on towns of seeds 1 to 3 at 10, where small stalls were missed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinSurfaceParams {
-    /// Most radius of balls at points of a thin surface, and midway between neighbours among them, in spacings of
+    /// Maximum radius of balls at points of a thin surface, and midway between neighbours among them, in spacings of
     /// pulses, above 0. Default 0.6. With balls at points only it took 0.95 to close the surface, which made it half as
     /// thick again.
     pub radius_spacings: f32,
-    /// Least and most depth below a surface at which a pulse proves it thin, metres. Default 1 to 5: nearer is noise
-    /// and relief, farther the arcade of a house, whose roof is not thin.
+    /// Minimum and maximum depth below a surface at which a pulse proves it thin, metres. Default 1 to 5: nearer is
+    /// noise and relief, farther the arcade of a house, whose roof is not thin.
     pub depths: [f32; 2],
-    /// Least side of the cells in which surfaces are looked for, metres, and in mean spacings of pulses: the larger
-    /// of both, above 0. Default 0.5 and 1.56, which is 0.5 m at ten pulses per m². With 0.5 m alone half of the cells
-    /// are empty at 2; with 2.1 a third more is falsely visible in streets at 12 (2.6 to 3.5 %), at 2 and 5 nothing.
+    /// Minimum side of the cells of surfaces, metres, and in mean spacings of pulses: the larger of both, above 0.
+    /// Default 0.5 and 1.56, which is 0.5 m at ten pulses per m². At 2 pulses, half of the cells of 0.5 m are empty. A
+    /// factor of 2.1 raises the false-visible rate in streets by a third at 12 pulses (2.6 to 3.5 %), and not at 2 and
+    /// 5.
     pub cell: [f32; 2],
     /// Distance within which points of the surface must lie around a pulse below it, metres, and in mean spacings of
     /// pulses: the larger of both, above 0. Default 0.75 and 2.4, chosen with `cell`.
     pub around: [f32; 2],
-    /// Widest angle, radians, between neighbouring ones of those points where points are dense. Default 2.7: at 2
-    /// pulses that look a few decimetres below a canopy of 3 m are too few to find it. Sparse points do not reach the
-    /// edge of a surface: each end of the gap may lie one mean angle between them farther, as long as the whole stays
-    /// below 3.2.
+    /// Maximum angle between neighbouring ones of those points where points are dense, radians. Default 2.7: at 2
+    /// pulses, too few look a few decimetres below a canopy of 3 m to find it. Sparse points do not reach the edge of a
+    /// surface. Each end of the gap may lie one mean angle farther, as long as the whole stays below 3.2.
     pub widest_gap: f32,
-    /// Proven cells a surface must have, in square roots of its number of cells, above 0: pulses reach below an edge,
-    /// and the length of the edge grows with that root. Default 0.5: at 0.3 more of the roofs of a real tile (Delft)
-    /// are taken for thin.
+    /// Minimum number of proven cells of a surface, in square roots of its number of cells, above 0. Pulses reach below
+    /// an edge, and the length of the edge grows with that root. Default 0.5: at 0.3 more of the roofs of a real tile
+    /// (Delft) are taken for thin.
     pub min_proof: f32,
-    /// Distance about a pulse below a surface within which hardly a solid point may lie below that surface, metres,
-    /// and in mean spacings of pulses: the larger of both. Default 1.5 and 2.8. Eaves stand out over walls, whose
-    /// points betray them; without this rule two thirds of the roofs of real tiles (Delft, Bresse) were taken for
-    /// thin, with it 13 % and next to none.
+    /// Radius around a pulse below a surface that is nearly free of solid points below that surface, metres, and in
+    /// mean spacings of pulses: the larger of both. Default 1.5 and 2.8. Eaves stand out over walls, whose points
+    /// betray them. Without this rule two thirds of the roofs of real tiles (Delft, Bresse) were taken for thin; with
+    /// it 13 % and next to none.
     pub open_radius: [f32; 2],
     /// Points that may lie there all the same: posts, goods, the foot of the pulse itself. Default 1.
     pub max_below: usize,
@@ -96,7 +95,7 @@ impl Default for ThinSurfaceParams {
     }
 }
 
-/// Whether each point of `input` lies on a thin surface. The result depends on neither the order of points and pulses
+/// Flags the points of `input` that lie on a thin surface. The result depends on neither the order of points and pulses
 /// nor the number of threads.
 ///
 /// # Errors
@@ -131,9 +130,9 @@ impl MarkingRule for ThinSurfaceParams {
 }
 
 impl ThinSurfaceParams {
-    /// Whether each point lies on a thin surface. Surfaces end at blocks of 64 m, so that those of a block are the same
-    /// in every part of a survey that holds all of it and what lies about it. The result depends on neither the order
-    /// of points and pulses nor the number of threads.
+    /// Flags the points that lie on a thin surface. Surfaces end at blocks of 64 m, so that every part of a survey that
+    /// holds a block and its surroundings finds the same. The result depends on neither the order of points and pulses
+    /// nor the number of threads.
     fn thin_points(&self, survey: &Survey<'_>, control: &Control<'_>) -> Result<Vec<bool>> {
         let stop = Stop::new(control);
         let (positions, index) = (survey.positions(), survey.index);
@@ -203,8 +202,8 @@ impl ThinSurfaceParams {
     }
 }
 
-/// Which voxels a pulse runs below at these `depths`, where `is_roof` says that points lie around the place straight
-/// above it, and `is_open` that none stand beside it below the height given.
+/// Flags the voxels that a pulse passes below at these `depths`. `is_roof` tells whether points lie around the place
+/// straight above, `is_open` whether none stand beside it below the height given.
 fn run_below(
     layers: &Layers,
     beside: &[usize],
@@ -280,9 +279,9 @@ pub(super) fn widest_gap(
     Gap { width, middle, count }
 }
 
-/// Which voxels belong to a surface of which enough is proven. Surfaces end at blocks, so that those of a block are the
-/// same in every part of a survey that holds it. Blocks are laid four times, moved by half their side: a surface up to
-/// that wide lies in one of them.
+/// Flags the voxels of surfaces of which enough is proven. Surfaces end at blocks, so that every part of a survey that
+/// holds a block finds the same. Blocks are laid four times, moved by half their side: a surface up to that wide lies
+/// in one of them.
 fn surfaces(layers: &Layers, beside: &[usize], proven: &[bool], min_proof: f32) -> Vec<bool> {
     let offsets = [[0, 0], [1, 0], [0, 1], [1, 1]];
     let blocks = offsets.map(|offset| move |voxel: usize| layers.block(voxel, offset));
@@ -323,7 +322,7 @@ fn surfaces_in_blocks(
         let count = surface.iter().filter(|&&voxel| proven[voxel]).count();
         if count as f64 >= f64::from(min_proof) * (surface.len() as f64).sqrt() {
             for &voxel in &surface {
-                layers.around(voxel, |other| thin[other] |= block(other) == block(first));
+                layers.visit_around(voxel, |other| thin[other] |= block(other) == block(first));
             }
         }
     }

@@ -7,7 +7,7 @@ use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Attributes, Error, Parameter, Result};
 use rayon::prelude::*;
 
-/// How vegetation is found in clouds without its classes (3 to 5), as those of AHN are.
+/// Detection of vegetation in clouds without its classes (3 to 5), such as AHN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VegetationParams {
     /// Neighbours that are looked at, 1 to 256. Default 16.
@@ -28,10 +28,9 @@ impl Default for VegetationParams {
 /// Points handed to a thread at once; their searches share the cache.
 const CHUNK: usize = 512;
 
-/// Turns points of no particular class (0, 1 or none) whose neighbourhood is not flat or lets pulses through into
-/// [`Kind::Vegetation`], and says how many: trees, hedges, and with them cars and other small things. For clouds
-/// without the classes of vegetation. `index` holds the points of `cloud`; those beyond [`FARTHEST_NEIGHBOR`] are no
-/// neighbours.
+/// Changes points of no particular class (0, 1 or none) into [`Kind::Vegetation`] and returns their number. Their
+/// neighbourhood is not flat, or lets pulses through: trees, hedges, and also cars and other small things. For clouds
+/// without the classes of vegetation. `index` holds the points of `cloud`; neighbours lie within [`FARTHEST_NEIGHBOR`].
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a number of neighbours out of range.

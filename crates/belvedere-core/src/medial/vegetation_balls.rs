@@ -1,16 +1,16 @@
-//! Which balls are vegetation.
+//! Selection of the balls that are vegetation.
 
 use belvedere_data::balls::MedialBalls;
 use belvedere_data::{Error, Result};
 
-/// Which balls are vegetation, (B), by what carving measured: those whose `transmission`, (B), is a number.
+/// Flags the balls that are vegetation, (B), by what carving measured: those whose `transmission`, (B), is a number.
 #[must_use]
 pub fn vegetation_of_transmission(transmission: &[f32]) -> Vec<bool> {
     transmission.iter().map(|share| !share.is_nan()).collect()
 }
 
-/// Which balls are vegetation, (B), by the class of the points they are tangent at: low, medium and high vegetation (3
-/// to 5). `classification` has a row for each point that the balls were made from.
+/// Flags the balls that are vegetation, (B), by the class of the points that they touch: low, medium and high
+/// vegetation (3 to 5). `classification` has a row for each point that the balls were made from.
 #[must_use]
 pub fn vegetation_of_classes(balls: &MedialBalls, classification: &[u8]) -> Vec<bool> {
     let is_vegetation = |source: &u32| matches!(classification.get(*source as usize), Some(3..=5));

@@ -11,7 +11,8 @@ use rayon::prelude::*;
 /// Pulses handed to a thread at once.
 const CHUNK: usize = 4096;
 
-/// How many of `pulses`, which ran through empty space, the balls of `tree` block, and how many only `triangles` do.
+/// Counts the `pulses`, which ran through empty space, that the balls of `tree` block, and those that only `triangles`
+/// block.
 ///
 /// # Errors
 /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).

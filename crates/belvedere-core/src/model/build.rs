@@ -1,4 +1,4 @@
-//! From a cloud to a scene model.
+//! Builds a scene model from a cloud.
 
 use super::blocked_pulses::blocked_pulses;
 use super::params::{BallParams, ModelParams};
@@ -25,9 +25,11 @@ impl SceneModel {
     /// The result is the same, bit by bit, for any number of threads.
     ///
     /// # Errors
-    /// [`Error::NoPoints`] where cleaning leaves none, [`Error::NoSurface`] where it leaves too few for a surface,
-    /// [`Error::MissingAttribute`] where the cloud lacks what the parameters need, [`Error::InvalidParameter`] for a
-    /// parameter out of range, [`Error::Cancelled`].
+    /// - [`Error::NoPoints`] if cleaning leaves none.
+    /// - [`Error::NoSurface`] if it leaves too few for a surface.
+    /// - [`Error::MissingAttribute`] if the cloud lacks what the parameters need.
+    /// - [`Error::InvalidParameter`] for a parameter out of range.
+    /// - [`Error::Cancelled`].
     pub fn build(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<(Self, BuildReport)> {
         let (survey, report) = prepare(Cow::Borrowed(cloud), params, control)?;
         let normals = survey.normals_of_rows(cloud.len());
@@ -134,7 +136,7 @@ fn of_survey(
     Ok((SceneModel { parts, vegetation, tree, triangles, ..SceneModel::default() }, report))
 }
 
-/// How balls were made, as a saved model says it.
+/// Describes how balls were made, for a saved model.
 fn provenance(side: &str, made: &BallParams) -> BTreeMap<String, String> {
     let entries = [("side", side.to_owned()), ("method", made.name().to_owned()), ("parameters", format!("{made:?}"))];
     entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()

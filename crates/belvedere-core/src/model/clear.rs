@@ -1,4 +1,5 @@
-//! What stands in an area now is gone: its points, its balls, and what only they supported; the ground below is closed.
+//! Clears an area of a model: removes its points, its balls, and patches that only they support, and closes the ground
+//! below.
 
 use super::SceneModel;
 use super::clearing::{Clearing, class_of};
@@ -18,7 +19,7 @@ use std::sync::OnceLock;
 
 /// ASPRS class of ground.
 const GROUND: u8 = 2;
-/// Most columns in which space is freed: their side is doubled until they are no more.
+/// Maximum number of columns in which space is freed: their side is doubled until they are no more.
 const MAX_CELLS: f64 = 4e6;
 
 /// Side of the squares whose polygons are cleared together, metres: columns of the usual width over one are fewer than
@@ -28,11 +29,11 @@ const AREA_SIDE: f64 = 256.0;
 /// Corners of an outline and of its holes.
 type Rings = Vec<Vec<[f64; 2]>>;
 
-/// What is cleared.
+/// Area or class to clear.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ClearedArea {
-    /// What stands above the ground inside rings, local metres on the map: an outline and its holes.
+    /// Everything above the ground inside rings, local metres in plan: an outline and its holes.
     Polygon(Vec<Vec<[f64; 2]>>),
     /// The same inside several polygons, as [`ClearedArea::of_polygons`] joins them.
     Polygons(Vec<Vec<Vec<[f64; 2]>>>),
@@ -40,7 +41,7 @@ pub enum ClearedArea {
     Class(u8),
 }
 
-/// What was cleared.
+/// Counts of what was cleared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ClearReport {
     /// Points that are gone.
@@ -56,18 +57,19 @@ pub struct ClearReport {
 }
 
 impl SceneModel {
-    /// The model and its cloud, in its frame, without what stands in `area` now: points above the ground, balls at
-    /// them, and meshes that were added, of which triangles go with their middle. Surface patches are cut at the edge
-    /// of a polygon, and all go with the class of buildings. Balls beside a polygon that reach into it are cut to its
-    /// edge, at the point that they are tangent at. The ground below is closed with balls at the height interpolated
-    /// from the ground around. Lines of sight through the space that was freed are proven free.
+    /// Returns the model and its cloud, in its frame, without what stands in `area`: points above the ground, balls at
+    /// them, and added meshes, of which triangles go with their middle. Surface patches are cut at the edge of a
+    /// polygon, and all go with the class of buildings. Balls beside a polygon that reach into it are cut to its edge,
+    /// at the point that they touch. The ground below is closed with balls at the height interpolated from the ground
+    /// around. Lines of sight through the freed space are proven free.
     ///
     /// Where nothing stands, nothing changes, bit by bit.
     ///
     /// # Errors
-    /// [`Error::NoPoints`] for a cloud without points, [`Error::LengthMismatch`] for one that the model was not made
-    /// from, [`Error::InvalidParameter`] for an area beside the cloud and for the class of the ground, those of
-    /// [`Clearing::new`].
+    /// - [`Error::NoPoints`] for a cloud without points.
+    /// - [`Error::LengthMismatch`] for one that the model was not made from.
+    /// - [`Error::InvalidParameter`] for an area beside the cloud and for the class of the ground.
+    /// - Errors of [`Clearing::new`].
     pub fn without(
         mut self,
         area: &ClearedArea,

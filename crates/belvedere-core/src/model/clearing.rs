@@ -1,4 +1,4 @@
-//! What clearing an area does to a place: whether a point goes, how far a ball is cut, and where the ground is closed.
+//! Effect of clearing an area at a place: removes a point, cuts a ball, or closes the ground.
 
 use super::ClearedArea;
 use crate::ground::{Ground, GroundParams, GroundPoints, MapGrid, ground_points};
@@ -16,7 +16,7 @@ const ABOVE_GROUND: f64 = 0.3;
 /// Distance on the map from a point that is cleared up to which its column is, metres: across gaps between points on
 /// roofs and in crowns.
 const AROUND: f64 = 2.0;
-/// That distance where points of a class are cleared, metres: these may stand close to other points.
+/// The same distance for cleared points of a class, metres: these may stand close to other points.
 const AROUND_OF_CLASS: f64 = 1.0;
 /// Distance to the next ground point from which the ground is closed with balls, metres: beyond what ground points hold
 /// themselves.
@@ -39,11 +39,11 @@ pub struct Clearing {
     ground_rows: Vec<u32>,
     /// Height of what stood there, NaN where nothing did.
     tops: Raster<f32>,
-    /// Whether points below what is cleared go too, unless their class is ground.
+    /// True if points below the cleared ones go too, unless their class is ground.
     clears_low: bool,
 }
 
-/// What is cleared, with an index of the sides of a polygon.
+/// Area or class to clear, with an index of the sides of a polygon.
 #[derive(Clone, Debug)]
 enum IndexedArea {
     Polygon(PolygonIndex),
@@ -53,10 +53,11 @@ enum IndexedArea {
 impl Clearing {
     /// Side of the columns in which space is freed, metres, where they are not made larger to have fewer.
     pub const CELL: f64 = 0.25;
-    /// Farthest on the map from a point that is cleared to the middle of a column that is, metres.
+    /// Maximum horizontal distance of the middle of a cleared column from a cleared point, metres.
     pub const REACH: f64 = AROUND;
 
-    /// What clearing `area` does over `grid`, which `cloud` holds all points around, so far that the ground is known.
+    /// Prepares the clearing of `area` over `grid`. `cloud` holds all points around it, far enough for the ground to be
+    /// known.
     ///
     /// # Errors
     /// Those of [`ground_points`], and of [`Ground::of_points`].
@@ -76,7 +77,7 @@ impl Clearing {
         Ok(Self { tops, ..clearing })
     }
 
-    /// Whether a point, local metres, goes.
+    /// Returns true if a point, local metres, is removed.
     #[must_use]
     pub fn clears(&self, position: [f32; 3], class: Option<u8>) -> bool {
         let [x, y, _] = position.map(f64::from);
@@ -147,7 +148,7 @@ impl Clearing {
         self.tops.get(column, row).map(f64::from).filter(|top| top.is_finite())
     }
 
-    /// Whether a point is one of those that stand in the area.
+    /// Returns true if a point stands in the area.
     fn stands_in(&self, position: [f32; 3], class: Option<u8>) -> bool {
         let [x, y, z] = position.map(f64::from);
         match &self.area {
@@ -160,7 +161,7 @@ impl Clearing {
         }
     }
 
-    /// Whether a ball reaches into the space above the ground over the middle of a cleared column.
+    /// Returns true if a ball reaches into the space above the ground over the middle of a cleared column.
     fn reaches_in(&self, center: [f64; 3], radius: f64) -> bool {
         let grid = &self.ground.grid;
         let place = [(center[0] - grid.corner[0]) / grid.cell, (grid.corner[1] - center[1]) / grid.cell];

@@ -11,8 +11,8 @@ use rayon::prelude::*;
 
 /// Distance between the places that normals are estimated at, metres: nearer points mostly have one surface in common.
 const MIN_DISTANCE: f64 = 0.01;
-/// How far from a place all points count at least, in noises of ranges: a smaller part of a surface is as thick as it
-/// is wide.
+/// Minimum radius around a place within which all points count, in multiples of the range noise: a smaller part of a
+/// surface is as thick as it is wide.
 const NOISES_WIDE: f32 = 5.0;
 /// Number of neighbours that determine how far others count where neighbourhoods choose their size.
 const USUAL_NEIGHBORS: usize = 16;
@@ -30,9 +30,10 @@ pub(super) struct CloseRange {
 impl CloseRange {
     /// For points at `positions`, which `index` was built from, measured from `scanner`, both (N, 3) local metres.
     ///
-    /// The plane of a point is that of the nearest of those points that lie a centimetre or more apart; it is the plane
-    /// of all points as near to it as its neighbours among these, and at least five times the noise. Above and below a
-    /// tripod hundreds of points lie there, and a few of them would scatter as much as the points themselves.
+    /// The plane of a point is that of its nearest point among those that lie a centimetre or more apart. It is fitted
+    /// to all points within the distance of that point's neighbours among these, and at least five times the noise.
+    /// Above and below a tripod hundreds of points lie there, and a few of them would scatter as much as the points
+    /// themselves.
     ///
     /// # Errors
     /// Those of [`estimate_with_scatter`].

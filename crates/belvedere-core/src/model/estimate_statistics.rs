@@ -12,28 +12,28 @@ use belvedere_data::{Error, Parameter, PointCloud, Result};
 use std::borrow::Cow;
 use std::path::Path;
 
-/// How far the rules for balls look beyond a point, metres: edges of roofs within three spacings of pulses, of which
-/// the widest is 3 m; cells of a metre with those about them, crowns and relief less.
+/// Reach of the rules for balls around a point, metres. Edges of roofs reach three spacings of pulses, at most 3 m
+/// each; cells of a metre with their neighbours, crowns and relief reach less.
 const RULES_REACH: f64 = 12.0;
-/// By how much pulses may lean more than the most of a sample, as a share of that.
+/// Allowance for the lean of pulses over the maximum of a sample, as a share of that.
 const LEAN_ROOM: f64 = 1.1;
 
-/// What a pass over all points of a survey found.
+/// Extremes of all points of a survey, from one pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SurveyExtremes {
     /// Highest point, local metres.
     pub top: f32,
-    /// As [`SurveyStatistics::relief`].
+    /// Relief, see [`SurveyStatistics::relief`].
     pub relief: f64,
-    /// Whether any point has class 2, ground.
+    /// True if any point has class 2, ground.
     pub has_ground: bool,
-    /// Whether any point has a class of vegetation, 3 to 5.
+    /// True if any point has a class of vegetation, 3 to 5.
     pub has_vegetation: bool,
 }
 
 impl SurveyStatistics {
-    /// The statistics of a survey of which `along_lines` is a sample that is spread over all of it, whole pulses at
-    /// random, and `places` are all points of some places, both in the frame that its parts will have. Errors call it
+    /// Estimates the statistics of a survey. `along_lines` is a sample that is spread over all of it, whole pulses at
+    /// random. `places` has all points of some places. Both are in the frame that its parts will have. Errors name it
     /// `name`.
     ///
     /// # Errors
@@ -116,7 +116,8 @@ impl SurveyStatistics {
         rule_statistics(&input, params, control)
     }
 
-    /// How far around a place points must be known for its balls to be those of the whole survey, metres.
+    /// Returns the distance around a place, metres, within which points must be known for its balls to be those of the
+    /// whole survey.
     #[must_use]
     pub fn buffer(&self, params: &ModelParams) -> f64 {
         let isolation = self.isolation_radius.unwrap_or(0.0);

@@ -1,4 +1,4 @@
-//! What a survey holds that answers should say: lines that do not fit, surveys years apart, ground points only.
+//! Properties of a survey that answers should mention: lines that do not fit, surveys years apart, ground points only.
 
 use crate::strips::{StripOffset, StripReport};
 use belvedere_data::weather::{CalendarDay, date_of_unix_day};
@@ -6,7 +6,7 @@ use belvedere_data::{Attributes, GpsTimeKind, PointCloud};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What was found of a survey beside its surfaces.
+/// Findings about a survey beside its surfaces.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SurveyFindings {
     /// Heights of flight lines, where some of them differ.
@@ -15,10 +15,10 @@ pub struct SurveyFindings {
     /// Surveys months apart, oldest first. Empty for a single one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub surveys: Vec<DatedSurvey>,
-    /// What stands in one of these surveys only.
+    /// Objects that stand in one of these surveys only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub change: Option<SurveyChange>,
-    /// Whether all points are ground or water, as in files that are sold for terrain models.
+    /// True if all points are ground or water, as in files that are sold for terrain models.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_ground_only: bool,
     /// Median angle between pulses with several returns and their direction by the trajectory, degrees, where that is
@@ -43,9 +43,9 @@ pub struct DatedSurvey {
 pub struct SurveyChange {
     /// Area on the map, m².
     pub area_m2: f64,
-    /// Most difference in height, metres.
+    /// Maximum difference in height, metres.
     pub max_m: f64,
-    /// Where that is, local metres.
+    /// Position of the change, local metres.
     pub at: [f64; 2],
 }
 
@@ -60,35 +60,35 @@ const MIN_GROUND_POINTS: usize = 100;
 /// Side of the cells in which surveys are compared, metres, and the fewest points of each in a cell.
 const CELL: f64 = 2.0;
 const MIN_POINTS: u32 = 3;
-/// Least difference of the highest points that is a change, metres.
+/// Minimum difference of the highest points that is a change, metres.
 const MIN_CHANGE: f64 = 2.0;
 /// Neighbouring cells that must have changed as well: an edge changes with every flight.
 const MIN_CHANGED_ABOUT: usize = 3;
 
 impl SurveyFindings {
-    /// What a cloud shows. Its strips are compared elsewhere.
+    /// Finds the surveys and changes of a cloud. Its strips are compared elsewhere.
     pub(super) fn of_cloud(cloud: &PointCloud) -> Self {
         let (surveys, change) = dated(cloud);
         Self { surveys, change, is_ground_only: is_ground_only(&cloud.attributes), ..Self::default() }
     }
 
-    /// Whether there is nothing to be said.
+    /// Returns true if there are no findings.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
-    /// As it is kept in the provenance of a model.
+    /// Writes it for the provenance of a model.
     pub(super) fn to_text(&self) -> Option<String> {
         serde_json::to_string(self).ok()
     }
 
-    /// What [`SurveyFindings::to_text`] made; nothing found for what is none.
+    /// Reads the text of [`SurveyFindings::to_text`]; other text gives no findings.
     pub(super) fn from_text(text: &str) -> Self {
         serde_json::from_str(text).unwrap_or_default()
     }
 
-    /// How far flight lines were moved.
+    /// Returns the offsets of the flight lines that were moved.
     #[must_use]
     pub fn moved_strips(&self) -> &[StripOffset] {
         self.strips.as_ref().map_or(&[], |strips| &strips.moved)
@@ -151,7 +151,7 @@ fn dated(cloud: &PointCloud) -> (Vec<DatedSurvey>, Option<SurveyChange>) {
     (surveys.into_iter().map(in_words).collect(), change)
 }
 
-/// Whether GPS times of a cloud tell the day.
+/// Returns true if GPS times of a cloud determine the day.
 fn is_dated(attributes: &Attributes) -> bool {
     attributes.gps_time_kind == GpsTimeKind::AdjustedStandard
 }
@@ -161,7 +161,8 @@ fn day_in_words(day: i64) -> String {
     date.unwrap_or_else(|| format!("day {day}"))
 }
 
-/// Where the highest points up to one day and those from another day on differ, plants and water left out.
+/// Finds the place where the highest points up to one day and those from another day on differ, without plants and
+/// water.
 fn change(cloud: &PointCloud, times: &[f64], [until, from]: [i64; 2]) -> Option<SurveyChange> {
     let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
     let mut cells: BTreeMap<[i32; 2], [(u32, f32); 2]> = BTreeMap::new();

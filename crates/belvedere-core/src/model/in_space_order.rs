@@ -66,7 +66,10 @@ fn compare(cloud: &PointCloud, a: u32, b: u32) -> Ordering {
         scanner_channel,
         flags,
         scanner_index,
-        ..
+        // no model is made from these
+        intensity: _,
+        color: _,
+        gps_time_kind: _,
     } = attributes;
     let times = gps_time.as_ref().map_or(Ordering::Equal, |times| times[a].total_cmp(&times[b]));
     times

@@ -51,40 +51,40 @@ use std::sync::{Arc, OnceLock};
 #[derive(Clone, Debug, Default)]
 pub struct SceneModel {
     parts: ModelParts,
-    /// Which balls are vegetation, (B); empty where that is not known.
+    /// True for balls that are vegetation, (B); empty if that is not known.
     vegetation: Vec<bool>,
     /// Outward unit normals of the points, (N, 3); zero where a point has none.
     normals: Option<Vec<[f32; 3]>>,
     /// The balls in a tree, where something has needed them so already.
     tree: Option<BallTree>,
-    /// What its pulses prove, where something has needed it so already.
+    /// Proof by its pulses, once something has needed it.
     proof: OnceLock<Proof>,
     /// Its crowns, where something has needed them so already.
     medium: OnceLock<Arc<Medium>>,
-    /// What blocks beside the balls: the patches, and meshes that were added.
+    /// Triangles that block beside the balls: patches and added meshes.
     triangles: Option<BlockingTriangles>,
     /// Space that was cleared.
     freed: Vec<FreedSpace>,
-    /// What stands beyond the cloud.
+    /// Terrain beyond the cloud.
     far_terrain: FarTerrain,
-    /// What settles lines of sight in bulk; `None` for the processor.
+    /// Backend that settles lines of sight in bulk; `None` for the processor.
     backend: Option<Arc<dyn Backend>>,
 }
 
-/// What the provenance of a model says where its cloud looks as if y were up.
+/// Entry in the provenance of a model whose cloud looks as if y were up.
 const LOOKS_UP: [&str; 2] = ["axis_that_looks_up", "y"];
 
-/// Where the provenance of a model keeps what was found of its survey.
+/// Key of the survey findings in the provenance of a model.
 const FINDINGS: &str = "survey_findings";
 
 impl SceneModel {
-    /// What was found of its survey beside surfaces.
+    /// Returns the findings about its survey beside surfaces.
     #[must_use]
     pub fn findings(&self) -> SurveyFindings {
         self.parts.provenance.get(FINDINGS).map(|text| SurveyFindings::from_text(text)).unwrap_or_default()
     }
 
-    /// Whether its cloud, which has no reference system, looks as if y were up and not z
+    /// Returns true if its cloud, which has no reference system, looks as if y were up and not z
     /// ([`crate::summary::looks_y_up`]).
     #[must_use]
     pub fn looks_y_up(&self) -> bool {
@@ -110,7 +110,7 @@ impl SceneModel {
         Ok(Self { parts, vegetation, triangles, ..Self::default() })
     }
 
-    /// What was made or found beside [`SceneModel::parts`], for [`SceneModel::from_kept`].
+    /// Returns the parts that were made or found beside [`SceneModel::parts`], for [`SceneModel::from_kept`].
     #[must_use]
     pub fn derived(&self) -> DerivedParts {
         let tree = self.tree.as_ref().map(BallTree::to_parts);
@@ -153,7 +153,7 @@ impl SceneModel {
         Ok(self)
     }
 
-    /// What blocks beside the balls, if any meshes were added. These are not saved.
+    /// Returns the triangles that block beside the balls, if any meshes were added. These are not saved.
     #[must_use]
     pub fn added(&self) -> Option<&BlockingTriangles> {
         self.triangles.as_ref().filter(|triangles| triangles.has_meshes())
@@ -203,7 +203,7 @@ impl SceneModel {
         self
     }
 
-    /// What settles the lines of sight of its scenes in bulk, if not the processor.
+    /// Returns the backend that settles the lines of sight of its scenes in bulk, if not the processor.
     #[must_use]
     pub fn backend(&self) -> Option<&Arc<dyn Backend>> {
         self.backend.as_ref()
@@ -224,7 +224,7 @@ impl SceneModel {
         Ok(self)
     }
 
-    /// What stands beyond the cloud, as far as that was given.
+    /// Returns the terrain beyond the cloud, as far as it was given.
     #[must_use]
     pub fn far_terrain(&self) -> &FarTerrain {
         &self.far_terrain
@@ -236,7 +236,7 @@ impl SceneModel {
         &self.parts
     }
 
-    /// What [`SceneModel::parts`] returns, of a model that is no longer needed.
+    /// Converts a model that is no longer needed into [`SceneModel::parts`].
     #[must_use]
     pub fn into_parts(self) -> ModelParts {
         self.parts
@@ -280,14 +280,14 @@ impl SceneModel {
         self.parts.pulses.as_ref()
     }
 
-    /// Share of the pulses that got through the part of a crown that a ball belongs to, (B), NaN for a ball that is no
-    /// vegetation; empty where this was not measured.
+    /// Returns the share of the pulses that passed the part of a crown that a ball belongs to, (B), 0 to 1, NaN for
+    /// other balls. Empty if it was not measured.
     #[must_use]
     pub fn transmission(&self) -> &[f32] {
         &self.parts.transmission
     }
 
-    /// Which balls are vegetation, (B); empty where that is not known.
+    /// Returns true for balls that are vegetation, (B); empty if that is not known.
     #[must_use]
     pub fn vegetation(&self) -> &[bool] {
         &self.vegetation
@@ -310,12 +310,7 @@ impl SceneModel {
         self.normals.as_deref()
     }
 
-    /// The normals of [`SceneModel::normals`], taken out of the model.
-    pub fn take_normals(&mut self) -> Option<Vec<[f32; 3]>> {
-        self.normals.take()
-    }
-
-    /// Whether pulses cut the balls.
+    /// Returns true if pulses cut the balls.
     #[must_use]
     pub fn is_carved(&self) -> bool {
         self.parts.pulses.is_some() || self.parts.balls.touch.contains(&PULSE_TOUCH)

@@ -1,4 +1,4 @@
-//! How a scene model is built.
+//! Parameters of a scene model.
 
 use super::statistics::SurveyStatistics;
 use crate::clean::CleanParams;
@@ -10,7 +10,7 @@ use belvedere_data::trajectory::Trajectory;
 use belvedere_data::{Frame, Mesh, Result};
 use std::sync::Arc;
 
-/// How a scene model is built. [`ModelParams::default`] is what Belvedere uses where nothing else is requested.
+/// Parameters of a scene model. [`ModelParams::default`] is what Belvedere uses unless anything else is requested.
 ///
 /// ```
 /// use belvedere_core::medial::ShrinkParams;
@@ -22,21 +22,21 @@ use std::sync::Arc;
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct ModelParams {
-    /// Which points are left out.
+    /// Points to leave out.
     pub clean: CleanParams,
-    /// How many neighbours a normal is estimated from.
+    /// Number of neighbours from which a normal is estimated.
     pub neighborhood: Neighborhood,
-    /// How normals are turned outward, and where the scanner was.
+    /// Orientation of normals, and source of the scanner position.
     pub orient: OrientBy,
-    /// How the scanner is found.
+    /// Parameters of the search for the scanner.
     pub locate: LocateParams,
-    /// How pulses become what they prove empty.
+    /// Parameters of free segments.
     pub free_segments: FreeSegmentParams,
-    /// What becomes of flight lines whose heights differ. Default: they are fitted to each other.
+    /// Treatment of flight lines whose heights differ. Default: they are fitted to each other.
     pub strips: StripHeights,
-    /// How balls are made.
+    /// Parameters of balls.
     pub balls: BallParams,
-    /// What is known of the survey that the cloud is a part of. Default: none, and the cloud is a whole.
+    /// Statistics of the survey that the cloud is a part of. Default: none, and the cloud is a whole.
     pub statistics: Option<Arc<SurveyStatistics>>,
 }
 
@@ -51,7 +51,7 @@ belvedere_data::setters!(ModelParams {
     with_statistics(statistics: Option<Arc<SurveyStatistics>>),
 });
 
-/// What becomes of flight lines whose heights differ.
+/// Treatment of flight lines whose heights differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StripHeights {
     /// They are fitted to each other where they differ beyond the tolerance.
@@ -67,7 +67,7 @@ impl Default for StripHeights {
 }
 
 impl StripHeights {
-    /// How heights are compared.
+    /// Returns the parameters of the comparison of heights.
     #[must_use]
     pub fn params(&self) -> &StripParams {
         match self {
@@ -76,15 +76,15 @@ impl StripHeights {
     }
 }
 
-/// How the outward side of normals is found. Ways that know where the scanner was also say where pulses came from.
+/// Source of the outward side of normals. Sources with a scanner position also give the direction of pulses.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub enum OrientBy {
-    /// By the pulses where the scanner can be found and the balls are to be carved; otherwise as the cloud gives its
-    /// normals; otherwise towards its scanner positions; otherwise up.
+    /// By pulses if the scanner can be found and the balls are to be carved; otherwise the normals of the cloud;
+    /// otherwise towards its scanner positions; otherwise up.
     #[default]
     Auto,
-    /// As the cloud gives its normals.
+    /// Normals of the cloud.
     Given,
     /// Upward.
     Up,
@@ -101,12 +101,12 @@ pub enum OrientBy {
     Trajectory(Trajectory),
     /// Towards where the pulses say that the scanner was.
     Pulses,
-    /// As the faces of this mesh, in the metres of the cloud's reference system.
+    /// Faces of this mesh, in the metres of the cloud's reference system.
     Mesh(Mesh),
 }
 
 impl OrientBy {
-    /// What the scanner of a cloud in `frame` is found by, where it is not given for each point.
+    /// Returns the means of finding the scanner of a cloud in `frame`, unless it is given for each point.
     #[must_use]
     pub fn means(&self, frame: &Frame) -> Means<'_> {
         match self {
@@ -120,15 +120,14 @@ impl OrientBy {
     }
 }
 
-/// How balls are made.
+/// Construction of balls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BallParams {
-    /// From the points alone.
+    /// Points alone.
     Shrunk(ShrinkParams),
-    /// From points and pulses. Building fails where the scanner is not known.
+    /// Points and pulses. Building fails if the scanner is not known.
     Carved(CarvedParams),
-    /// From points and pulses, or from the points alone where pulses cannot carve: where they are only assumed, and
-    /// few.
+    /// Points and pulses, or the points alone if pulses cannot carve: they are only assumed, and few.
     CarvedIfPossible(CarvedParams, ShrinkParams),
 }
 
@@ -138,14 +137,14 @@ impl Default for BallParams {
     }
 }
 
-/// What pulses are needed for.
+/// Need for pulses.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Carving {
     /// Carving, or building fails.
     Wanted,
     /// Carving, if they can.
     IfPossible,
-    /// Nothing.
+    /// No need.
     Unwanted,
 }
 
@@ -158,7 +157,7 @@ impl BallParams {
         }
     }
 
-    /// Whether points that are carved are moved onto their surface first.
+    /// Returns true if points that are carved are moved onto their surface first.
     pub(super) fn smooths(&self) -> bool {
         matches!(self, Self::Carved(carved) | Self::CarvedIfPossible(carved, _) if carved.smoothing.is_some())
     }
@@ -175,7 +174,7 @@ impl BallParams {
         }
     }
 
-    /// How balls are made from the points alone, be it because pulses cannot carve or before they do.
+    /// Returns the parameters of balls from the points alone, before carving or without it.
     #[must_use]
     pub fn shrinking(&self) -> ShrinkParams {
         match self {
@@ -184,7 +183,7 @@ impl BallParams {
         }
     }
 
-    /// How balls are made from the points where these statistics decide whether pulses carve.
+    /// Returns the parameters of balls from the points if these statistics decide whether pulses carve.
     pub(super) fn shrinking_by(&self, statistics: &SurveyStatistics) -> ShrinkParams {
         match self {
             Self::CarvedIfPossible(carved, _) if statistics.carves => carved.shrinking(),

@@ -1,4 +1,4 @@
-//! From a cloud to a cleaned cloud with outward normals, and what its pulses prove empty.
+//! Prepares a cloud: cleaning, outward normals, and the space that its pulses prove empty.
 
 use super::close_range_normals::CloseRange;
 use super::findings::SurveyFindings;
@@ -28,11 +28,11 @@ const LINE_WIDTH: f64 = 1e-3;
 /// Memory that a model takes for each point at least, beside the cloud, bytes: two thirds of what was measured with
 /// large clouds.
 const MIN_BYTES_OF_POINT: usize = 400;
-/// Median angle between pulses with several returns and their trajectory that is believed, degrees: returns 3 m apart
-/// show a true one to 2°, and one that is a second off in time misses by more than 3.
+/// Maximum accepted median angle between pulses with several returns and their trajectory, degrees. Returns 3 m apart
+/// show a true one to 2°; one that is a second off in time misses by more than 3.
 const MAX_MISS_DEG: f64 = 3.0;
-/// How far before its return a pulse proves its way at most, in noises of ranges, where nothing else is uncertain: one
-/// return in 30,000 lies so much too far away, and balls begin below the surface.
+/// Maximum distance before its return at which a pulse stops proving its path, in multiples of the range noise, if
+/// nothing else is uncertain. One return in 30,000 lies that much too far away, and balls begin below the surface.
 const NOISES_BEFORE_RETURNS: f32 = 4.0;
 
 /// A cloud that is ready for balls: cleaned, with outward normals, an index, and what its pulses prove empty.
@@ -50,35 +50,35 @@ pub struct OrientedSurvey {
     pub(super) measured: Vec<[f32; 3]>,
     /// Classes of these points, where they have any.
     pub(super) classification: Option<Vec<u8>>,
-    /// What carving needs, where it is wanted and possible.
+    /// Input of carving, if it is wanted and possible.
     pub(super) carving: Option<CarvingInput>,
 }
 
-/// What carving needs beside an oriented cloud.
+/// Input of carving beside an oriented cloud.
 pub(super) struct CarvingInput {
     pub(super) free_segments: FreeSegments,
-    /// What pulses prove empty between their returns; it proves, and does not carve.
+    /// Space that pulses prove empty between their returns; it proves, and does not carve.
     pub(super) between_returns: Option<FreeSegments>,
-    /// What pulses that returned nothing prove empty; it proves, and does not carve.
+    /// Space that pulses without a return prove empty; it proves, and does not carve.
     pub(super) into_the_sky: Option<FreeSegments>,
     /// Classes, numbers and counts of returns.
     pub(super) attributes: Attributes,
-    /// Whether pulses are only assumed.
+    /// True if pulses are only assumed.
     pub(super) is_assumed: bool,
     /// The scanner at each point, (N, 3) local metres, NaN where unknown.
     pub(super) scanner: Vec<[f32; 3]>,
-    /// Which returns share a pulse, where that can be known.
+    /// Groups of returns that share a pulse, if known.
     pub(super) pulses: Option<Pulses>,
 }
 
-/// Where the scanner was.
+/// Positions of the scanner.
 #[derive(Default)]
 struct ScannerPositions {
     /// For each point, local metres, NaN where unknown.
     positions: Vec<[f32; 3]>,
-    /// Whether pulses are only assumed to fall straight down.
+    /// True if pulses are only assumed to fall straight down.
     is_assumed: bool,
-    /// Whether they are the poses of the file.
+    /// True if they are the poses of the file.
     are_poses: bool,
 }
 
@@ -105,14 +105,15 @@ impl OrientedSurvey {
         normals
     }
 
-    /// Whether its cloud, in `frame`, looks as if y were up and not z ([`looks_y_up`]). Clouds with a reference system
-    /// have z up.
+    /// Returns true if its cloud, in `frame`, looks as if y were up and not z ([`looks_y_up`]). Clouds with a reference
+    /// system have z up.
     #[must_use]
     pub fn looks_y_up(&self, frame: &Frame) -> bool {
         frame.crs.kind == CrsKind::Unknown && looks_y_up(self.oriented.positions(), self.oriented.normals())
     }
 
-    /// What the height of a room says against metres, which a cloud without a reference system is taken to be in.
+    /// Returns the contradiction between the height of a room and the unit, metres by assumption for a cloud without a
+    /// reference system.
     ///
     /// # Errors
     /// Those of [`unit_contradiction_of`].
@@ -121,7 +122,8 @@ impl OrientedSurvey {
         if is_known { Ok(None) } else { unit_contradiction_of(self.oriented.positions(), control) }
     }
 
-    /// What pulses prove empty, where carving was wanted and possible and pulses are known rather than assumed.
+    /// Returns the space that pulses prove empty, if carving was wanted and possible and pulses are known instead of
+    /// assumed.
     #[must_use]
     pub fn pulses(&self) -> Option<FreeSegmentColumns> {
         let input = self.carving.as_ref().filter(|input| !input.is_assumed)?;
@@ -141,7 +143,7 @@ fn check_memory(count: usize) -> Result<()> {
     Vec::<u8>::new().try_reserve_exact(bytes).map_err(refused)
 }
 
-/// As [`OrientedSurvey::prepare`]. A cloud that is given away is freed as soon as nothing needs it.
+/// Prepares a cloud as [`OrientedSurvey::prepare`]. A cloud that is given away is freed as soon as nothing needs it.
 pub(super) fn prepare(
     cloud: Cow<'_, PointCloud>,
     params: &ModelParams,
@@ -253,7 +255,7 @@ pub(super) fn prepare(
     Ok((OrientedSurvey { oriented, index, kept, bounds, measured, classification, carving }, report))
 }
 
-/// What a whole cloud shows of its survey. Heights of lines are compared where they are those of flights.
+/// Finds the properties of the survey of a whole cloud. Heights of lines are compared if they are flight lines.
 fn findings(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<SurveyFindings> {
     let mut findings = SurveyFindings::of_cloud(cloud);
     let is_flown = cloud.scanner_positions.is_empty()
@@ -318,7 +320,7 @@ fn check_surface<'a>(points: impl Iterator<Item = &'a [f32; 3]> + Clone) -> Resu
     if is_beside { Ok(()) } else { Err(Error::NoSurface { count, what: "all on one line or in one place" }) }
 }
 
-/// How normals are turned outward: this depends on the requested method and on the data of the cloud.
+/// Returns the orientation of normals for the requested method and the data of the cloud.
 fn orientation<'a>(
     cloud: &PointCloud,
     params: &'a ModelParams,
@@ -347,7 +349,7 @@ fn orientation<'a>(
     }
 }
 
-/// Where the scanner was for each point of `cloud`, whose points are the rows `kept` of `read_count` that were given.
+/// Locates the scanner for each point of `cloud`, whose points are the rows `kept` of `read_count` that were given.
 fn find_scanner(
     cloud: &PointCloud,
     kept: &[u32],
@@ -384,7 +386,7 @@ fn find_scanner(
     Ok((ScannerPositions { positions, is_assumed, are_poses }, report))
 }
 
-/// What carving needs of a cloud, and how that was found; `None` where they are only assumed, too few, and need not
+/// Collects the input of carving from a cloud, with a report. `None` if pulses are only assumed, too few, and need not
 /// carve.
 fn carving_input(
     cloud: &PointCloud,
@@ -459,7 +461,7 @@ fn carving_input(
     Ok((Some(input), report))
 }
 
-/// Whether classes of a cloud say what is ground or vegetation.
+/// Returns true if a cloud has classes of ground or vegetation.
 fn tell_ground(cloud: &PointCloud) -> bool {
     cloud.attributes.classification.as_ref().is_some_and(|classes| classes.iter().any(|class| matches!(class, 2..=5)))
 }

@@ -1,4 +1,4 @@
-//! From a scene model to scenes that answer lines of sight.
+//! Creates scenes that answer lines of sight from a scene model.
 
 use super::SceneModel;
 use crate::medial::without_vegetation;
@@ -15,8 +15,8 @@ impl SceneModel {
         Coverage::of(self.bounds())
     }
 
-    /// How the balls of this model block lines of sight unless something else is wanted: carved balls give way to what
-    /// lies at their surface, others have a bias.
+    /// Returns the default rule by which the balls of this model block lines of sight: carved balls give way to targets
+    /// at their surface, others have a bias.
     #[must_use]
     pub fn rule(&self) -> BlockRule {
         if self.is_carved() { BlockRule::carved() } else { BlockRule::uncarved() }
@@ -67,7 +67,7 @@ impl SceneModel {
         control.stage("indexing pulses", 0, || proof.prepare_all(control))
     }
 
-    /// What its pulses prove; `None` without any.
+    /// Returns the proof by its pulses; `None` without any.
     fn proof(&self) -> Result<Option<Proof>> {
         if let Some(proof) = self.proof.get() {
             return Ok(Some(proof.clone()));

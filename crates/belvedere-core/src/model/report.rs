@@ -1,4 +1,4 @@
-//! What became of a cloud on the way to a scene model.
+//! Report of the stages from a cloud to a scene model.
 
 use super::findings::SurveyFindings;
 use super::surfaces::SurfacesReport;
@@ -9,21 +9,21 @@ use crate::pulses::{FreeSegmentReport, ScannerReport};
 use belvedere_data::report::rounded;
 use serde::{Serialize, Serializer};
 
-/// What became of a cloud on the way to a scene model, by stage.
+/// Report of the stages from a cloud to a scene model.
 #[derive(Clone, Debug, Default, Serialize)]
 #[non_exhaustive]
 pub struct BuildReport {
     /// Points that cleaning left out.
     pub removed_by_cleaning: CleanReport,
-    /// How the scanner was found, where it was needed.
+    /// Report of the search for the scanner, if it was needed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scanner: Option<ScannerReport>,
     /// The pulses, where they were to carve.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pulses: Option<PulsesReport>,
-    /// How normals were turned outward.
+    /// Report of the orientation of normals.
     pub normals: NormalsReport,
-    /// How points were moved onto their surface, where that was done.
+    /// Report of moving points onto their surface, if that was done.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub smoothing: Option<SmoothingReport>,
     /// The balls, where they were made.
@@ -32,12 +32,12 @@ pub struct BuildReport {
     /// The surfaces of buildings, where they were looked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surfaces: Option<SurfacesReport>,
-    /// What was found of the survey beside these.
+    /// Findings about the survey beside these.
     #[serde(skip_serializing_if = "SurveyFindings::is_empty")]
     pub survey: SurveyFindings,
 }
 
-/// How points were moved onto the surface that they scatter about.
+/// Report of moving points onto the surface around which they scatter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct SmoothingReport {
     /// Noise of the cloud along its normals, metres; for scanners on the ground noise of their ranges.
@@ -53,11 +53,11 @@ fn in_tenths_of_millimetres<S: Serializer>(length: &f32, serializer: S) -> Resul
     rounded(f64::from(*length), 4).serialize(serializer)
 }
 
-/// What the pulses of a cloud are good for.
+/// Usable pulses of a cloud.
 #[derive(Clone, Debug, Default, Serialize)]
 #[non_exhaustive]
 pub struct PulsesReport {
-    /// How many of them prove space empty.
+    /// Counts of pulses that prove space empty.
     #[serde(flatten)]
     pub free_segments: FreeSegmentReport,
     /// Ways between two returns of a pulse that prove space empty as well; they do not carve.
@@ -90,13 +90,13 @@ fn is_zero(count: &usize) -> bool {
 /// Pulses whose way is blocked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct BlockedPulses {
-    /// How many.
+    /// Number of blocked pulses.
     #[serde(rename = "pulses_blocked_by_balls")]
     pub count: usize,
     /// Their share of the pulses used, percent.
     #[serde(rename = "pulses_blocked_by_balls_percent")]
     pub percent: f64,
-    /// How many more the surfaces of buildings block.
+    /// Number of pulses that only surfaces of buildings block.
     #[serde(rename = "pulses_blocked_by_surfaces")]
     pub by_surfaces: usize,
     /// Their share of the pulses used, percent.
@@ -104,13 +104,13 @@ pub struct BlockedPulses {
     pub by_surfaces_percent: f64,
 }
 
-/// How normals were turned outward.
+/// Report of the orientation of normals.
 #[derive(Clone, Debug, Default, Serialize)]
 #[non_exhaustive]
 pub struct NormalsReport {
     /// The way, in words.
     pub oriented_by: &'static str,
-    /// How many points each rule decided.
+    /// Number of points that each rule decided.
     #[serde(flatten)]
     pub orientation: OrientReport,
 }
@@ -129,7 +129,7 @@ impl NormalsReport {
     }
 }
 
-/// What became of the balls.
+/// Counts of balls by outcome.
 #[derive(Clone, Debug, Serialize)]
 #[serde(untagged)]
 pub enum BallsReport {

@@ -1,4 +1,4 @@
-//! What is estimated once from a whole survey, so that parts of it that are built on their own become one model.
+//! Statistics estimated once from a whole survey, so that parts of it that are built separately become one model.
 
 use crate::clean::{CleanParams, IsolatedPoints, IsolationRadius};
 use crate::medial::RuleStatistics;
@@ -9,9 +9,9 @@ use belvedere_data::control::Control;
 use belvedere_data::{PointCloud, Result};
 use serde::{Deserialize, Serialize};
 
-/// What is estimated once from a whole survey. Parts of the survey that are built with these statistics
-/// ([`statistics`](super::ModelParams::statistics)) and lie in one frame, whose origin is a corner of blocks of 64 m,
-/// have the same balls, bit by bit, wherever they overlap by [`SurveyStatistics::buffer`].
+/// Statistics estimated once from a whole survey. Parts of the survey that are built with them
+/// ([`statistics`](super::ModelParams::statistics)) have the same balls, bit by bit, wherever they overlap by
+/// [`SurveyStatistics::buffer`]. The parts lie in one frame, whose origin is a corner of blocks of 64 m.
 ///
 /// A model of a whole cloud estimates these statistics by itself, from all of its points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -19,39 +19,39 @@ use serde::{Deserialize, Serialize};
 pub struct SurveyStatistics {
     /// Radius in which an isolated point has no neighbours, metres; `None` keeps isolated points.
     pub isolation_radius: Option<f64>,
-    /// Where the scanner was along flight lines, local metres; without any, pulses are assumed to fall straight down.
+    /// Paths of the scanner along flight lines, local metres; without any, pulses are assumed to fall straight down.
     pub paths: Vec<LinePath>,
     /// Horizontal metres for each metre of height up to which pulses are used; those that lean more are left out.
     #[serde(rename = "most_lean")]
     pub max_lean: f64,
-    /// Whether pulses carve.
+    /// True if pulses carve.
     pub carves: bool,
     /// Highest point of the survey, local metres: pulses prove nothing far above it.
     pub top: f32,
-    /// Most height of a point above the lowest one within a few hundred metres, metres.
+    /// Maximum height of a point above the lowest one within a few hundred metres, metres.
     pub relief: f64,
     /// Noise of points along their normals, metres; `None` where they stay where they are.
     pub noise: Option<f32>,
-    /// Whether crowns of trees are measured: whether returns can be grouped into pulses.
+    /// True if crowns of trees are measured: returns can be grouped into pulses.
     pub measures_crowns: bool,
-    /// What rules take from the whole.
+    /// Statistics of the whole for the rules.
     pub whole: RuleStatistics,
-    /// Whether ground is found, since no class tells which points are.
+    /// True if ground is detected, since no point has its class.
     #[serde(default)]
     pub finds_ground: bool,
-    /// How far heights of flight lines are moved.
+    /// Offsets of the heights of flight lines.
     #[serde(default)]
     pub strips: Vec<StripOffset>,
 }
 
 impl SurveyStatistics {
-    /// Whether pulses are assumed to fall straight down.
+    /// Returns true if pulses are assumed to fall straight down.
     #[must_use]
     pub fn are_pulses_assumed(&self) -> bool {
         self.paths.is_empty()
     }
 
-    /// How far away a point may lie and still be a neighbour, metres.
+    /// Returns the maximum distance of a neighbour, metres.
     #[must_use]
     pub fn farthest(&self) -> f32 {
         FARTHEST_NEIGHBOR
@@ -86,7 +86,7 @@ impl SurveyStatistics {
     }
 }
 
-/// How far the pulse from a scanner to a point leans: horizontal metres for each metre of height; `None` where it is
+/// Returns the lean of the pulse from a scanner to a point: horizontal metres for each metre of height. `None` if it is
 /// not known or does not come from above.
 pub(super) fn lean((point, scanner): (&[f32; 3], &[f32; 3])) -> Option<f64> {
     let [x, y, z] = std::array::from_fn(|i| f64::from(scanner[i]) - f64::from(point[i]));

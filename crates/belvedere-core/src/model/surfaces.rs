@@ -9,7 +9,7 @@ use belvedere_data::patches::SurfacePatches;
 use belvedere_data::{Frame, Result};
 use serde::Serialize;
 
-/// What surfaces of buildings were found.
+/// Counts of the surfaces of buildings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct SurfacesReport {
     /// Planes of roofs, in each block of 64 m that they reach into.
@@ -31,9 +31,9 @@ pub struct SurfacesReport {
 }
 
 impl OrientedSurvey {
-    /// The surfaces of the buildings, with rows of points as in the cloud as it was given; `None` where the survey is
-    /// not from the air. Where its scanner is not known pulses are taken to fall straight down: where they passed an
-    /// edge is then known too badly to cut anything, and well enough to look for the wall below.
+    /// Finds the surfaces of the buildings, with rows of points as in the cloud as it was given. `None` for a survey
+    /// that is not from the air. If its scanner is not known, pulses are assumed to fall straight down. The position of
+    /// edges is then too uncertain to cut anything, and good enough to search for the wall below.
     ///
     /// # Errors
     /// Those of [`find`].

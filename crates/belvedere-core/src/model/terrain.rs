@@ -1,19 +1,19 @@
-//! Whether an elevation raster can be the terrain around a cloud.
+//! Checks whether an elevation raster can be the terrain around a cloud.
 
 use belvedere_data::report::{percent, rounded};
 use belvedere_data::{Bounds, ElevationGrid, Error, Frame, Parameter, Result};
 use serde::Serialize;
 
-/// How far heights of terrain may lie above or below all points of a cloud, metres: more than any error of a raster of
-/// 90 m cells, less than 30 m for which heights above an ellipsoid and above the sea differ in most countries, and than
-/// a height in feet taken for metres in all but the lowest.
+/// Maximum height of terrain above or below all points of a cloud, metres. It is more than any error of a raster of 90
+/// m cells, and less than 30 m, by which heights above an ellipsoid and above the sea differ in most countries. It is
+/// also less than the error of heights in feet taken for metres in all but the lowest terrain.
 const MAX_OFFSET: f32 = 25.0;
 
-/// Farthest that the sea lies from the ellipsoid, metres.
+/// Maximum distance between the sea and the ellipsoid, metres.
 const MAX_GEOID: f64 = 107.0;
 const METRES_PER_FOOT: f64 = 0.3048;
 
-/// What an elevation raster holds.
+/// Contents of an elevation raster.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TerrainReport {
     /// Number of cells.
@@ -31,7 +31,7 @@ pub struct TerrainReport {
 }
 
 impl TerrainReport {
-    /// What `terrain` holds around a cloud between `cloud`, both local metres of `frame`.
+    /// Summarises `terrain` around a cloud with the bounds `cloud`, both local metres of `frame`.
     #[must_use]
     pub fn of(terrain: &ElevationGrid, cloud: Bounds, frame: &Frame) -> Self {
         let ([west, south], [east, north]) = terrain.on_map();
@@ -86,8 +86,8 @@ pub fn check_terrain(terrain: &ElevationGrid, name: &str, cloud: Bounds, frame: 
     Ok(())
 }
 
-/// What heights of `terrain` must be to fit those of a `cloud`, metres: what makes them differ can be seen from the
-/// numbers.
+/// Describes the heights of `terrain` that would fit those of a `cloud`, metres; the numbers show the cause of the
+/// difference.
 fn expected_heights(terrain: [f64; 2], cloud: [f64; 2]) -> &'static str {
     let room = f64::from(MAX_OFFSET);
     let [low, high] = terrain.map(|height| height * METRES_PER_FOOT);

@@ -50,12 +50,12 @@ fn fit(items: &[Item]) -> (Vec<WideNode>, Vec<LaneBlock>) {
     (nodes, blocks)
 }
 
-/// Where a run of points is cut: into two runs of whole leaves, as equal as can be.
+/// Returns the length of the first of two runs of whole leaves, as equal as possible.
 fn cut(count: usize) -> usize {
     count.div_ceil(LEAF_POINTS) / 2 * LEAF_POINTS
 }
 
-/// What is left when the work is cancelled is in no order.
+/// Sorts points into leaves. If the work is cancelled, the result is in no order.
 fn sort_to_leaves(items: &mut [Item], stop: &Stop<'_>, control: &Control<'_>) {
     if items.len() <= LEAF_POINTS || (items.len() > PARALLEL_POINTS && stop.is_set()) {
         return;

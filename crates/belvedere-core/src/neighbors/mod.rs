@@ -1,9 +1,9 @@
 //! Neighbours of points: the one spatial index, used by every stage that searches for near points.
 //!
 //! A tree with eight children a node and tight boxes, over leaves of 32 points kept as structure of arrays. Ball
-//! centres lie far from the surface, where thousands of points are nearly equally far; only tight boxes tell them
-//! apart. On half a million points of a simulated city a nearest point costs 0.34 µs on the surface, 0.5 µs from 5 m
-//! and 1.0 µs from 200 m below it; the kd-tree crate kiddo takes 0.24, 2.1 and 57 µs (`research/benches`).
+//! centres lie far from the surface, where thousands of points are nearly equally far; only tight boxes separate them.
+//! On half a million points of a simulated city a nearest point costs 0.34 µs on the surface, 0.5 µs from 5 m and 1.0
+//! µs from 200 m below it. The kd-tree crate kiddo takes 0.24, 2.1 and 57 µs (`research/benches`).
 //!
 //! | question | method |
 //! |---|---|
@@ -43,8 +43,8 @@ pub struct Neighbor {
     pub distance_squared: f32,
 }
 
-/// How far away a point of a survey from the air may lie and still be a neighbour, metres: more than the usual 16
-/// neighbours take wherever there is a surface.
+/// Maximum distance of a neighbour in a survey from the air, metres: more than the usual 16 neighbours need on any
+/// surface.
 pub const FARTHEST_NEIGHBOR: f32 = 16.0;
 
 /// A spatial index over points, built once and searched by any number of threads.
@@ -68,8 +68,8 @@ impl NeighborIndex {
         Self::with_instructions(points, Instructions::detect(), control)
     }
 
-    /// As [`NeighborIndex::new`], searched with the given instructions. Asking for a set this machine lacks gives
-    /// scalar searches.
+    /// Creates the index as [`NeighborIndex::new`], searched with the given instructions. A set that this machine lacks
+    /// gives scalar searches.
     ///
     /// # Errors
     /// As [`NeighborIndex::new`].
@@ -107,7 +107,7 @@ impl NeighborIndex {
         self.order.len()
     }
 
-    /// Whether there is no point.
+    /// Returns true if there is no point.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.order.is_empty()
@@ -151,8 +151,8 @@ impl NeighborIndex {
         }
     }
 
-    /// The least radius, below `max_radius`, of a ball tangent as `tangent` says whose surface passes through a point,
-    /// with the index of that point; `None` if the ball of `max_radius` holds no point.
+    /// Returns the smallest radius, below `max_radius`, of a ball tangent as in `tangent` whose surface passes through
+    /// a point, with the index of that point. `None` if the ball of `max_radius` holds no point.
     ///
     /// This is the nearest neighbour in the pencil of balls that touch one plane at one point.
     #[must_use]

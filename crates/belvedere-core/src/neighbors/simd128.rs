@@ -2,7 +2,7 @@
 
 use super::Tangent;
 use super::lanes::{LANES, LaneBlock, Lanes, WideNode};
-use crate::eight::Eight;
+use crate::f32x8::Eight;
 
 pub(super) struct NeighborSimd128;
 

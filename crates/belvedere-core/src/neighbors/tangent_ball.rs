@@ -11,7 +11,7 @@ pub struct Tangent {
     pub point: [f32; 3],
     /// Unit vector from there to the centres.
     pub inward: [f32; 3],
-    /// How far inward of `point` the balls touch, metres; the point itself and its noise stay outside them.
+    /// Distance inward of `point` at which the balls touch, metres; the point itself and its noise stay outside them.
     pub margin: f32,
 }
 

@@ -7,7 +7,7 @@ use belvedere_data::vector::dot;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
-/// How many neighbours describe the surface at a point.
+/// Number of neighbours that describe the surface at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Neighborhood {
     /// The point and its `k` nearest neighbours, 3 to 256. The paper takes 6, masbcpp 10.
@@ -16,7 +16,7 @@ pub enum Neighborhood {
         k: usize,
     },
     /// The largest of 8, 11, 16, 22, 32, 45 and 64 neighbours that still lie within `flatness` of a plane (root mean
-    /// square); where none does, the number at which the neighbourhood's eigenentropy is least (Weinmann et al. 2015).
+    /// square). If none does, the number with the smallest eigenentropy of the neighbourhood (Weinmann et al. 2015).
     Adaptive {
         /// Metres; a little more than the noise of the cloud along its normals.
         flatness: f32,
@@ -85,7 +85,7 @@ pub fn estimate(
     Ok(estimate_with_scatter(positions, index, neighborhood, control)?.0)
 }
 
-/// As [`estimate`], and how points scatter about the planes that the normals belong to.
+/// Computes [`estimate`], and the scatter of points around the planes of the normals.
 ///
 /// # Errors
 /// Those of [`estimate`].
@@ -98,7 +98,7 @@ pub fn estimate_with_scatter(
     estimate_within(positions, index, neighborhood, f32::INFINITY, control)
 }
 
-/// As [`estimate_with_scatter`], with neighbours no farther than `farthest` metres away.
+/// Computes [`estimate_with_scatter`], with neighbours no farther than `farthest` metres away.
 ///
 /// # Errors
 /// Those of [`estimate`].
@@ -184,9 +184,9 @@ pub(crate) fn estimate_within_reach(
 #[derive(Clone, Copy)]
 struct Plane {
     normal: [f32; 3],
-    /// As [`Normals::quality`].
+    /// Quality of the normal, see [`Normals::quality`].
     quality: f32,
-    /// From the point to the plane along the normal, metres.
+    /// Distance from the point to the plane along the normal, metres.
     offset: f32,
     /// Root mean square distance of the neighbourhood from it, metres.
     roughness: f32,
@@ -280,7 +280,7 @@ impl Plane {
         scatter.roughness.push(self.roughness);
     }
 
-    /// That of a spot or a line.
+    /// Plane of a point or a line: none.
     const NONE: Self = Self { normal: [0.0; 3], quality: 0.0, offset: 0.0, roughness: f32::INFINITY };
 
     /// The plane of a neighbourhood with these eigenvalues, this component of the least one and this mean, from the
@@ -306,8 +306,8 @@ impl Plane {
 /// Eigenvalues in ascending order and the unit eigenvector of the least, of the symmetric matrix xx, yy, zz, xy, yz,
 /// zx.
 ///
-/// Closed form (Smith 1961) with the eigenvector from the longest cross product of two rows of A − λI; where two
-/// eigenvalues nearly coincide those rows say nothing and Jacobi rotations take over.
+/// Closed form (Smith 1961) with the eigenvector from the longest cross product of two rows of A − λI. If two
+/// eigenvalues nearly coincide, these rows are useless and Jacobi rotations take over.
 pub(crate) fn min_component(m: [f64; 6]) -> ([f64; 3], [f64; 3]) {
     let [xx, yy, zz, xy, yz, zx] = m;
     let mean = (xx + yy + zz) / 3.0;
@@ -341,7 +341,7 @@ pub(crate) fn min_component(m: [f64; 6]) -> ([f64; 3], [f64; 3]) {
 }
 
 #[expect(clippy::needless_range_loop, reason = "two rows change at once")]
-/// As [`min_component`], by cyclic Jacobi rotations: slower, and exact for any spectrum.
+/// Computes [`min_component`] by cyclic Jacobi rotations: slower, and exact for any spectrum.
 fn jacobi(m: [f64; 6]) -> ([f64; 3], [f64; 3]) {
     let [xx, yy, zz, xy, yz, zx] = m;
     let mut a = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];

@@ -16,7 +16,6 @@ pub use scatter::Scatter;
 pub struct Normals {
     /// Unit vectors, (N, 3); (0, 0, 0) where the neighbourhood determines no plane.
     pub vectors: Vec<[f32; 3]>,
-    /// How well each is determined, (N), 0 to 1: one minus the ratio of the two smallest eigenvalues of the
-    /// neighbourhood.
+    /// Quality of each, (N), 0 to 1: one minus the ratio of the two smallest eigenvalues of the neighbourhood.
     pub quality: Vec<f32>,
 }

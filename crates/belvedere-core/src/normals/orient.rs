@@ -1,4 +1,4 @@
-//! Which way is out: the signs of normals from up, scanners, a trajectory, a city model, or the file.
+//! Orientation of normals: their signs from up, scanners, a trajectory, a city model, or the file.
 
 use rayon::prelude::*;
 use serde::{Serialize, Serializer, ser::SerializeMap};
@@ -25,15 +25,15 @@ const FALLBACK_WEIGHT: f64 = 0.25;
 /// Confidence below which a sign is as good as unknown: the line of sight runs within 3° of the surface.
 pub const LOW_CONFIDENCE: f32 = 0.05;
 
-/// Below this cosine between normal and pulse a sign by the pulse is worth less than the vote of roof and ground, or
-/// up: on sparse facades normals are tilted by ten degrees and more. On simulated towns (seeds 7 and 8) leaving such
-/// signs to the vote gains 0.9 to 1.3 points of IoU in free air.
+/// Cosine between normal and pulse below which the vote of roof and ground, or up, is more reliable than the pulse. On
+/// sparse facades normals are tilted by ten degrees and more. On simulated towns (seeds 7 and 8) leaving such signs to
+/// the vote gains 0.9 to 1.3 points of IoU in free air.
 const GRAZING: f32 = 0.3;
 /// Part of a pulse's way that leads up, from which on it comes from above: roofs and ground vote for such surveys. What
 /// is seen from the side, or from below as ceilings are, knows neither.
 const FROM_ABOVE: f64 = 0.3;
 
-/// How to find the outward side of each normal.
+/// Source of the outward side of each normal.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Orientation<'a> {
@@ -48,13 +48,13 @@ pub enum Orientation<'a> {
     /// Towards where the scanner was when it measured each point, (N, 3), local metres; NaN where that is unknown. As
     /// [`Orientation::Up`] where that is so, and where the pulse ran within 17° of the surface.
     Pulses(&'a [[f32; 3]]),
-    /// As the nearest face of this mesh, or towards the side of the point that is outside the mesh.
+    /// Nearest face of this mesh, or the side of the point that is outside the mesh.
     Mesh(&'a Mesh),
-    /// As the file gives them; its normals replace the estimated ones.
+    /// Normals of the file, which replace the estimated ones.
     Given,
 }
 
-/// How the normals of a cloud got their signs. The `by_` counts and `without_normal_count` add up to the points.
+/// Counts of normals by the source of their sign. The `by_` counts and `without_normal_count` add up to the points.
 ///
 /// Serialised, counts become percentages of the points, those that are zero left out.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -63,11 +63,11 @@ pub struct OrientReport {
     pub point_count: usize,
     /// Points whose normal is zero: nothing to orient.
     pub without_normal_count: usize,
-    /// As given by the file.
+    /// Number of signs given by the file.
     pub by_file_count: usize,
     /// Towards a scanner at a known place, set-up or trajectory.
     pub by_scanner_count: usize,
-    /// As an aligned face of the mesh.
+    /// Number of signs from an aligned face of the mesh.
     pub by_face_count: usize,
     /// Towards the side of the point that is outside the mesh.
     pub by_parity_count: usize,
@@ -79,7 +79,7 @@ pub struct OrientReport {
     pub flipped_count: usize,
     /// Normals with a confidence below [`LOW_CONFIDENCE`].
     pub low_confidence_count: usize,
-    /// How GPS times became those of the trajectory, where one was used.
+    /// Conversion of GPS times to those of the trajectory, if one was used.
     pub clock: Option<ClockOffset>,
 }
 
@@ -114,7 +114,7 @@ impl Serialize for OrientReport {
     }
 }
 
-/// What a sign was derived from.
+/// Source of a sign.
 #[derive(Clone, Copy, PartialEq)]
 enum SignSource {
     Nothing,
@@ -150,17 +150,19 @@ impl NormalSign {
 /// requested but gave no result, 1 for given normals. For [`Orientation::Given`], `normals` may be empty; then the
 /// quality is 1.
 ///
-/// A mesh need not be consistently oriented or closed: each of its faces is first turned to its open side where one
-/// side is open and the other enclosed (parity of crossings straight up, which needs no orientation); faces for which
-/// that fails keep their turning sense, but are overruled by parity at the point. A face counts as the point's own
-/// surface within 2 m, if their normals are within 60° of each other and the point lies no more than 0.25 m beside it.
-/// The result is the same for any number of threads.
+/// A mesh need not be consistently oriented or closed. Each of its faces is first turned to its open side if one side
+/// is open and the other enclosed (parity of crossings straight up, which needs no orientation). Other faces keep their
+/// turning sense, but are overruled by parity at the point.
+///
+/// A face counts as the point's own surface within 2 m, if their normals are within 60° of each other and the point
+/// lies at most 0.25 m beside it. The result is the same for any number of threads.
 ///
 /// # Errors
-/// [`Error::LengthMismatch`] where lengths differ, [`Error::MissingAttribute`] where the cloud lacks scanner positions,
-/// GPS times or normals that the way needs, [`Error::InvalidParameter`] for positions or scanners that are not finite,
-/// no scanner at all, a mesh without a face, and a trajectory that knows a position at none of the cloud's times;
-/// [`Error::Cancelled`].
+/// - [`Error::LengthMismatch`] if lengths differ.
+/// - [`Error::MissingAttribute`] if the cloud lacks scanner positions, GPS times or normals that the source needs.
+/// - [`Error::InvalidParameter`] for positions or scanners that are not finite, no scanner at all, a mesh without a
+///   face, and a trajectory that knows a position at none of the cloud's times.
+/// - [`Error::Cancelled`].
 ///
 /// # Source
 /// By scanner position and by city model: Peters, Ledoux & Biljecki 2015, section 4. The vote, the probing of faces and

@@ -18,8 +18,8 @@ pub struct OrientedCloud {
 }
 
 impl OrientedCloud {
-    /// A cloud from local positions, (N, 3), metres; outward normals, (N, 3), of any length; the quality of each
-    /// normal's line, (N), and the confidence in its sign, (N), both brought into 0 to 1.
+    /// Creates a cloud from local positions, (N, 3), metres; outward normals, (N, 3), of any length; the quality of
+    /// each normal's line, (N), and the confidence in its sign, (N). Quality and confidence are clamped to 0 to 1.
     ///
     /// Normals are scaled to unit length; those that are not finite or vanish become zero, with zero quality and
     /// confidence.
@@ -57,7 +57,8 @@ impl OrientedCloud {
         Ok(Self { positions, origin: [0.0; 3], crs: Crs::default(), normals, quality, confidence })
     }
 
-    /// As [`OrientedCloud::new`] for normals that are beyond doubt, such as those of a mesh: quality and confidence 1.
+    /// Creates a cloud as [`OrientedCloud::new`] for normals that are certain, such as those of a mesh: quality and
+    /// confidence 1.
     ///
     /// # Errors
     /// As [`OrientedCloud::new`].
@@ -87,7 +88,7 @@ impl OrientedCloud {
         self.positions.len()
     }
 
-    /// Whether there is no point at all.
+    /// Returns true if there is no point.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
@@ -105,19 +106,19 @@ impl OrientedCloud {
         &self.normals
     }
 
-    /// How well the line of each normal is determined, (N), 0 to 1.
+    /// Returns the quality of the line of each normal, (N), 0 to 1.
     #[must_use]
     pub fn quality(&self) -> &[f32] {
         &self.quality
     }
 
-    /// How sure the sign of each normal is, (N), 0 to 1; below 0.05 it is as good as unknown.
+    /// Returns the confidence in the sign of each normal, (N), 0 to 1; below 0.05 it is as good as unknown.
     #[must_use]
     pub fn confidence(&self) -> &[f32] {
         &self.confidence
     }
 
-    /// Where local (0, 0, 0) lies, metres.
+    /// Returns the position of local (0, 0, 0), metres.
     #[must_use]
     pub fn origin(&self) -> [f64; 3] {
         self.origin

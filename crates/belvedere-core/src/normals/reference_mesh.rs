@@ -7,28 +7,29 @@ use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::{cross, dot, sub};
 use belvedere_data::{Mesh, Result};
 
-/// Farthest a face may be for its normal to say something about a point: generalised models leave out dormers and
-/// terraces of that size.
+/// Maximum distance of a face whose normal decides about a point: generalised models leave out dormers and terraces of
+/// that size.
 const MAX_FACE_DISTANCE_M: f64 = 2.0;
 
-/// Least |cosine| between the normals of point and face for the face to count as the point's own surface (60°).
+/// Minimum |cosine| between the normals of point and face for the face to count as the point's own surface (60°).
 const MIN_ALIGNMENT: f64 = 0.5;
 
 /// Faces that are farther than the nearest by no more than this are candidates too: noise of laser points near an edge.
 const EDGE_SLACK_M: f64 = 0.1;
 
-/// How far beside a face, along its plane, a point may lie for the face to be its own surface. Without this the street
-/// in front of a house would take its sign from the edge of the floor of the house where the model has no street.
+/// Maximum distance of a point beside a face, along its plane, for the face to be its own surface, metres. Without this
+/// limit the street in front of a house would take its sign from the edge of the floor of the house, if the model has
+/// no street.
 const MAX_LATERAL_M: f64 = 0.25;
 
-/// Offsets along a normal at which the sides of a point are probed, smallest first: beyond the noise of laser points,
-/// below the thickness of buildings; the second is for points that lie off the surface of a generalised model.
+/// Offsets along a normal at which the sides of a point are probed, metres, smallest first: beyond the noise of laser
+/// points, below the thickness of buildings. The second is for points that lie off the surface of a generalised model.
 const PROBE_OFFSETS_M: [f64; 2] = [0.25, 0.5];
 
 /// Offset at which the sides of a face are probed: a mesh has no noise, but thin parts (eaves, chimneys).
 const FACE_PROBE_M: f64 = 0.05;
 
-/// What a mesh says about the normal of a point.
+/// Verdict of a mesh on the normal of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum MeshVerdict {
     /// The nearest face is the point's own surface; positive where the normal points out, its size the confidence.
@@ -42,7 +43,7 @@ pub(super) enum MeshVerdict {
 struct MeshFace {
     corners: [[f64; 3]; 3],
     normal: [f64; 3],
-    /// Whether one side was found enclosed and the other open, so that `normal` is known to point out.
+    /// True if one side is enclosed and the other open, so that `normal` is known to point out.
     verified: bool,
 }
 
@@ -73,8 +74,8 @@ impl ReferenceMesh {
     /// Faces of `mesh` relative to `origin` (metres); faces that are degenerate or refer to missing vertices are left
     /// out. `None` if none is left.
     ///
-    /// The turning sense of a face is believed only where nothing better is known: each face is probed on both sides,
-    /// and turned so that its normal points to the open one.
+    /// Creates the mesh with oriented faces. Each face is probed on both sides and turned so that its normal points to
+    /// the open one. Its turning sense is used only if that fails.
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -125,7 +126,7 @@ impl ReferenceMesh {
         Ok(Some(reference))
     }
 
-    /// What the mesh says about the unit `normal` of a local `position`.
+    /// Returns the verdict of the mesh on the unit `normal` of a local `position`.
     pub(super) fn verdict(&self, position: [f64; 3], normal: [f64; 3]) -> MeshVerdict {
         let mut unproven = None;
         if let Some((alignment, verified)) = self.own_face(position, normal) {
@@ -147,8 +148,8 @@ impl ReferenceMesh {
         unproven.unwrap_or(MeshVerdict::Silent)
     }
 
-    /// Signed |cosine| with the face that is the point's own surface, and whether that face is verified; `None` where
-    /// there is none, or faces about as near and about as well aligned disagree about the sign.
+    /// Returns the signed |cosine| with the face that is the point's own surface, and true if that face is verified.
+    /// `None` if there is none, or if faces about as near and about as well aligned disagree about the sign.
     fn own_face(&self, position: [f64; 3], normal: [f64; 3]) -> Option<(f64, bool)> {
         let reach = self.nearest_distance(position)? + EDGE_SLACK_M;
         let mut best: Option<(f64, bool)> = None;
@@ -197,7 +198,7 @@ impl ReferenceMesh {
 
     /// Calls `visit` for every face within `reach` of `position`, with its distance.
     fn each_within<'a>(&'a self, position: [f64; 3], reach: f64, mut visit: impl FnMut(&'a MeshFace, f64)) {
-        self.index.near(position.map(|v| v - reach), position.map(|v| v + reach), |row| {
+        self.index.visit_near(position.map(|v| v - reach), position.map(|v| v + reach), |row| {
             let Some(face) = self.faces.get(row) else { return };
             let distance = face.distance_to(position);
             if distance <= reach {
@@ -206,8 +207,8 @@ impl ReferenceMesh {
         });
     }
 
-    /// Whether the side that `normal` points to is open and the other enclosed (`true`), or the reverse; `None` where
-    /// both are the same.
+    /// Returns true if the side that `normal` points to is open and the other enclosed, false for the reverse, and
+    /// `None` if both are the same.
     fn open_side(&self, position: [f64; 3], normal: [f64; 3], offset: f64) -> Option<bool> {
         let shifted = |by: f64| std::array::from_fn(|i| position[i] + by * normal[i]);
         match (self.is_open(shifted(offset)), self.is_open(shifted(-offset))) {
@@ -217,9 +218,9 @@ impl ReferenceMesh {
         }
     }
 
-    /// Whether a ray straight up from `position` crosses an even number of faces. Upward, because above every town is
-    /// sky, whereas below it solids, terrain sheets and missing floors are anyone's guess; the turning sense of faces
-    /// does not matter.
+    /// Returns true if a ray straight up from `position` crosses an even number of faces. The sky is above every town,
+    /// whereas solids, terrain sheets and missing floors below are unreliable. The turning sense of faces does not
+    /// matter.
     fn is_open(&self, position: [f64; 3]) -> bool {
         let [x, y, z] = position;
         if z > self.top {
@@ -236,7 +237,7 @@ impl ReferenceMesh {
     }
 }
 
-/// Whether (x, y) lies in the triangle seen from above. Of triangles that share an edge exactly one covers a point on
+/// Returns true if (x, y) lies in the triangle in plan. Of triangles that share an edge exactly one covers a point on
 /// it.
 fn covers(corners: [[f64; 3]; 3], x: f64, y: f64) -> bool {
     let mut inside = false;

@@ -1,14 +1,14 @@
-//! How points scatter about the surface that they lie on, and that surface.
+//! Scatter of points around their surface, and that surface.
 //!
-//! A union of balls is an envelope: it lies as far outside a surface as the outermost of the points about each place,
-//! and the more points there are, the farther out that is. Balls are therefore tangent to the planes that
-//! neighbourhoods lie on, where noise and not shape is what moves points away from them.
+//! A union of balls is an envelope. It lies as far outside a surface as the outermost point around each place, and the
+//! more points there are, the farther out that is. Balls are therefore tangent to the planes of neighbourhoods, if
+//! noise and not shape moves points away from them.
 
 use belvedere_data::vector::{dot, sub};
 use rayon::prelude::*;
 
-/// Share of the points whose neighbourhoods are rougher by noise alone: in every cloud that this was tried on a quarter
-/// or more of the points lie on ground or roofs.
+/// Share of the points whose neighbourhoods are rougher by noise alone. In every cloud tested a quarter or more of the
+/// points lie on ground or roofs.
 const SMOOTH_SHARE: f64 = 0.25;
 /// A neighbourhood counts as flat up to this many times the noise of the cloud. Among 17 points of a plane one in a
 /// thousand is rougher.
@@ -17,10 +17,10 @@ const MAX_NOISE: f32 = 2.0;
 /// and is not divided by nearly nothing: 60°.
 const STEEP: f32 = 0.5;
 
-/// Where the plane through the neighbourhood of each point lies.
+/// Plane through the neighbourhood of each point.
 #[derive(Clone, Debug, Default)]
 pub struct Scatter {
-    /// From each point to the plane, (N, 3), metres.
+    /// Vector from each point to the plane, (N, 3), metres.
     pub to_plane: Vec<[f32; 3]>,
     /// Root mean square distance of its neighbourhood from that plane, (N), metres; infinite where there is no plane.
     pub roughness: Vec<f32>,

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 /// Width of a cell: about the spacing of the sparsest clouds worth orienting, and a tenth of a small house.
 const CELL_M: f64 = 0.5;
 
-/// How far the vote looks horizontally: most of a small house, less than a street.
+/// Horizontal reach of the vote, metres: most of a small house, less than a street.
 const REACH_M: f64 = 3.0;
 
 /// Heights must differ by this much for one side to count as building and the other as ground: half a storey.
@@ -33,12 +33,12 @@ impl HighestPointGrid {
     /// where they are about level.
     ///
     /// # Source
-    /// The idea that above a facade lies roof (inside) and below it ground (outside); halves of the local relief
-    /// instead of fixed offsets from the point serve points near the ground and near the eaves alike.
+    /// Above a facade is roof (inside), and below it ground (outside). Halves of the local relief instead of fixed
+    /// offsets from the point serve points near the ground and near the eaves alike.
     pub(super) fn downhill(&self, position: [f32; 3]) -> Option<[f64; 2]> {
         let (x, y) = (f64::from(position[0]), f64::from(position[1]));
         let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-        for (_, z) in self.around(x, y) {
+        for (_, z) in self.cells_around(x, y) {
             low = low.min(z);
             high = high.max(z);
         }
@@ -48,7 +48,7 @@ impl HighestPointGrid {
         let middle = low + (high - low) / 2.0;
         // sum of x, sum of y and number of cells: low half, high half
         let mut halves = [[0.0; 3]; 2];
-        for ((row, column), z) in self.around(x, y) {
+        for ((row, column), z) in self.cells_around(x, y) {
             let half = &mut halves[usize::from(z > middle)];
             half[0] += (column as f64 + 0.5) * CELL_M - x;
             half[1] += (row as f64 + 0.5) * CELL_M - y;
@@ -60,7 +60,7 @@ impl HighestPointGrid {
         (length > 1e-6 && length.is_finite()).then(|| [dx / length, dy / length])
     }
 
-    fn around(&self, x: f64, y: f64) -> impl Iterator<Item = ((i32, i32), f32)> + '_ {
+    fn cells_around(&self, x: f64, y: f64) -> impl Iterator<Item = ((i32, i32), f32)> + '_ {
         let (left, right) = (cell(x - REACH_M), cell(x + REACH_M));
         (cell(y - REACH_M)..=cell(y + REACH_M)).flat_map(move |row| {
             let start = self.cells.partition_point(|entry| entry.0 < (row, left));

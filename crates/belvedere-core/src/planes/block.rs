@@ -19,7 +19,7 @@ const CELL: f64 = 2.0;
 const GROUND: u8 = 2;
 /// Classes of bridge decks: that of ASPRS, and that of the Dutch AHN.
 const DECKS: [u8; 2] = [17, 26];
-/// Least upward part of the way to a scanner that flies, as a share.
+/// Minimum upward part of the direction to a scanner that flies, as a share.
 const MIN_UP: f64 = 0.3;
 
 /// A return as surfaces need it, metres from the corner of the block.
@@ -30,21 +30,21 @@ pub(super) struct Return {
     pub(super) p: [f64; 3],
     /// Metres east and north for each metre up, on the way to the scanner; NaN where it is unknown.
     pub(super) lean: [f64; 2],
-    /// Whether it lies on a building.
+    /// Knowledge of whether it lies on a building.
     pub(super) building: Building,
-    /// Whether its class leaves open what it lies on, or says that this is a structure.
+    /// True if its class is open, or that of a structure.
     pub(super) is_structure: bool,
-    /// Whether it has the class of bridge decks.
+    /// True if it has the class of bridge decks.
     pub(super) is_deck: bool,
-    /// Whether it lies on the ground.
+    /// True if it lies on the ground.
     pub(super) is_ground: bool,
-    /// Whether it is the first of its pulse.
+    /// True if it is the first of its pulse.
     pub(super) is_first: bool,
-    /// Whether its pulse has several returns: a part of the beam went on.
+    /// True if its pulse has several returns: a part of the beam went on.
     pub(super) is_split: bool,
 }
 
-/// Whether a return lies on a building.
+/// Knowledge of whether a return lies on a building.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Building {
     /// Another class says that it does not, or its pulse has several returns, as in trees.
@@ -61,12 +61,12 @@ impl Return {
         self.building != Building::No
     }
 
-    /// Whether it lies on a building or another structure.
+    /// Returns true if it lies on a building or another structure.
     pub(super) fn is_solid(&self) -> bool {
         self.may_be_building() || self.is_structure
     }
 
-    /// Whether it may lie on a slab that is no part of a building.
+    /// Returns true if it may lie on a slab that is no part of a building.
     pub(super) fn may_be_slab(&self) -> bool {
         self.is_structure && !self.may_be_building() && self.is_first && !self.is_split
     }
@@ -87,7 +87,7 @@ pub(super) struct Block {
     grid: Grid,
     /// Lowest return.
     pub(super) lowest: f64,
-    /// Most lean of a pulse.
+    /// Maximum lean of a pulse.
     pub(super) max_lean: f64,
     /// Number of first returns in each cell of the grid.
     counts: Vec<u32>,
@@ -96,7 +96,7 @@ pub(super) struct Block {
 /// The cells of a block and what lies about it.
 #[derive(Clone, Copy)]
 struct Grid {
-    /// How far it reaches beyond the block, metres.
+    /// Margin beyond the block, metres.
     margin: f64,
     /// Columns, and rows.
     side: usize,
@@ -168,12 +168,12 @@ pub(super) fn block_of(p: [f32; 3], origin: [f64; 2]) -> [i64; 2] {
     [0, 1].map(|axis| number(f64::from(p[axis]) + origin[axis]))
 }
 
-/// Whether a point is the first return of its pulse.
+/// Returns true if a point is the first return of its pulse.
 fn is_first(survey: &SurveyPoints<'_>, row: usize) -> bool {
     survey.attributes.return_number.as_ref().and_then(|numbers| numbers.get(row)).is_none_or(|&number| number <= 1)
 }
 
-/// Whether a point lies on a building.
+/// Returns whether a point lies on a building.
 fn building(survey: &SurveyPoints<'_>, row: usize) -> Building {
     match class(survey, row) {
         Some(SurfacePatches::CLASS) => Building::Yes,
@@ -182,7 +182,7 @@ fn building(survey: &SurveyPoints<'_>, row: usize) -> Building {
     }
 }
 
-/// Whether the class of a point is none of ground, plants, noise, water and wires.
+/// Returns true if the class of a point is none of ground, plants, noise, water and wires.
 fn is_structure(survey: &SurveyPoints<'_>, row: usize) -> bool {
     class(survey, row).is_some_and(|class| !matches!(class, 2..=5 | 7..=9 | 13..=16 | 18 | 20 | 40..=45))
 }
@@ -303,7 +303,7 @@ impl Block {
         highest
     }
 
-    /// How far in plan a pulse moves at most from where it crosses a height to its return.
+    /// Returns the maximum horizontal shift of a pulse between a height and its return, metres.
     pub(super) fn max_shift(&self, height: f64) -> f64 {
         (height - self.lowest).max(0.0) * self.max_lean
     }
@@ -324,7 +324,7 @@ impl Block {
         (cells * CELL * CELL / f64::from(count.max(1))).sqrt()
     }
 
-    /// Whether a place in plan lies in the block itself.
+    /// Returns true if a place in plan lies in the block itself.
     pub(super) fn holds(&self, p: [f64; 2]) -> bool {
         p.iter().all(|v| (0.0..BLOCK).contains(v))
     }
@@ -353,7 +353,7 @@ impl Block {
     }
 
     /// Gives out planes, edges, ridges and walls as far as they lie in the block.
-    pub(super) fn give_out(
+    pub(super) fn append_to(
         &self,
         roofs: &Roofs,
         ridges: &[RidgeLine],

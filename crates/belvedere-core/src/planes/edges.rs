@@ -8,16 +8,16 @@ use super::roof_planes::{NONE, Roofs};
 use super::{EdgeParams, PlaneParams, sheets};
 use crate::ground::sides;
 
-/// How far below the plane a pulse must end to have passed it, metres. With 0.3 those are left out that meet the wall
-/// close below an edge, and edges lie a centimetre too far out.
+/// Minimum depth below the plane at which a pulse that passed it ends, metres. With 0.3, pulses that meet the wall
+/// close below an edge are left out, and edges lie a centimetre too far out.
 pub(super) const PASSED: f64 = 0.15;
-/// How far above the plane points of buildings may stand and still show that the building goes on, metres.
+/// Maximum height above the plane of points of buildings that show that the building goes on, metres.
 const ABOVE: f64 = 4.0;
-/// Least share of the returns within that lie on the plane itself.
+/// Minimum share of the returns within that lie on the plane itself.
 const MIN_OWN_SHARE: f64 = 0.3;
-/// How far within a line these are counted, spacings.
+/// Width inside a line within which these are counted, spacings.
 const OWN_SPACINGS: f64 = 3.2;
-/// How far from the returns of the plane samples count, spacings.
+/// Maximum distance of samples from the returns of the plane, spacings.
 const REACH_SPACINGS: f64 = 4.5;
 /// Longest side between a return and a pulse that passed, spacings.
 const SIDE_SPACINGS: f64 = 4.0;
@@ -26,20 +26,21 @@ const BAND_SPACINGS: f64 = 0.6;
 /// The same while a line begins to grow, and how often.
 const WIDE_BAND_SPACINGS: f64 = 0.9;
 const WIDE_TURNS: usize = 4;
-/// Cosine of the turn between pieces of one line, 26°, and how much farther from it their middles lie than from lines
-/// of their own, root mean square, spacings: a step of two thirds of a spacing between two halves.
+/// Cosine of the maximum turn between pieces of one line, 26°. Then the maximum increase of the root mean square
+/// distance of their middles from it, over lines of their own, spacings: a step of two thirds of a spacing between two
+/// halves.
 const JOINED_COSINE: f64 = 0.9;
 const JOINED_SPACINGS: f64 = 0.36;
 /// Longest gap of a line, spacings.
 const GAP_SPACINGS: f64 = 5.0;
-/// How far beside a line middles are no lines of their own, spacings.
+/// Distance beside a line within which middles are no lines of their own, spacings.
 const BESIDE_SPACINGS: f64 = 1.2;
-/// How far about a middle others show its direction, spacings.
+/// Radius around a middle within which others show its direction, spacings.
 const AROUND_SPACINGS: f64 = 5.0;
 /// Middles on a line at least, and its least length, metres.
 const MIN_MIDDLES: usize = 4;
 const MIN_LENGTH: f64 = 1.0;
-/// How far an end moves to a crossing with another line of the plane, spacings.
+/// Maximum shift of an end to a crossing with another line of the plane, spacings.
 const END_SPACINGS: f64 = 3.5;
 /// Middles of sides that share a return or a pulse are not independent: how many count as one.
 const MIDDLES_AS_ONE: f64 = 6.0;
@@ -57,20 +58,20 @@ pub(super) struct EdgeLine {
     pub(super) count: usize,
     /// Median height of what lies below, metres below the plane.
     pub(super) drop: f64,
-    /// Whether it is known well enough to cut balls and to end patches.
+    /// True if it is known well enough to cut balls and to end patches.
     pub(super) is_sure: bool,
-    /// Whether it is known well enough to look for a wall below.
+    /// True if it is known well enough to search for a wall below.
     pub(super) may_have_wall: bool,
-    /// What stands along it.
+    /// Parapet along it.
     pub(super) parapet: Parapet,
 }
 
-/// What stands along an edge at one height.
+/// Parapet of one height along an edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Parapet {
     /// Metres above the plane; 0 where nothing stands.
     pub(super) height: f64,
-    /// From the edge to its inner face, metres.
+    /// Distance from the edge to its inner face, metres.
     pub(super) width: f64,
 }
 
@@ -78,7 +79,7 @@ pub(super) struct Parapet {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Passed {
     pub(super) p: [f64; 2],
-    /// How far below the plane it ended, metres.
+    /// Depth below the plane at which it ended, metres.
     pub(super) depth: f64,
     /// The plane it ended on, [`NONE`] for none.
     pub(super) on: u32,
@@ -88,28 +89,28 @@ pub(super) struct Passed {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Standing {
     pub(super) p: [f64; 2],
-    /// How far above the plane, metres.
+    /// Height above the plane, metres.
     pub(super) above: f64,
     /// Height, metres.
     pub(super) height: f64,
-    /// Whether it lies on no plane of its own, or on one that is no larger than a box.
+    /// True if it lies on no plane of its own, or on one that is no larger than a box.
     pub(super) is_loose: bool,
 }
 
-/// What bounds a plane.
+/// Boundary of a plane.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outline {
     pub(super) edges: Vec<EdgeLine>,
     /// Returns within: of the plane, and of what stands on it.
     pub(super) inside: Vec<[f64; 2]>,
-    /// How many of these, the first, are of the plane itself.
+    /// Number of these, from the first, that belong to the plane itself.
     pub(super) own: usize,
     /// Returns of the plane whose pulse went on beside it. Where a beam is split the edge lies in its middle, wherever
     /// the return is: it is no more within than without.
     pub(super) split: Vec<[f64; 2]>,
     /// Pulses that passed near it.
     pub(super) passed: Vec<Passed>,
-    /// What stands on it.
+    /// Points that stand on the plane.
     pub(super) standing: Vec<Standing>,
 }
 
@@ -225,7 +226,7 @@ fn samples(block: &Block, roofs: &Roofs, ridges: &[RidgeLine], plane: usize) -> 
         if on as usize == plane {
             return;
         }
-        let above = roof.plane.above(found.p);
+        let above = roof.plane.distance_above(found.p);
         let at = [found.p[0], found.p[1]];
         if above > 0.0 {
             if found.may_be_building() && above < ABOVE && above > 3.0 * roofs.noise && near.holds(at) {
@@ -292,7 +293,7 @@ fn lines(
 ) -> Vec<EdgeLine> {
     let mut seeds: Vec<(f64, usize, PlanLine)> = Vec::new();
     for row in 0..middles.len() {
-        if let Some((line, rms)) = about(middles, row, AROUND_SPACINGS * spacing) {
+        if let Some((line, rms)) = line_through_middles(middles, row, AROUND_SPACINGS * spacing) {
             seeds.push((rms, row, line));
         }
     }
@@ -390,7 +391,7 @@ fn own_share(outline: &Outline, line: &PlanLine, reach: f64) -> f64 {
 }
 
 /// The line through the middles about one, with the roof to its left.
-fn about(middles: &[Middle], row: usize, reach: f64) -> Option<(PlanLine, f64)> {
+fn line_through_middles(middles: &[Middle], row: usize, reach: f64) -> Option<(PlanLine, f64)> {
     let Middle { p, out, .. } = middles[row];
     let first = middles.partition_point(|middle| middle.p[0] < p[0] - reach);
     let near: Vec<[f64; 2]> = middles[first..]
@@ -405,7 +406,7 @@ fn about(middles: &[Middle], row: usize, reach: f64) -> Option<(PlanLine, f64)> 
     PlanLine::fit(near.iter().copied(), [-out[1], out[0]])
 }
 
-/// Whether the way out at a middle is about the same.
+/// Returns true if the outward direction at a middle is about the same.
 fn faces(middle: &Middle, out: [f64; 2]) -> bool {
     middle.out[0] * out[0] + middle.out[1] * out[1] > 0.0
 }

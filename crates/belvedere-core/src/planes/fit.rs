@@ -67,7 +67,7 @@ impl Sums {
 
 impl Plane {
     /// Distance above the plane, metres.
-    pub(super) fn above(&self, p: [f64; 3]) -> f64 {
+    pub(super) fn distance_above(&self, p: [f64; 3]) -> f64 {
         dot(self.normal, p) - self.offset
     }
 
@@ -76,12 +76,12 @@ impl Plane {
         (self.offset - self.normal[0] * x - self.normal[1] * y) / self.normal[2]
     }
 
-    /// The place in plan where a line meets the plane that runs through `p` and moves by `lean` in plan for each metre
-    /// up; `None` for one that hardly comes nearer to it.
+    /// Returns the point in plan at which a line meets the plane. The line runs through `p` and moves by `lean` in plan
+    /// for each metre up. `None` for a line nearly parallel to the plane.
     pub(super) fn crossing(&self, p: [f64; 3], lean: [f64; 2]) -> Option<[f64; 2]> {
         let nearer = dot(self.normal, [lean[0], lean[1], 1.0]);
         (nearer > 0.2).then(|| {
-            let up = -self.above(p) / nearer;
+            let up = -self.distance_above(p) / nearer;
             [p[0] + lean[0] * up, p[1] + lean[1] * up]
         })
     }

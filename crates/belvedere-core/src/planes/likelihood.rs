@@ -1,21 +1,21 @@
-//! Where an edge runs, given which pulses ended on its plane and which passed it.
+//! Position of an edge by maximum likelihood, from the pulses that ended on its plane and those that passed it.
 //!
-//! Across an edge the share of pulses that end on the plane falls from nearly all to nearly none. The mean of all lines
-//! near the one that middles of sides lie on, each weighted by how likely it makes what every pulse did, is nearer to
-//! the edge than that line, and the spread of the weights is how well it is known.
+//! Across an edge the share of pulses that end on the plane falls from nearly all to nearly none. The estimate is the
+//! mean of all lines near the one through the middles of sides, each weighted by the likelihood of every pulse. It is
+//! nearer to the edge than that line, and the spread of the weights gives its standard deviation.
 
 use super::edges::Outline;
 use super::line::PlanLine;
 
 /// Share of pulses that do the other thing, whatever the edge: noise, holes, what stands on roofs.
 const OTHER: f64 = 0.02;
-/// How far across the line pulses count, spacings.
+/// Distance across the line within which pulses count, spacings.
 const REACH_SPACINGS: f64 = 3.2;
 /// Widths of the change from nearly all to nearly none: wide ones in spacings find the place, the last one, metres,
 /// measures it.
 const WIDTHS_SPACINGS: [f64; 2] = [0.3, 0.12];
 const WIDTH: f64 = 0.03;
-/// How far lines lie apart across at most at first, spacings; and later, in standard deviations so far.
+/// Maximum distance between lines across the edge: at first, spacings; later, in standard deviations so far.
 const FIRST_REACH_SPACINGS: f64 = 0.8;
 const REACH_SD: f64 = 2.2;
 /// Lines tried on each side of the first, by place and by turn.

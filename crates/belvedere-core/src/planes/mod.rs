@@ -1,11 +1,11 @@
 //! Planes, ridges, edges and walls of buildings: surfaces that are known better than the spacing of points.
 //!
-//! A roof is a plane that many points lie on, so that it is known to a few millimetres. Where it ends is known from
-//! pulses as well as from points: a return on the plane lies within its edge, a pulse that passed the plane and ended
-//! below it lies outside. Walls are looked for below edges, where ten points are enough.
+//! A roof is a plane with many points, so that it is known to a few millimetres. Pulses define its end as well as
+//! points. A return on the plane lies within its edge; a pulse that passed the plane and ended below it lies outside.
+//! Walls are searched below edges, where ten points are enough.
 //!
-//! Everything is found in blocks of 64 m of the reference system with what lies about them, in an order that follows
-//! from positions only: a part of a survey finds what the whole finds. Scans from the ground have no planes yet.
+//! Everything is found in blocks of 64 m of the reference system with their surroundings, in an order that follows from
+//! positions only. A part of a survey therefore finds the same as the whole. Scans from the ground have no planes yet.
 //!
 //! # Source
 //! This project's. Edges as lines between returns and pulses that passed: `docs/methods/planes.md`.
@@ -42,55 +42,54 @@ use slabs::Sheets;
 /// Side of the blocks in which surfaces are found, metres.
 pub(crate) const BLOCK: f64 = 64.0;
 
-/// How surfaces of buildings are found. What neighbouring values measured: `docs/methods/planes.md`.
+/// Parameters of the surfaces of buildings. Measurements of neighbouring values: `docs/methods/planes.md`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneParams {
-    /// How far beyond a block points are looked at, metres. Default 8: with 16 nothing is
-    /// found better.
+    /// Margin around a block within which points are used, metres. Default 8: 16 improves nothing.
     pub margin: f64,
-    /// Least number of points on a plane of a roof. Default 12.
+    /// Minimum number of points on a plane of a roof. Default 12.
     pub min_points: usize,
-    /// How well edges are known that are used.
+    /// Required accuracy of edges.
     pub edges: EdgeParams,
-    /// How walls are found and closed.
+    /// Parameters of walls.
     pub walls: WallParams,
-    /// How slabs are found and closed.
+    /// Parameters of slabs.
     pub slabs: SlabParams,
 }
 
-/// How well edges of roofs are known that are used.
+/// Required accuracy of edges of roofs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeParams {
-    /// Most standard deviation of the place of a sure edge, one that cuts balls and ends patches, metres. Default 0.1:
-    /// at five pulses per m² facades are falsely blocked a tenth more often with 0.08; at ten nothing changes.
+    /// Maximum standard deviation of the position of a sure edge, one that cuts balls and ends patches, metres. Default
+    /// 0.1: at five pulses per m² facades are falsely blocked a tenth more often with 0.08; at ten nothing changes.
     pub max_sd: f64,
-    /// Most standard deviation of the mean of the middles along a sure edge, metres. Default 0.08.
+    /// Maximum standard deviation of the mean of the middles along a sure edge, metres. Default 0.08.
     pub max_scatter: f64,
-    /// Most standard deviation of the place of an edge below which walls are looked for, in spacings of pulses, where
-    /// that is more than `max_sd`. Default 0.35: at 2 pulses per m², 9 walls are found without it, and 199 at 10.
+    /// Maximum standard deviation of the position of an edge below which walls are searched, in spacings of pulses,
+    /// where that is more than `max_sd`. Default 0.35: at 2 pulses per m², 9 walls are found without it, and 199 at 10.
     pub max_sd_spacings: f64,
     /// The same of the mean of the middles. Default 0.28.
     pub max_scatter_spacings: f64,
 }
 
-/// How walls below edges are found and closed.
+/// Parameters of walls below edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallParams {
-    /// Least number of points on a wall at `spacing` and closer. Default 8. Farther apart pulses need fewer, in
-    /// proportion to how many a row along the wall holds.
+    /// Minimum number of points on a wall at `spacing` and closer. Default 8. Sparser pulses need fewer, in proportion
+    /// to the number in a row along the wall.
     pub min_points: f64,
     /// The same for a wall that is closed between its points. Default 10.
     pub min_closed_points: f64,
     /// Spacing of pulses from which on fewer points are enough, metres. Default 0.32, of ten pulses per m².
     pub spacing: f64,
-    /// Least number of points at any spacing. Default 4: at 2 pulses per m² facades are falsely visible in 5.4 %,
+    /// Minimum number of points at any spacing. Default 4: at 2 pulses per m² facades are falsely visible in 5.4 %,
     /// instead of 7.3 with 8 and 10.
     pub fewest_points: f64,
-    /// Least share of the points below an edge that lie on a wall, for it to be closed between its points. Default
+    /// Minimum share of the points below an edge that lie on a wall, for it to be closed between its points. Default
     /// 0.5: fronts of stacked balconies have 0.3 to 0.4.
     pub min_share: f64,
-    /// How far from its points a wall is closed, in spacings of pulses. Default 4.7, which is 1.5 m at ten pulses per
-    /// m²: with 1 m more is seen through walls, with 2 m arcades close.
+    /// Maximum distance from its points at which a wall is closed, in spacings of pulses. Default 4.7, which is 1.5 m
+    /// at ten pulses per m². With 1 m more is seen through walls, with 2 m arcades close.
     pub reach_spacings: f64,
 }
 
@@ -147,7 +146,7 @@ impl Default for PlaneParams {
 /// The points that surfaces are found in. Columns have a row for each point.
 #[derive(Clone, Copy)]
 pub struct SurveyPoints<'a> {
-    /// As measured, (N, 3) local metres.
+    /// Measured positions, (N, 3) local metres.
     pub positions: &'a [[f32; 3]],
     /// The scanner at each point, (N, 3) local metres, NaN where unknown.
     pub scanner: &'a [[f32; 3]],
@@ -172,7 +171,7 @@ pub enum Surface {
 pub struct PointOnSurface {
     /// Its row in the survey.
     pub row: u32,
-    /// What it lies on.
+    /// Surface of the point.
     pub surface: Surface,
 }
 
@@ -195,8 +194,8 @@ pub struct BuildingSurfaces {
 }
 
 impl BuildingSurfaces {
-    /// How far outside a surface a place lies, local metres; negative within the building, NaN for a surface that is
-    /// not one of these.
+    /// Returns the distance of a place outside a surface, local metres; negative within the building, NaN for a surface
+    /// that is not one of these.
     #[must_use]
     pub fn distance(&self, surface: Surface, place: [f64; 3]) -> f64 {
         match surface {
@@ -253,7 +252,7 @@ pub fn find(survey: &SurveyPoints<'_>, params: &PlaneParams, control: &Control<'
     Ok(surfaces)
 }
 
-/// What lies in one block.
+/// Finds the surfaces of one block.
 fn of_block(block: &Block, params: &PlaneParams, control: &Control<'_>) -> Result<BuildingSurfaces> {
     control.check()?;
     let roofs = roof_planes::find(block, Candidates::Buildings, params, control)?;
@@ -264,17 +263,17 @@ fn of_block(block: &Block, params: &PlaneParams, control: &Control<'_>) -> Resul
     let walls = walls::find(block, &roofs, &outlines, &params.walls);
     let leaves = patches::roofs(block, &roofs, &ridges, &outlines);
     let mut found = BuildingSurfaces::default();
-    patches::give_out(block, &roofs, &leaves, &walls, &params.walls, &mut found);
-    sheets::give_out(block, &roofs, &outlines, &walls, &mut found);
+    patches::append_to(block, &roofs, &leaves, &walls, &params.walls, &mut found);
+    sheets::append_to(block, &roofs, &outlines, &walls, &mut found);
     found.regions = regions::of_block(block, &roofs, &outlines, &walls, &leaves);
-    block.give_out(&roofs, &ridges, &outlines, &walls, &mut found);
+    block.append_to(&roofs, &ridges, &outlines, &walls, &mut found);
     // canopies and decks that have the class of buildings, or none, are closed as roofs already
     let mut are_slabs = slabs::find(block, &roofs, &params.slabs);
     for (plane, is_slab) in are_slabs.iter_mut().enumerate().filter(|(_, is_slab)| **is_slab) {
         let own: Vec<&walls::WallLine> = walls.iter().filter(|wall| wall.plane == plane).collect();
         *is_slab = own.is_empty() || !sheets::is_walled(&outlines[plane], &own);
     }
-    slabs::give_out(block, (&roofs, &are_slabs), &leaves, Sheets::Underside, &params.slabs, &mut found);
+    slabs::append_to(block, (&roofs, &are_slabs), &leaves, Sheets::Underside, &params.slabs, &mut found);
     let others = roof_planes::find(block, Candidates::Slabs, params, control)?;
     let are_slabs = slabs::find(block, &others, &params.slabs);
     let outline_of = |plane: usize| match are_slabs[plane] {
@@ -283,6 +282,6 @@ fn of_block(block: &Block, params: &PlaneParams, control: &Control<'_>) -> Resul
     };
     let outlines: Vec<edges::Outline> = (0..others.planes.len()).map(outline_of).collect();
     let leaves = patches::roofs(block, &others, &[], &outlines);
-    slabs::give_out(block, (&others, &are_slabs), &leaves, Sheets::Both, &params.slabs, &mut found);
+    slabs::append_to(block, (&others, &are_slabs), &leaves, Sheets::Both, &params.slabs, &mut found);
     Ok(found)
 }

@@ -13,16 +13,16 @@ use super::{BLOCK, BuildingSurfaces, PatchKind, WallParams};
 const CELL: f64 = 0.25;
 /// Side of the cells of walls, metres.
 const WALL_CELL: f64 = 0.5;
-/// How far from a return a roof goes on, spacings: elsewhere, and beside an edge.
+/// Maximum distance of a roof from its returns, spacings: elsewhere, and beside an edge.
 const NEAR_SPACINGS: f64 = 1.5;
 const BESIDE_SPACINGS: f64 = 2.2;
-/// How far about a pulse that passed a roof is open, spacings.
+/// Radius of the opening around a pulse that passed a roof, spacings.
 const OPEN_SPACINGS: f64 = 0.5;
-/// How far beyond an edge what lies outside of it is cut off, spacings.
+/// Width beyond an edge within which the outside is cut off, spacings.
 const OUTSIDE_SPACINGS: f64 = 4.0;
 /// Smallest piece of a roof made of cells, m²: smaller ones lie beyond edges more often than they close anything.
 const MIN_PIECE: f64 = 0.6;
-/// How far beyond its ends a ridge cuts, metres.
+/// Length of a cut beyond the ends of a ridge, metres.
 const RIDGE_BEYOND: f64 = 0.6;
 /// Shortest piece of a line within a piece of a roof that splits it, metres.
 const MIN_SPLIT: f64 = 0.3;
@@ -34,12 +34,12 @@ const MIN_AREA: f64 = 0.005;
 pub(super) struct Leaf {
     pub(super) plane: usize,
     pub(super) polygon: Vec<[f64; 2]>,
-    /// Whether lines bound it rather than cells.
+    /// True if lines bound it, false for cells.
     pub(super) is_whole: bool,
 }
 
 impl Leaf {
-    /// Whether it holds a place in plan.
+    /// Returns true if it holds a place in plan.
     pub(super) fn holds(&self, p: [f64; 2]) -> bool {
         self.polygon.iter().enumerate().all(|(i, a)| {
             let b = self.polygon[(i + 1) % self.polygon.len()];
@@ -76,7 +76,7 @@ impl Cover {
         range
     }
 
-    /// Whether the cell of a place counts.
+    /// Returns true if the cell of a place counts.
     fn holds(&self, p: [f64; 2]) -> bool {
         let [columns, rows] = [0, 1].map(|axis| self.range(axis, p[axis] - CELL / 2.0, p[axis] + CELL / 2.0));
         columns.start < self.size[0]
@@ -328,7 +328,7 @@ fn merged(rows: Vec<(usize, Vec<[usize; 2]>)>) -> Vec<[[usize; 2]; 2]> {
 }
 
 /// Gives out the triangles of roofs, walls and sheets within the block.
-pub(super) fn give_out(
+pub(super) fn append_to(
     block: &Block,
     roofs: &Roofs,
     leaves: &[Leaf],
@@ -401,6 +401,6 @@ fn close_wall(block: &Block, roofs: &Roofs, wall: &WallLine, reach: f64, found: 
         let [[t0, z0], [t1, z1]] =
             rectangle.map(|[column, row]| [(from + column as f64 * WALL_CELL).min(to), low + row as f64 * WALL_CELL]);
         let sheet = Sheet { line: &wall.line, ranges: [t0, t1], heights: [z0, z1], kind: PatchKind::Wall };
-        sheet.give_out(block, |p| top.height(p), |_| z0, found);
+        sheet.append_to(block, |p| top.height(p), |_| z0, found);
     }
 }

@@ -13,20 +13,20 @@ use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::{dot, sub, unit};
 use rayon::prelude::*;
 
-/// How far before a surface its region begins, metres: balls stand out over points by as much.
+/// Distance before a surface at which its region begins, metres: balls stand out over points by as much.
 const MARGIN: f64 = 0.02;
-/// How far a region reaches, metres.
+/// Depth of a region, metres.
 const DEPTH: f64 = 3.0;
-/// How far before and behind a surface the points lie whose balls it bounds, metres.
+/// Maximum distance before and behind a surface of points whose balls it bounds, metres.
 const BEFORE: f64 = 0.1;
 const BEHIND: f64 = 6.0;
-/// How far beyond the ends of a line its region reaches, metres.
+/// Length of a region beyond the ends of its line, metres.
 const BEYOND: f64 = 0.4;
-/// How far above the top of a wall points may lie, metres.
+/// Maximum height of points above the top of a wall, metres.
 const ABOVE: f64 = 0.5;
-/// How far below a roof balls of its eaves may reach, metres.
+/// Maximum depth of balls of eaves below their roof, metres.
 const EAVES_DEPTH: f64 = 0.15;
-/// How far beside a piece of a roof points lie whose balls it bounds, metres.
+/// Maximum distance beside a piece of a roof of points whose balls it bounds, metres.
 const BESIDE_ROOF: f64 = 3.0;
 /// Side of the cells in which regions are looked up, metres.
 const CELL: f64 = 4.0;
@@ -41,17 +41,17 @@ pub(super) struct Region {
 
 #[cfg(test)]
 impl Region {
-    /// How far a place lies outside at least, below zero within, metres.
+    /// Returns a lower bound of the distance of a place outside, metres; negative inside.
     pub(super) fn distance(&self, p: [f64; 3]) -> f64 {
         self.half_spaces.iter().map(|&(normal, offset)| dot(normal, p) - offset).fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
-/// What a region lies before.
+/// Surface that bounds a region.
 #[derive(Clone, Debug, PartialEq)]
 enum Surface {
-    /// An upright one on a line, below a plane: heights above that plane up to which it reaches, and the height of its
-    /// foot; how far before it points of eaves lie.
+    /// Upright surface on a line, below a plane: its maximum height above that plane, the height of its foot, and the
+    /// distance before it of points of eaves.
     Upright { line: PlanLine, top: Plane, above: f64, foot: f64, eaves: f64 },
     /// A convex piece of a plane.
     Roof { polygon: Vec<[f64; 2]>, plane: Plane },
@@ -85,12 +85,12 @@ impl SurfaceRegions {
     /// The regions that the ball of a point does not reach into, for a point as measured, local metres.
     #[cfg(test)]
     pub(super) fn of_point(&self, p: [f32; 3]) -> Vec<Region> {
-        self.that(p, |_, _| true)
+        self.regions_that(p, |_, _| true)
     }
 
     /// The regions of a point before those of its surfaces that `counts`, given the surface and the corner of its
     /// block, is true for.
-    fn that(&self, p: [f32; 3], counts: impl Fn(&Surface, [f64; 3]) -> bool) -> Vec<Region> {
+    fn regions_that(&self, p: [f32; 3], counts: impl Fn(&Surface, [f64; 3]) -> bool) -> Vec<Region> {
         let number = block_of(p, self.origin);
         let Ok(place) = self.blocks.binary_search_by_key(&number, |block| block.number) else { return Vec::new() };
         self.blocks[place].regions(p.map(f64::from), counts)
@@ -101,8 +101,8 @@ impl SurfaceRegions {
     /// 0 mean that no ball is left.
     ///
     /// # Source
-    /// This project's. A ball that touches at a with its centre in the direction m lies outside a half-space with
-    /// outward normal n and distance s = n·a − d as long as r ≤ s / (1 − n·m); outside a convex region it lies as long
+    /// This project's. A ball touches at a, with its centre in the direction m. It lies outside a half-space with
+    /// outward normal n and distance s = n·a − d as long as r ≤ s / (1 − n·m). It lies outside a convex region as long
     /// as this holds for one of its half-spaces.
     #[must_use]
     pub fn radius_of(&self, point: [f32; 3], center: [f32; 3], radius: f32) -> f32 {
@@ -111,8 +111,9 @@ impl SurfaceRegions {
         let mut most = whole;
         let Some(inward) = unit(sub(c, p)) else { return radius };
         let touch: [f64; 3] = std::array::from_fn(|i| c[i] - most * inward[i]);
-        let reaches_out = |surface: &Surface, corner: [f64; 3]| surface.before(sub(c, corner)) + whole > MARGIN;
-        for region in self.that(point, reaches_out) {
+        let reaches_out =
+            |surface: &Surface, corner: [f64; 3]| surface.distance_before(sub(c, corner)) + whole > MARGIN;
+        for region in self.regions_that(point, reaches_out) {
             let fits = region.half_spaces.iter().map(|&(normal, offset)| {
                 let (apart, away) = (dot(normal, touch) - offset, 1.0 - dot(normal, inward));
                 if apart <= 0.0 { 0.0 } else { apart / away.max(1e-9) }
@@ -162,7 +163,7 @@ pub fn cap(
     Ok(capped.len())
 }
 
-/// Least radius of a capped ball, metres: smaller ones block nothing that patches do not.
+/// Minimum radius of a capped ball, metres: smaller ones block nothing that patches do not.
 const MIN_RADIUS: f32 = 0.01;
 /// Balls that a thread looks at in one go.
 const CHUNK: usize = 256;
@@ -189,11 +190,11 @@ impl BlockRegions {
 }
 
 impl Surface {
-    /// How far before the surface a place lies, metres.
-    fn before(&self, p: [f64; 3]) -> f64 {
+    /// Returns the distance of a place before the surface, metres.
+    fn distance_before(&self, p: [f64; 3]) -> f64 {
         match self {
             Self::Upright { line, .. } => line.of([p[0], p[1]])[1],
-            Self::Roof { plane, .. } => plane.above(p),
+            Self::Roof { plane, .. } => plane.distance_above(p),
         }
     }
 
@@ -215,11 +216,11 @@ impl Surface {
             Self::Upright { line, top, above, foot, eaves } => {
                 let [t, d] = line.of([p[0], p[1]]);
                 let [from, to] = [line.ends[0] - BEYOND, line.ends[1] + BEYOND];
-                let is_of_eaves = *eaves > MIN_EAVES && d <= eaves + EAVES_DEPTH && top.above(p).abs() < 0.3;
+                let is_of_eaves = *eaves > MIN_EAVES && d <= eaves + EAVES_DEPTH && top.distance_above(p).abs() < 0.3;
                 if !(from..=to).contains(&t)
                     || d < -BEHIND
                     || (d > BEFORE && !is_of_eaves)
-                    || top.above(p) > above.max(ABOVE)
+                    || top.distance_above(p) > above.max(ABOVE)
                     || p[2] < foot - ABOVE
                 {
                     return None;
@@ -239,7 +240,7 @@ impl Surface {
                 })
             }
             Self::Roof { polygon, plane } => {
-                let above = plane.above(p);
+                let above = plane.distance_above(p);
                 if !(-BEHIND..=BEFORE).contains(&above) {
                     return None;
                 }

@@ -8,9 +8,9 @@ use std::collections::BTreeMap;
 
 /// Cosine of the angle below which two planes have a line of their own: 8°.
 const APART: f64 = 0.990;
-/// How far from the line neighbours on both sides of it may lie, spacings.
+/// Maximum distance of neighbours from the line, on both sides of it, spacings.
 const NEAR_SPACINGS: f64 = 1.2;
-/// How far from the line points show whether it is convex, metres.
+/// Distance from the line within which points show whether it is convex, metres.
 const SIDE: f64 = 3.0;
 
 /// A line in which two planes meet, in plan.

@@ -13,31 +13,30 @@ use std::collections::BTreeMap;
 pub(super) const NEIGHBORS: usize = 12;
 /// No plane, or no neighbour.
 pub(super) const NONE: u32 = u32::MAX;
-/// Farthest neighbours that a plane goes on between, metres.
+/// Maximum distance of neighbours on one plane, metres.
 const MAX_STEP: f64 = 1.5;
 /// Cosine of the angle up to which a point faces the way of the plane it is added to: 10°.
 const SAME_WAY: f64 = 0.985;
 /// Cosine of the angle up to which planes that touch may be one: 6°.
 const ONE_PLANE: f64 = 0.9945;
-/// Least upward part of the normal of a roof: 70° of slope.
+/// Minimum upward part of the normal of a roof: 70° of slope.
 const MIN_UP: f64 = 0.34;
 /// Noise of ranges that is believed, metres, whatever the points say.
 const NOISE: [f64; 2] = [0.004, 0.08];
-/// Share of points whose neighbourhoods are rougher by noise alone, and what their roughness is then as a share of the
-/// noise: the lower quartile of χ with ten degrees of freedom, of thirteen points.
+/// Share of points whose neighbourhoods are rougher by noise alone, and the ratio of their roughness to the noise: the
+/// lower quartile of χ with ten degrees of freedom, of thirteen points.
 const SMOOTH: [f64; 2] = [0.25, 0.72];
 /// Passes in which points beside planes are given to them.
 const SWEEPS: usize = 3;
 /// Pairs of neighbours on two planes that touch.
 pub(super) const MIN_PAIRS: usize = 4;
 
-/// Longest diagonal of the top of what may stand on a roof, metres, and the least upward part of its normal: 11° of
-/// slope.
+/// Longest diagonal of the top of an object on a roof, metres, and minimum upward part of its normal: 11° of slope.
 const SMALL: f64 = 5.0;
 const LEVEL: f64 = 0.98;
 
-/// Where points have no class: least area of a roof, m², most noise of its points and least height above the ground,
-/// metres, of its middle, and how far about it ground is looked at, metres.
+/// Criteria for points without a class: minimum area of a roof, m²; maximum noise of its points, minimum height of its
+/// middle above the ground, and search radius for that ground, metres.
 const MIN_AREA: f64 = 6.0;
 const MAX_NOISE: f64 = 0.05;
 const MIN_HEIGHT: f64 = 2.0;
@@ -53,7 +52,7 @@ pub(super) struct Roof {
     pub(super) rows: Vec<u32>,
     /// Mean distance of pulses, metres.
     pub(super) spacing: f64,
-    /// Whether it may be the level top of something that stands on a roof.
+    /// True if it may be the level top of something that stands on a roof.
     pub(super) is_small: bool,
 }
 
@@ -82,7 +81,7 @@ pub(super) struct Roofs {
     pub(super) noise: f64,
 }
 
-/// What is known of a point before planes grow.
+/// Properties of points before planes grow.
 struct Patchwork {
     points: Vec<[f64; 3]>,
     neighbors: Vec<[u32; NEIGHBORS]>,
@@ -93,9 +92,9 @@ struct Patchwork {
 /// Points that planes are looked for in.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Candidates {
-    /// Those that may lie on buildings.
+    /// Points that may lie on buildings.
     Buildings,
-    /// Those that may lie on slabs beside them.
+    /// Points that may lie on slabs beside them.
     Slabs,
 }
 
@@ -150,7 +149,7 @@ impl Roofs {
         }
         for (plane, mut rows) in planes.iter().zip(rows) {
             let max = 3.0 * plane.noise.max(self.noise);
-            rows.retain(|&row| plane.above(self.points[row as usize]).abs() <= max);
+            rows.retain(|&row| plane.distance_above(self.points[row as usize]).abs() <= max);
             let mut sums = Sums::default();
             rows.iter().for_each(|&row| sums.add(self.points[row as usize]));
             let Some(plane) = sums.plane() else { continue };
@@ -180,7 +179,8 @@ impl Roofs {
 }
 
 impl Roofs {
-    /// Whether a plane of points without a class is one of a building: large, flat, and above all ground about it.
+    /// Returns true if a plane of points without a class is one of a building: large, flat, and above all ground around
+    /// it.
     fn is_roof(&self, block: &Block, plane: &Plane, rows: &[u32], area: f64) -> bool {
         let (mut low, mut high, mut height) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2], 0.0);
         for &row in rows {
@@ -226,11 +226,11 @@ impl Patchwork {
     }
 
     /// Neighbours of a point.
-    fn near(&self, row: usize) -> impl Iterator<Item = usize> + '_ {
+    fn neighbors_of(&self, row: usize) -> impl Iterator<Item = usize> + '_ {
         self.neighbors[row].iter().take_while(|&&near| near != NONE).map(|&near| near as usize)
     }
 
-    /// Whether a point lies on something flat.
+    /// Returns true if a point lies on something flat.
     fn is_flat(&self, row: usize) -> bool {
         self.local[row].noise < 1.6 * self.noise + 0.01
     }
@@ -275,14 +275,15 @@ impl Patchwork {
         let reach = 2.5 * self.noise + 0.02;
         while let Some(&row) = rows.get(next) {
             next += 1;
-            for near in self.near(row) {
+            for near in self.neighbors_of(row) {
                 if plane_of[near] != NONE || !self.is_flat(near) {
                     continue;
                 }
                 let (from, at) = (self.points[row], sub(self.points[near], base));
                 let step = sub(self.points[near], from);
                 let is_near = step.iter().map(|v| v * v).sum::<f64>() < MAX_STEP * MAX_STEP;
-                if is_near && plane.cosine(&self.local[near]).abs() > SAME_WAY && plane.above(at).abs() < reach {
+                if is_near && plane.cosine(&self.local[near]).abs() > SAME_WAY && plane.distance_above(at).abs() < reach
+                {
                     plane_of[near] = number;
                     rows.push(near);
                     sums.add(at);
@@ -303,9 +304,9 @@ impl Patchwork {
         let reach = 2.5 * self.noise + 0.01;
         let chosen = |row: usize| {
             let own = plane_of[row];
-            let far = |plane: u32| planes[plane as usize].above(self.points[row]).abs();
+            let far = |plane: u32| planes[plane as usize].distance_above(self.points[row]).abs();
             let mut best = if own == NONE { (reach, NONE) } else { (far(own), own) };
-            for near in self.near(row) {
+            for near in self.neighbors_of(row) {
                 let other = plane_of[near];
                 let is_new = other != NONE && other != best.1 && planes[other as usize].normal[2] >= MIN_UP;
                 if is_new && far(other) < best.0 {
@@ -337,7 +338,7 @@ impl Patchwork {
         let mut sums = self.sums(plane_of, planes.len());
         let mut pairs: BTreeMap<(u32, u32), usize> = BTreeMap::new();
         for row in 0..self.points.len() {
-            for near in self.near(row) {
+            for near in self.neighbors_of(row) {
                 let (a, b) = (plane_of[row], plane_of[near]);
                 if a != b && a != NONE && b != NONE {
                     *pairs.entry((a.min(b), a.max(b))).or_default() += 1;

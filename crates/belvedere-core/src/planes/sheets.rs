@@ -11,19 +11,19 @@ use std::cmp::Ordering;
 
 /// Smallest piece of a sheet, m².
 const MIN_AREA: f64 = 0.005;
-/// How far within the edge of a roof the building is solid, metres.
+/// Width of the solid part of a building inside the edge of a roof, metres.
 const WITHIN: f64 = 0.5;
-/// Least height of an edge above what lies below it for that, metres.
+/// Minimum height of an edge above what lies below it for that, metres.
 const MIN_DROP: f64 = 2.0;
-/// Least share of such edges of a roof that have a wall below them: canopies and decks have none.
+/// Minimum share of such edges of a roof that have a wall below them: canopies and decks have none.
 const MIN_WALLED: f64 = 0.5;
-/// How far below its edge such a wall reaches at least, metres: sides of slabs and canopies are lower.
+/// Minimum depth of such a wall below its edge, metres: sides of slabs and canopies are lower.
 const MIN_WALL_DEPTH: f64 = 1.0;
-/// How far a pulse must pass from both ends of an upright sheet to contradict it, metres.
+/// Minimum distance from both ends of an upright sheet of a pulse that contradicts it, metres.
 const CLEAR: f64 = 0.3;
 /// Heights of the points of parapets above the roof, metres.
 const PARAPET: [f64; 2] = [0.15, 1.6];
-/// How far within and without the edge they lie, metres.
+/// Maximum distance of its points inside and outside the edge, metres.
 const PARAPET_WITHIN: f64 = 0.6;
 const PARAPET_WITHOUT: f64 = 0.25;
 /// Half the difference of their heights, metres.
@@ -31,26 +31,26 @@ const PARAPET_LEVEL: f64 = 0.06;
 /// Length of the pieces of an edge that they must be on, metres, and the least share of these.
 const PARAPET_PIECE: f64 = 0.8;
 const PARAPET_SHARE: f64 = 0.55;
-/// Least and most height of a step between roofs, metres: balconies lie farther below each other.
+/// Minimum and maximum height of a step between roofs, metres: balconies lie farther below each other.
 const STEP: [f64; 2] = [0.25, 1.8];
-/// Most height of a step all round onto one roof, metres: of what stands on it.
+/// Maximum height of a step all round onto one roof, metres: of an object on it.
 const MAX_BOX_STEP: f64 = 3.5;
-/// Least share of the pulses that pass an edge which end on the roof below, and their least number.
+/// Minimum share of the pulses that pass an edge which end on the roof below, and their minimum number.
 const STEP_SHARE: f64 = 0.6;
 const STEP_PULSES: usize = 3;
-/// How far beyond an edge they pass, spacings.
+/// Distance of the pulses beyond an edge, spacings.
 const STEP_SPACINGS: f64 = 2.5;
-/// Least height of what stands on a roof, metres, its fewest points, and its longest side, metres.
+/// Minimum height of an object on a roof, metres, its minimum number of points, and its longest side, metres.
 const BOX_HEIGHT: f64 = 0.25;
 const BOX_POINTS: usize = 3;
 const BOX_SIDE: f64 = 4.0;
 /// Half of its points at least lie so near to the height of its top, metres: those of a wall do not.
 const BOX_LEVEL: f64 = 0.15;
-/// Least share of the pulses over it that it stopped.
+/// Minimum share of the pulses over it that it stopped.
 const BOX_DENSITY: f64 = 0.4;
-/// How far below the foot of a box pulses that pass it may end, metres: others pass the roof, too.
+/// Maximum depth below the foot of a box at which pulses that pass it may end, metres: deeper ones pass the roof, too.
 const BELOW_ROOF: f64 = 1.0;
-/// How far its points lie apart at most, spacings.
+/// Maximum distance between its points, spacings.
 const BOX_SPACINGS: f64 = 1.3;
 
 /// An upright rectangle on a line.
@@ -63,7 +63,7 @@ pub(super) struct Sheet<'a> {
 
 impl Sheet<'_> {
     /// Adds it as far as it lies below and above two heights, linear in plan, and in the block.
-    pub(super) fn give_out(
+    pub(super) fn append_to(
         &self,
         block: &Block,
         below: impl Fn([f64; 2]) -> f64,
@@ -75,7 +75,7 @@ impl Sheet<'_> {
             return;
         }
         let mut polygon = vec![[t0, z0], [t1, z0], [t1, z1], [t0, z1]];
-        polygon = clip(&polygon, |[t, z]| z - below(line.at(t, 0.0)));
+        polygon = clip(&polygon, |[t, z]| z - find_lower_roof(line.at(t, 0.0)));
         polygon = clip(&polygon, |[t, z]| above(line.at(t, 0.0)) - z);
         for axis in 0..2 {
             polygon = clip(&polygon, |[t, _]| -line.at(t, 0.0)[axis]);
@@ -94,7 +94,7 @@ impl Sheet<'_> {
 }
 
 /// Gives out the sheets of all roofs.
-pub(super) fn give_out(
+pub(super) fn append_to(
     block: &Block,
     roofs: &Roofs,
     outlines: &[Outline],
@@ -110,7 +110,7 @@ pub(super) fn give_out(
                 let eaves = own.iter().find(|wall| wall.edge == number).map_or(0.0, |wall| wall.eaves);
                 let line = PlanLine { point: edge.line.at(0.0, -WITHIN.max(eaves + CLEAR)), ..edge.line };
                 let line = PlanLine { ends: [line.ends[0] + WITHIN, line.ends[1] - WITHIN], ..line };
-                within(block, roofs, plane, &line, edge.drop, found);
+                add_inner_sheet(block, roofs, plane, &line, edge.drop, found);
             }
         }
         steps(block, roofs, plane, outline, found);
@@ -118,7 +118,7 @@ pub(super) fn give_out(
     }
 }
 
-/// Whether walls stand below enough of the high edges of a roof, given those below it.
+/// Returns true if walls, given those below the roof, stand below enough of its high edges.
 pub(super) fn is_walled(outline: &Outline, own: &[&WallLine]) -> bool {
     let high = |edge: &&EdgeLine| edge.is_sure && edge.drop >= MIN_DROP;
     let all: f64 = outline.edges.iter().filter(high).map(|edge| edge.line.length()).sum();
@@ -182,8 +182,8 @@ pub(super) fn parapet(outline: &Outline, line: &PlanLine) -> Parapet {
     Parapet { height: on[on.len() / 2][0], width: -inner_face(across) }
 }
 
-/// Where the inner face of a parapet stands, metres to the right of its edge: as few points of its top as can be lie
-/// left of it, and of the roof right of it.
+/// Returns the position of the inner face of a parapet, metres to the right of its edge. It minimises the number of
+/// points of its top to the left, and of the roof to the right.
 fn inner_face(mut across: Vec<(f64, bool)>) -> f64 {
     across.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut wrong = across.iter().filter(|point| !point.1).count();
@@ -207,12 +207,12 @@ fn upstand(block: &Block, roofs: &Roofs, plane: usize, edge: &EdgeLine, found: &
         let ends = line.end_points().map(|p| roof.height(p));
         let heights = [ends[0].min(ends[1]), ends[0].max(ends[1]) + rise];
         let sheet = Sheet { line, ranges: line.ends, heights, kind: PatchKind::Parapet };
-        sheet.give_out(block, |p| roof.height(p) + rise, |p| roof.height(p), found);
+        sheet.append_to(block, |p| roof.height(p) + rise, |p| roof.height(p), found);
     }
 }
 
 /// The plane that most pulses end on which pass an edge close to it.
-fn below(roofs: &Roofs, plane: usize, outline: &Outline, line: &PlanLine) -> Option<usize> {
+fn find_lower_roof(roofs: &Roofs, plane: usize, outline: &Outline, line: &PlanLine) -> Option<usize> {
     let reach = STEP_SPACINGS * roofs.planes[plane].spacing;
     let mut on: Vec<u32> = Vec::new();
     for passed in &outline.passed {
@@ -232,7 +232,7 @@ fn steps(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, found: &
         .edges
         .iter()
         .filter(|edge| edge.is_sure && (STEP[0]..=MAX_BOX_STEP).contains(&edge.drop))
-        .filter_map(|edge| Some((edge, below(roofs, plane, outline, &edge.line)?)))
+        .filter_map(|edge| Some((edge, find_lower_roof(roofs, plane, outline, &edge.line)?)))
         .collect();
     let all: f64 = outline.edges.iter().filter(|edge| edge.is_sure).map(|edge| edge.line.length()).sum();
     for &(edge, lower) in &steps {
@@ -244,12 +244,19 @@ fn steps(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, found: &
         let ends = line.end_points().map(|p| [below.height(p), roof.height(p)]);
         let heights = [ends[0][0].min(ends[1][0]), ends[0][1].max(ends[1][1])];
         let sheet = Sheet { line, ranges: line.ends, heights, kind: PatchKind::Step };
-        sheet.give_out(block, |p| roof.height(p), |p| below.height(p), found);
+        sheet.append_to(block, |p| roof.height(p), |p| below.height(p), found);
     }
 }
 
 /// Adds the pieces of an upright sheet within an edge that no pulse runs through.
-fn within(block: &Block, roofs: &Roofs, plane: usize, line: &PlanLine, drop: f64, found: &mut BuildingSurfaces) {
+fn add_inner_sheet(
+    block: &Block,
+    roofs: &Roofs,
+    plane: usize,
+    line: &PlanLine,
+    drop: f64,
+    found: &mut BuildingSurfaces,
+) {
     if line.length() < 1.0 {
         return;
     }
@@ -287,7 +294,7 @@ fn within(block: &Block, roofs: &Roofs, plane: usize, line: &PlanLine, drop: f64
                 let ranges = [from, piece].map(|piece| line.ends[0] + piece as f64 * step);
                 let heights = [bottom, heights[0].max(heights[1])];
                 let sheet = Sheet { line, ranges, heights, kind: PatchKind::Inside };
-                sheet.give_out(block, |p| top.height(p), |_| bottom, found);
+                sheet.append_to(block, |p| top.height(p), |_| bottom, found);
                 first = None;
             }
             _ => {}
@@ -295,7 +302,7 @@ fn within(block: &Block, roofs: &Roofs, plane: usize, line: &PlanLine, drop: f64
     }
 }
 
-/// Whether a point lies on a parapet.
+/// Returns true if a point lies on a parapet.
 fn is_of_parapet(outline: &Outline, standing: &Standing) -> bool {
     outline.edges.iter().filter(|edge| edge.is_sure && edge.parapet.height > 0.0).any(|edge| {
         let [t, d] = edge.line.of(standing.p);
@@ -305,8 +312,8 @@ fn is_of_parapet(outline: &Outline, standing: &Standing) -> bool {
     })
 }
 
-/// Where pulses pass a box, in its frame: at the height of its top, and where they end. One that meets the roof beside
-/// it bounds its foot, and one that slants past it its top.
+/// Returns the places where pulses pass a box, in its frame: at the height of its top, and at their ends. A pulse that
+/// meets the roof beside the box bounds its foot, and one that slants past it its top.
 fn past_box(block: &Block, roof: &Roof, frame: &PlanLine, [low, high]: [[f64; 2]; 2], top: f64) -> Vec<[f64; 2]> {
     let corners = [low, [low[0], high[1]], high, [high[0], low[1]]].map(|[t, d]| frame.at(t, d));
     let foot = corners.iter().map(|&p| roof.plane.height(p)).fold(f64::INFINITY, f64::min);
@@ -401,7 +408,7 @@ fn boxes(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, found: &
             let ends = [from, to].map(|p| roof.plane.height(p));
             let heights = [ends[0].min(ends[1]), top];
             let sheet = Sheet { line: &line, ranges: line.ends, heights, kind: PatchKind::Box };
-            sheet.give_out(block, |_| top, |p| roof.plane.height(p), found);
+            sheet.append_to(block, |_| top, |p| roof.plane.height(p), found);
         }
     }
 }

@@ -12,22 +12,23 @@ use super::{BLOCK, BuildingSurfaces, PatchKind};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
-/// How slabs are found and closed.
+/// Parameters of slabs: detection and closing.
 ///
-/// Thresholds but `around` and `open_radius`, which are those of thin surfaces, were set once, on a town of another
-/// simulator, where 89 to 97 % of the points marked lay on slabs.
+/// Thresholds except `around` and `open_radius`, which are those of thin surfaces, were set once, on a town of another
+/// simulator. There 89 to 97 % of the points marked lay on slabs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlabParams {
-    /// Least and most depth below a slab at which a pulse proves it, metres. Default 0.8 to 12.
+    /// Minimum and maximum depth below a slab at which a pulse proves it, metres. Default 0.8 to 12.
     pub depths: [f64; 2],
-    /// Least share of the cells of a square metre that hold points of a slab and that pulses run below, 0 to 1.
+    /// Minimum share of the cells of a square metre that hold points of a slab with pulses passing below, 0 to 1.
     /// Default 0.25.
     pub min_share: f64,
-    /// Least upward part of the normal of a slab. Default 0.98, 11° of slope.
+    /// Minimum upward part of the normal of a slab. Default 0.98, 11° of slope.
     pub min_up: f64,
-    /// Most root mean square distance of its points from its plane, metres. Default 0.06.
+    /// Maximum root mean square distance of its points from its plane, metres. Default 0.06.
     pub max_noise: f64,
-    /// From its top to its underside, metres. Default 0.3. With one sheet 0.2 to 0.7 points more are falsely visible.
+    /// Distance from its top to its underside, metres. Default 0.3. With one sheet 0.2 to 0.7 points more are falsely
+    /// visible.
     pub thickness: f64,
     /// Distance within which points of the slab must lie around a pulse below it, metres, and in spacings of pulses:
     /// the larger of both. Default 0.75 and 2.4.
@@ -61,14 +62,14 @@ impl Default for SlabParams {
 const CELL: f64 = 1.0;
 /// Steps along a pulse below a slab, metres in plan.
 const STEP: f64 = 0.25;
-/// How far below the top of a slab a point is no part of it, metres, beyond its thickness.
+/// Minimum depth below the top of a slab, beyond its thickness, of points that are no part of it, metres.
 const BELOW: f64 = 0.2;
-/// How far above its plane points of a slab lie at most, metres, where their noise is less.
+/// Maximum height of points of a slab above its plane, metres, if their noise is less.
 const ABOVE: f64 = 0.1;
 /// Share of the points of a plane with the class of bridge decks that makes it a slab without any pulse below it.
 const DECK_SHARE: f64 = 0.5;
 
-/// Whether each plane is a slab.
+/// Flags the planes that are slabs.
 pub(super) fn find(block: &Block, roofs: &Roofs, params: &SlabParams) -> Vec<bool> {
     (0..roofs.planes.len()).map(|number| is_slab(block, roofs, number, params)).collect()
 }
@@ -89,7 +90,7 @@ impl PlanIndex {
     }
 
     /// Points of the cell of a place and the eight about it.
-    fn near(&self, p: [f64; 3]) -> impl Iterator<Item = &[f64; 3]> {
+    fn points_near(&self, p: [f64; 3]) -> impl Iterator<Item = &[f64; 3]> {
         let [x, y] = cell([p[0], p[1]], self.side);
         let about = (y - 1..=y + 1).flat_map(move |y| (x - 1..=x + 1).map(move |x| [x, y]));
         about.filter_map(|cell| self.cells.get(&cell)).flatten()
@@ -102,7 +103,7 @@ fn cell(p: [f64; 2], side: f64) -> [i64; 2] {
     cell
 }
 
-/// Whether a plane is one: level, flat, and run below by pulses, or of the class of bridge decks.
+/// Returns true if a plane is a slab: level, flat, and with pulses passing below, or of the class of bridge decks.
 fn is_slab(block: &Block, roofs: &Roofs, number: usize, params: &SlabParams) -> bool {
     let roof = &roofs.planes[number];
     if roof.plane.normal[2] < params.min_up || roof.plane.noise > params.max_noise {
@@ -119,14 +120,14 @@ fn is_slab(block: &Block, roofs: &Roofs, number: usize, params: &SlabParams) -> 
     let [low, high] = bounds(of_rows());
     let mut walls = Vec::new();
     block.each_in([low[0] - open, low[1] - open], [high[0] + open, high[1] + open], |_, found| {
-        if found.is_solid() && roof.plane.above(found.p) < -params.thickness - BELOW {
+        if found.is_solid() && roof.plane.distance_above(found.p) < -params.thickness - BELOW {
             walls.push(found.p);
         }
     });
     let walls = PlanIndex::new(walls.into_iter(), open);
     let proves = |place: [f64; 3]| {
         let beside = |p: &&[f64; 3]| (0..3).map(|i| (p[i] - place[i]).powi(2)).sum::<f64>() <= open * open;
-        walls.near(place).filter(beside).count() <= params.max_below && is_within(&own, place, around, params)
+        walls.points_near(place).filter(beside).count() <= params.max_below && is_within(&own, place, around, params)
     };
     let mut proven: BTreeSet<[i64; 2]> = BTreeSet::new();
     let shift = block.max_shift(high[2]);
@@ -156,7 +157,7 @@ fn each_below(plane: &Plane, pulse: &Return, depths: [f64; 2], mut visit: impl F
     let [x, y] = pulse.lean;
     // how much nearer to the plane for each metre up
     let nearer = plane.normal[0] * x + plane.normal[1] * y + plane.normal[2];
-    let depth = -plane.above(pulse.p);
+    let depth = -plane.distance_above(pulse.p);
     if !pulse.is_first || !(nearer > 0.2) || depth < depths[0] {
         return;
     }
@@ -170,10 +171,11 @@ fn each_below(plane: &Plane, pulse: &Return, depths: [f64; 2], mut visit: impl F
     }
 }
 
-/// Whether points of a slab lie all about a place below it. Sparse points do not reach its edge: each end of the gap
-/// may lie one mean angle between them farther, as long as the whole is hardly more than half a turn.
+/// Returns true if points of a slab lie all around a place below it. Sparse points do not reach its edge. Each end of
+/// the gap may lie one mean angle between them farther, as long as the whole is hardly more than half a turn.
 fn is_within(own: &PlanIndex, place: [f64; 3], around: f64, params: &SlabParams) -> bool {
-    let near = own.near(place).map(|p| [p[0] - place[0], p[1] - place[1]]).filter(|[x, y]| x.hypot(*y) <= around);
+    let near =
+        own.points_near(place).map(|p| [p[0] - place[0], p[1] - place[1]]).filter(|[x, y]| x.hypot(*y) <= around);
     let mut angles: Vec<f64> = near.map(|[x, y]| y.atan2(x)).collect();
     angles.sort_unstable_by(f64::total_cmp);
     let (Some(&first), Some(&last)) = (angles.first(), angles.last()) else { return false };
@@ -185,7 +187,7 @@ fn is_within(own: &PlanIndex, place: [f64; 3], around: f64, params: &SlabParams)
 /// Gap about a place that never lies below a slab, radians: hardly more than the π of one below its outermost points.
 const WIDEST_OF_ALL: f64 = 3.2;
 
-/// How a slab is closed: both sheets, or the underside of one that is closed as a roof already.
+/// Sheets that close a slab: both, or the underside of one that is closed as a roof already.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sheets {
     Both,
@@ -193,7 +195,7 @@ pub(super) enum Sheets {
 }
 
 /// Gives out the sheets of slabs within the block, and the returns that lie on them.
-pub(super) fn give_out(
+pub(super) fn append_to(
     block: &Block,
     (roofs, are_slabs): (&Roofs, &[bool]),
     leaves: &[Leaf],
@@ -225,7 +227,7 @@ pub(super) fn give_out(
         let reach = roof.spacing;
         block.each_in([0, 1].map(|i| low[i] - reach), [0, 1].map(|i| high[i] + reach), |row, at| {
             let place = [at.p[0], at.p[1]];
-            let above = roof.plane.above(at.p);
+            let above = roof.plane.distance_above(at.p);
             let is_near = || {
                 let heights = -params.thickness - BELOW..=ABOVE.max(3.0 * roofs.noise);
                 at.is_solid() && heights.contains(&above) && own.iter().any(|leaf| leaf.holds(place))

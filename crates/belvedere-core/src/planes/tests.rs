@@ -41,7 +41,7 @@ fn scan(faces: &[Face], low: [f64; 2], high: [f64; 2]) -> Scene {
     scene
 }
 
-/// Where a line meets a convex polygon, as a share of its length.
+/// Returns the intersection of a line with a convex polygon, as a share of its length.
 fn meets(corners: &[[f64; 3]], from: [f64; 3], way: [f64; 3]) -> Option<f64> {
     let normal = cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]));
     let share = dot(normal, sub(corners[0], from)) / dot(normal, way);
@@ -116,7 +116,7 @@ fn gable(eaves: f64) -> Vec<Face> {
 
 const AROUND: [[f64; 2]; 2] = [[-20.0, -20.0], [20.0, 20.0]];
 
-/// How often a line straight down meets patches of a kind at each of some places, with their heights.
+/// Returns the heights at which a line straight down meets patches of a kind at each of some places.
 fn heights_of(surfaces: &BuildingSurfaces, kind: PatchKind, [x, y]: [f64; 2]) -> Vec<f64> {
     let of_kind = surfaces.patches.triangles.iter().zip(&surfaces.patches.kinds).filter(|(_, own)| **own == kind);
     let from = [x, y, 100.0];

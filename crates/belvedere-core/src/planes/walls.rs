@@ -6,22 +6,22 @@ use super::edges::{EdgeLine, Outline};
 use super::line::PlanLine;
 use super::roof_planes::{NONE, Roofs};
 
-/// How far behind and before an edge the points of its wall lie, metres.
+/// Maximum distance of the points of a wall behind and before its edge, metres.
 const BEHIND: f64 = 1.2;
 const BEFORE: f64 = 0.4;
-/// How far below the edge they begin, metres.
+/// Minimum depth of the points below the edge, metres.
 const BELOW: f64 = 0.25;
 /// Steepest turn of a wall from its edge: 3.4°.
 const MAX_TURN: f64 = 0.06;
-/// Least share of the edge that the points of a wall take, and the least length instead, metres.
+/// Minimum share of the edge that the points of a wall take, and minimum length instead, metres.
 const MIN_SHARE: f64 = 0.4;
 const MIN_LENGTH: f64 = 1.5;
 
-/// How far from the end of its edge a wall may cross another one, metres.
+/// Maximum distance from the end of its edge at which a wall may cross another one, metres.
 const CORNER: f64 = 1.2;
-/// Least distance of an edge before its wall that makes eaves, metres.
+/// Minimum distance of an edge before its wall that makes eaves, metres.
 pub(super) const MIN_EAVES: f64 = 0.12;
-/// How far beyond its points a wall below eaves goes on, metres.
+/// Length of a wall below eaves beyond its points, metres.
 const BEYOND_POINTS: f64 = 0.2;
 
 /// Standard deviation of what no number of points averages out, metres.
@@ -42,13 +42,13 @@ pub(super) struct WallLine {
     pub(super) noise: f64,
     pub(super) sd: f64,
     pub(super) share: f64,
-    /// Whether it is closed near its points.
+    /// True if it is closed near its points.
     pub(super) is_closed: bool,
     /// Lowest point.
     pub(super) bottom: f64,
-    /// How far below the edge its lowest point lies, metres.
+    /// Depth of its lowest point below the edge, metres.
     pub(super) depth: f64,
-    /// How far the edge stands out before it, metres.
+    /// Overhang of the edge before it, metres.
     pub(super) eaves: f64,
 }
 
@@ -58,7 +58,7 @@ pub(super) fn find(block: &Block, roofs: &Roofs, outlines: &[Outline], params: &
     for (plane, outline) in outlines.iter().enumerate() {
         let min_points = params.points_at(params.min_points, roofs.planes[plane].spacing);
         let edges = outline.edges.iter().enumerate().filter(|(_, edge)| edge.may_have_wall);
-        let found = edges.filter_map(|(number, edge)| below(block, roofs, [plane, number], edge, min_points));
+        let found = edges.filter_map(|(number, edge)| find_wall(block, roofs, [plane, number], edge, min_points));
         let min_closed = params.points_at(params.min_closed_points, roofs.planes[plane].spacing);
         let is_closed = |wall: &WallLine| wall.share >= params.min_share && wall.points.len() >= min_closed;
         walls.extend(found.map(|wall| WallLine { is_closed: is_closed(&wall), ..wall }));
@@ -94,7 +94,7 @@ fn meet(walls: &mut [WallLine]) {
 }
 
 /// The wall below an edge, given its plane and its number among those of the plane.
-fn below(
+fn find_wall(
     block: &Block,
     roofs: &Roofs,
     [plane, number]: [usize; 2],
@@ -110,7 +110,7 @@ fn below(
     // along the edge, to its right, height; and the row of the return
     let mut near: Vec<([f64; 3], usize)> = Vec::new();
     block.each_in(low, high, |row, found| {
-        if !found.may_be_building() || roofs.plane_of_return[row] != NONE || top.above(found.p) > -BELOW {
+        if !found.may_be_building() || roofs.plane_of_return[row] != NONE || top.distance_above(found.p) > -BELOW {
             return;
         }
         let [t, d] = edge.of([found.p[0], found.p[1]]);

@@ -1,14 +1,14 @@
-//! What parts of flight lines show about the scanner, and when this is trusted.
+//! Estimates of the scanner position for parts of flight lines, and their acceptance.
 
 use belvedere_data::{Error, Parameter, Result};
 
-/// How [`SensorPositions::from_returns`](super::SensorPositions::from_returns) works.
+/// Parameters of [`SensorPositions::from_returns`](super::SensorPositions::from_returns).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorEstimateParams {
-    /// Longest part of a flight line that is taken for straight and evenly flown, seconds, 0.5 to 60. Default 5: gusts
-    /// move an aircraft by a metre in that time, and a tile cut from a line often holds no more.
+    /// Maximum duration of a part of a flight line that counts as straight and evenly flown, seconds, 0.5 to 60.
+    /// Default 5: gusts move an aircraft by a metre in that time, and a tile cut from a line often holds no more.
     pub part_s: f64,
-    /// Least distance between first and last return for a pulse to give its direction, metres, 0.5 to 50. Default 3:
+    /// Minimum distance between first and last return for a pulse to give its direction, metres, 0.5 to 50. Default 3:
     /// with 2 cm noise the direction is then good to half a degree.
     pub min_length: f64,
     /// Fewest such pulses in a part, 6 to 100 000. Default 30.
@@ -19,12 +19,12 @@ pub struct SensorEstimateParams {
     /// Standard deviation of the acceleration, white over a second, that the parts of a line are joined with, metres
     /// per second squared, 0.01 to 100. Default 1: an autopilot in gusts.
     pub acceleration_sd: f64,
-    /// Greatest standard deviation of the position that is accepted, horizontal and vertical, metres. Default 20 and
-    /// 50: seen from 450 m below, 20 m sideways tilt a pulse by 2.5°; upwards they tilt it less.
+    /// Maximum standard deviation of the position that is accepted, horizontal and vertical, metres. Default 20 and 50:
+    /// seen from 450 m below, 20 m sideways tilt a pulse by 2.5°; upwards they tilt it less.
     pub greatest_sd: [f64; 2],
     /// Speeds that are accepted, metres per second. Default 15 to 120: helicopters to jets.
     pub speeds: [f64; 2],
-    /// Least height above the middle of the returns that is accepted, metres. Default 30.
+    /// Minimum height above the middle of the returns that is accepted, metres. Default 30.
     pub min_height: f64,
 }
 
@@ -65,11 +65,11 @@ pub struct SensorPart {
     pub height: f64,
     /// Median angle between the pulses and the directions to the estimated path, radians.
     pub median_angle: f64,
-    /// Whether it is used.
+    /// Acceptance of the estimate.
     pub verdict: PartVerdict,
 }
 
-/// Whether the estimate for a part of a flight line is used, and why not.
+/// Acceptance of the estimate for a part of a flight line, with the reason for a refusal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartVerdict {
     /// Used.
@@ -85,7 +85,7 @@ pub enum PartVerdict {
 }
 
 impl PartVerdict {
-    /// Whether the part has a position that is used.
+    /// Returns true if the position of this part is used.
     #[must_use]
     pub fn is_used(self) -> bool {
         matches!(self, Self::Accepted | Self::Bridged)
@@ -109,27 +109,29 @@ impl SensorEstimateParams {
     }
 }
 
-/// When scan angles are trusted.
+/// Acceptance thresholds for scan angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScanAngleParams {
-    /// Longest part of a flight line that is taken for straight and evenly flown, seconds, 0.5 to 60. Default 10.
+    /// Maximum duration of a part of a flight line that counts as straight and evenly flown, seconds, 0.5 to 60.
+    /// Default 10.
     pub part_s: f64,
-    /// Least standard deviation of the angles of a part, radians. Default 1°: a tile of 30 m below a scanner 450 m up.
+    /// Minimum standard deviation of the angles of a part, radians. Default 1°: a tile of 30 m below a scanner 450 m
+    /// up.
     pub min_spread: f64,
-    /// Greatest median angle by which points may miss their place, across and along the flight, radians. Default 1°:
+    /// Maximum median angle between points and their expected place, across and along the flight, radians. Default 1°:
     /// half a degree of rounding, and a pitch that angles do not give.
     pub greatest_miss: f64,
-    /// Greatest bend of scan lines, metres along the flight for each metre of height and square of the tangent of the
-    /// angle, that passes for straight. Default 0.35: a cone of 20° bends by 1.4, one of 45° by 0.5.
+    /// Maximum bend of straight scan lines, metres along the flight for each metre of height and square of the tangent
+    /// of the angle. Default 0.35: a cone of 20° bends by 1.4, one of 45° by 0.5.
     pub greatest_bend: f64,
-    /// Greatest tangent of the angle between scan lines and the perpendicular of the flight. Default 0.36 (20°):
+    /// Maximum tangent of the angle between scan lines and the perpendicular of the flight. Default 0.36 (20°):
     /// crabbing.
     pub greatest_crab: f64,
-    /// Greatest median angle to the pulses with several returns, where there are any, radians. Default 3°.
+    /// Maximum median angle to the pulses with several returns, where there are any, radians. Default 3°.
     pub greatest_contradiction: f64,
     /// Speeds that are accepted, metres per second. Default 15 to 120: helicopters to jets.
     pub speeds: [f64; 2],
-    /// Least height above the middle of the points that is accepted, metres. Default 30.
+    /// Minimum height above the middle of the points that is accepted, metres. Default 30.
     pub min_height: f64,
 }
 
@@ -148,7 +150,7 @@ impl Default for ScanAngleParams {
     }
 }
 
-/// Whether the scan angles of a part of a flight line are trusted, and why not.
+/// Acceptance of the scan angles of a part of a flight line, with the reason for a refusal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AngleVerdict {
     /// Trusted.
@@ -168,7 +170,7 @@ pub enum AngleVerdict {
     Implausible,
 }
 
-/// What the scan angles of a part of a flight line show.
+/// Scanner position of a part of a flight line, from scan angles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScanAnglePart {
     /// Flight line.
@@ -190,7 +192,7 @@ pub struct ScanAnglePart {
     pub pitch: f64,
     /// Median angle to the pulses with several returns, radians; NaN where these are too few.
     pub contradiction: f64,
-    /// Whether it is used.
+    /// Acceptance of the scan angles.
     pub verdict: AngleVerdict,
 }
 
@@ -206,6 +208,6 @@ pub struct HeightOffset {
     pub pair_count: usize,
     /// Median angle between these pulses and the trajectory as it is used, radians.
     pub miss_angle: f64,
-    /// Whether it stands out from chance and from what beams feign, exceeds a metre, and was therefore added.
+    /// True if the offset was added: it is significant, larger than beams can feign, and exceeds a metre.
     pub is_applied: bool,
 }

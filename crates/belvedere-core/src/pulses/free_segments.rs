@@ -19,12 +19,12 @@ use serde::Serialize;
 use std::ops::ControlFlow;
 use tree::{SegmentAxis, SegmentTree, node_count};
 
-/// How far balls stay clear of pulses, metres: the step of coordinates in most files, and more than f32 rounds.
+/// Clearance between balls and pulses, metres: the coordinate step of most files, and more than the rounding of f32.
 pub(crate) const GAP_M: f32 = 1e-3;
 /// Pulses between two looks at whether to go on.
 const CHECK_EACH: usize = 4096;
 
-/// How pulses become free segments: pieces of lines that are proven to be empty.
+/// Parameters that turn pulses into free segments: line segments that are proven to be empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeSegmentParams {
     /// Length before the first return that is not counted as empty, metres, 0 to 1. Default 0.05: the noise of a range.
@@ -54,15 +54,15 @@ struct FreeSegment {
 
 /// The free segments of a survey, in all directions.
 pub struct FreeSegments {
-    /// Those of a tree follow each other.
+    /// Segments of all trees, one tree after the other.
     free_segments: Vec<FreeSegment>,
-    /// At most one for each way; none is empty.
+    /// Trees, at most one for each direction; none is empty.
     trees: Vec<SegmentTree>,
     /// Height that none rises above.
     top: f32,
 }
 
-/// How many pulses became free segments.
+/// Counts of pulses that became free segments.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct FreeSegmentReport {
     /// Free segments.
@@ -113,7 +113,7 @@ impl FreeSegments {
         let rows = || (0..cloud.len()).filter(is_first);
         let returns: Vec<[f32; 3]> = rows().map(|row| cloud.positions[row]).collect();
         let scanner: Vec<[f32; 3]> = rows().map(|row| scanner[row]).collect();
-        Self::below(&returns, &scanner, highest, params, control)
+        Self::build_below(&returns, &scanner, highest, params, control)
     }
 
     /// Free segments from `first_returns`, (N, 3) local metres, towards `scanner`, (N, 3) local metres, NaN where
@@ -127,10 +127,10 @@ impl FreeSegments {
         params: &FreeSegmentParams,
         control: &Control<'_>,
     ) -> Result<(Self, FreeSegmentReport)> {
-        Self::below(first_returns, scanner, None, params, control)
+        Self::build_below(first_returns, scanner, None, params, control)
     }
 
-    fn below(
+    fn build_below(
         first_returns: &[[f32; 3]],
         scanner: &[[f32; 3]],
         highest: Option<f32>,
@@ -213,8 +213,8 @@ impl FreeSegments {
         sideways as f64 / self.free_segments.len().max(1) as f64
     }
 
-    /// Where segment `number` begins, local metres; the unit vector along it, towards the scanner; and its length,
-    /// metres. `None` from [`FreeSegments::len`] on. Their order is that of the index.
+    /// Returns segment `number`: its start, local metres; the unit vector along it, towards the scanner; and its
+    /// length, metres. Segments are in the order of the index. `None` from [`FreeSegments::len`] on.
     #[must_use]
     pub fn segment(&self, number: usize) -> Option<([f32; 3], [f32; 3], f32)> {
         self.free_segments
@@ -226,7 +226,7 @@ impl FreeSegments {
     /// segment enters the ball of `max_radius`. Metres.
     ///
     /// # Source
-    /// The closed form for a line is this project's: the ball of the pencil through a point at t metres along a segment
+    /// The closed form for a line is this project's. The ball of the pencil through a point at t metres along a segment
     /// has the radius |p′−a−tu|² / 2 n·(p′−a−tu), a convex function of t.
     #[must_use]
     pub fn smallest_tangent_ball(&self, tangent: &Tangent, max_radius: f32) -> Option<f32> {

@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, PointCloud, Result};
 
-/// Most points of one time, line and channel: LAS counts returns to 15, and two full pulses in one tick of a clock do
-/// not occur.
+/// Maximum number of points of one time, line and channel: LAS counts returns to 15, and two full pulses in one tick of
+/// a clock do not occur.
 const MAX_PER_TIME: usize = 15;
 /// Times between two looks at whether to go on.
 const CHECK_EACH: usize = 4096;
@@ -18,20 +18,20 @@ const CHECK_EACH: usize = 4096;
 pub struct Pulses {
     /// Rows of the cloud, the returns of a pulse side by side in order of their numbers.
     pub returns: Vec<u32>,
-    /// Where each pulse begins in `returns`, (P + 1).
+    /// First index of each pulse in `returns`, (P + 1).
     pub offsets: Vec<u32>,
     /// GPS time of each pulse, (P), seconds as in the cloud.
     pub times: Vec<f64>,
     /// Flight line of each pulse, (P); 0 where the cloud names none.
     pub source_ids: Vec<u16>,
-    /// Whether the return numbered 1 is there, (P).
+    /// True if return number 1 is present, (P).
     first_present: Vec<bool>,
-    /// Whether the return whose number is that of all returns is there, (P).
+    /// True if the last return, by the count of returns, is present, (P).
     last_present: Vec<bool>,
 }
 
-/// What became of the points of a cloud when they were grouped. The counts of points left out and those of
-/// [`Pulses::returns`] add up to all points.
+/// Counts of points by outcome of the grouping. The counts of points left out and those of [`Pulses::returns`] add up
+/// to all points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PulseReport {
     /// Points in all.
@@ -121,7 +121,7 @@ pub fn group(cloud: &PointCloud, control: &Control<'_>) -> Result<(Pulses, Pulse
     Ok((pulses, report))
 }
 
-/// What points are sorted by.
+/// Sort key of points.
 #[derive(Clone, Copy)]
 struct SortKey {
     /// Flight line and channel.
@@ -185,7 +185,7 @@ impl Pulses {
         self.times.len()
     }
 
-    /// Whether there is no pulse.
+    /// Returns true if there is no pulse.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.times.is_empty()

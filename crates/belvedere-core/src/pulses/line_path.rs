@@ -6,14 +6,14 @@ use belvedere_data::cloud::to_local;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Where the scanner was along a flight line, and when that is known.
+/// Path of the scanner along a flight line, with the times at which it is known.
 ///
 /// Saved, it keeps where the scanner was, and not how well that is known.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LinePath {
     /// Flight line; 0 where the cloud names none.
     pub source_id: u16,
-    /// What it was found by.
+    /// Source of the path.
     pub means: FoundBy,
     /// The times at which it is known, increasing.
     pub stretches: Vec<Stretch>,
@@ -80,7 +80,7 @@ pub(crate) fn positions_on_paths(paths: &[LinePath], cloud: &PointCloud) -> Vec<
 /// Parts farther apart than this are smoothed apart, seconds: aircraft do not hold their course for longer.
 pub(super) const LONGEST_BRIDGE_S: f64 = 30.0;
 
-/// Where a scanner was, and how it moved.
+/// Position and velocity of the scanner at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Knot {
     /// Seconds.

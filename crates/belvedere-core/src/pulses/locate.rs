@@ -1,4 +1,4 @@
-//! Where the scanner was for each point, by the best means at hand.
+//! Locates the scanner for each point, by the best means at hand.
 
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,12 +17,11 @@ use belvedere_data::control::Control;
 use belvedere_data::trajectory::Trajectory;
 use belvedere_data::{Error, PointCloud, Result};
 
-/// What the scanner is to be found by.
+/// Sources of scanner positions.
 #[derive(Clone, Copy, Debug, Default)]
 pub enum Means<'a> {
-    /// Poses in the file; without them pulses with several returns, then scan angles where they can be trusted; where
-    /// none of these finds the scanner of a single point, stations of tripods that the points show; and at last the
-    /// assumption that pulses fall straight down.
+    /// Tries poses in the file, then pulses with several returns, then trusted scan angles. If these locate the scanner
+    /// of no point, tries stations of tripods that the points show, and at last assumes that pulses fall straight down.
     #[default]
     Automatic,
     /// Pulses with several returns, then scan angles, and no assumption.
@@ -37,7 +36,7 @@ pub enum Means<'a> {
     Trajectory(&'a Trajectory),
 }
 
-/// How [`locate`] works.
+/// Parameters of [`locate`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LocateParams {
     /// Pulses with several returns.
@@ -56,11 +55,12 @@ pub struct LocateParams {
 /// points of the same pulse and number, any order of the points.
 ///
 /// # Errors
-/// [`Error::MissingAttribute`] where the requested means find the scanner of no point; [`Means::Automatic`] finds it
-/// for at least one of every cloud but those with poses that no point refers to: a scanner on the ground does not look
-/// straight down. [`Error::LengthMismatch`] for a column of another length than the positions,
-/// [`Error::InvalidParameter`] for parameters out of range and a trajectory that covers no time of the cloud,
-/// [`Error::Cancelled`].
+/// - [`Error::MissingAttribute`] if the requested means find the scanner of no point. [`Means::Automatic`] finds at
+///   least one, except in clouds with poses that no point refers to: a scanner on the ground does not look straight
+///   down.
+/// - [`Error::LengthMismatch`] for a column of another length than the positions.
+/// - [`Error::InvalidParameter`] for parameters out of range, and for a trajectory that covers no time of the cloud.
+/// - [`Error::Cancelled`].
 pub fn locate(
     cloud: &PointCloud,
     means: &Means<'_>,

@@ -1,10 +1,14 @@
 //! Laser pulses: which returns belong together, and where the scanner was.
 //!
-//! The way from the scanner to the first return of a pulse is proven to be free. Everything that uses this needs the
-//! two things found here: [`group`] puts the returns of each pulse together, [`locate`] says where they came from, by
-//! the best means that a cloud has: poses or a trajectory ([`Means`]), pulses with several returns
-//! ([`SensorPositions`]), scan angles ([`ScanAngleParams`]), the stations of tripods that the points show
-//! ([`FoundStation`]), and at last the assumption that pulses fall straight down ([`vertical_pulses`]).
+//! Groups returns into pulses and locates the scanner of each. The segment from the scanner to the first return of a
+//! pulse is proven to be free; everything that uses this needs both steps. [`group`] puts the returns of each pulse
+//! together. [`locate`] uses the best means that a cloud has:
+//!
+//! - poses or a trajectory ([`Means`]),
+//! - pulses with several returns ([`SensorPositions`]),
+//! - scan angles ([`ScanAngleParams`]),
+//! - stations of tripods that the points show ([`FoundStation`]),
+//! - the assumption that pulses fall straight down ([`vertical_pulses`]).
 
 #[cfg(feature = "scanner-estimate")]
 mod estimate;

@@ -7,7 +7,7 @@ use super::scanner_report::FoundStation;
 use belvedere_data::control::Control;
 use belvedere_data::{PointCloud, Result};
 
-/// Whether this build can estimate.
+/// False: this build does not estimate scanner positions.
 pub(super) const IS_BUILT: bool = false;
 
 pub(super) fn paths_from_returns(

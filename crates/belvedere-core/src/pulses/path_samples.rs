@@ -4,8 +4,8 @@ use super::line_path::{LinePath, Stretch};
 use belvedere_data::trajectory::{TrajectoryQuality, TrajectorySample};
 use belvedere_data::{Error, Parameter, Result};
 
-/// Where two lines are known at the same time, the scanner cannot have been at two places that are farther apart than
-/// this, metres: several times what a path may be off.
+/// Maximum distance between two simultaneous scanner positions of one scanner, metres: several times the error of a
+/// path.
 const SAME_PLACE: f64 = 100.0;
 
 /// The positions that `paths` know, of a cloud at `origin` (metres), every `step` seconds and at both ends of each
@@ -55,8 +55,8 @@ fn times([from, to]: [f64; 2], step: f64) -> impl Iterator<Item = f64> {
     std::iter::once(from).chain(multiples).chain(std::iter::once(to))
 }
 
-/// Whether another path knows this `time` better than `stretch` of path number `own`, which puts the scanner at
-/// `place`. Of the paths of a line the first knows best.
+/// Returns true if another path knows this `time` better than `stretch` of path number `own`, which puts the scanner at
+/// `place`. The first path of a line is the best.
 fn has_better(paths: &[LinePath], own: usize, stretch: &Stretch, time: f64, place: [f64; 3]) -> Result<bool> {
     let sd = |stretch: &Stretch| stretch.position_sd.iter().sum::<f64>();
     let line = paths.get(own).map(|path| path.source_id);

@@ -1,4 +1,4 @@
-//! How the scanner was found, and the text about it for a reader.
+//! Report of the scanner positions, and its text for a reader.
 
 use super::flight_parts::{HeightOffset, ScanAnglePart, SensorPart};
 use super::group::PulseReport;
@@ -9,7 +9,7 @@ use belvedere_data::trajectory::ClockOffset;
 use serde::{Deserialize, Serialize, Serializer, ser::SerializeMap};
 use std::collections::BTreeMap;
 
-/// What the scanner of a point was found by.
+/// Source of the scanner position of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FoundBy {
@@ -27,7 +27,7 @@ pub enum FoundBy {
     ScanAngle,
     /// A search for the stations of tripods in the points.
     StationSearch,
-    /// Nothing: pulses are assumed to fall straight down.
+    /// Assumption that pulses fall straight down.
     Assumed,
 }
 
@@ -62,7 +62,7 @@ impl FoundBy {
     }
 }
 
-/// How the scanner was found.
+/// Report of [`locate`](super::locate).
 ///
 /// Serialised, it gives shares and medians for a reader and leaves out the parts of flight lines;
 /// [`ScannerReport::lines`] gives each line.
@@ -72,23 +72,23 @@ pub struct ScannerReport {
     pub point_count: usize,
     /// Points whose scanner each means found; those not counted are unknown.
     pub found: BTreeMap<FoundBy, usize>,
-    /// How returns were grouped into pulses, where that was tried and possible.
+    /// Outcome of grouping returns into pulses, where that was tried and possible.
     pub grouping: Option<PulseReport>,
     /// Parts of flight lines by their pulses with several returns.
     pub parts: Vec<SensorPart>,
     /// Parts of flight lines by their scan angles.
     pub angle_parts: Vec<ScanAnglePart>,
-    /// Where the scanner was found to be: by line, and by returns before scan angles.
+    /// Paths of the scanner, by line; those from returns come before those from scan angles.
     pub paths: Vec<LinePath>,
-    /// How GPS times became those of the trajectory, where one was given.
+    /// Conversion of GPS times to those of the trajectory, if one was given.
     pub clock: Option<ClockOffset>,
-    /// What the times of that trajectory are off by; `None` where they fit, and where pulses do not tell.
+    /// Time offset of that trajectory; `None` if it fits, and if pulses do not show it.
     pub time_offset: Option<TimeOffset>,
-    /// What the heights of that trajectory are off by; `None` where pulses do not tell.
+    /// Height offset of that trajectory; `None` if pulses do not show it.
     pub height_offset: Option<HeightOffset>,
     /// Stations of tripods that were found in the points, by point source id.
     pub stations: Vec<FoundStation>,
-    /// What could not be used, and why.
+    /// Inputs that could not be used, with the reason.
     pub remarks: Vec<String>,
 }
 
@@ -98,7 +98,7 @@ pub struct FoundStation {
     /// Point source id of the points that it was found in; `None` where all have the same.
     #[serde(rename = "point_source_id", skip_serializing_if = "Option::is_none")]
     pub source_id: Option<u16>,
-    /// Where it stood, in the coordinates of the cloud's file.
+    /// Position of the station, in the coordinates of the cloud's file.
     #[serde(serialize_with = "to_three_digits")]
     pub position: [f64; 3],
     /// Steps from pulse to pulse, around and up, degrees: the evidence is that directions form this grid.
@@ -135,7 +135,7 @@ pub struct TypicalFlight {
 pub struct FlightLine {
     /// Its number (point source id).
     pub number: u16,
-    /// What the scanner was found by, in words.
+    /// Source of the scanner position, in words.
     pub found_by: &'static str,
     /// Its flight.
     #[serde(flatten)]
@@ -166,7 +166,7 @@ impl ScannerReport {
         self.found.values().sum()
     }
 
-    /// Whether all that is returned is an assumption.
+    /// Returns true if some positions are an assumption.
     #[must_use]
     pub fn is_assumed(&self) -> bool {
         self.found.contains_key(&FoundBy::Assumed)

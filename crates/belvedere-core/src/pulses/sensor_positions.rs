@@ -1,4 +1,4 @@
-//! Where the scanner was when it sent each pulse: from a trajectory, or from the pulses themselves.
+//! Scanner position of each pulse, from a trajectory or from the pulses themselves.
 
 use super::Pulses;
 use super::estimate::paths_from_returns;
@@ -15,14 +15,14 @@ pub struct SensorPositions {
     pub per_pulse: Vec<[f32; 3]>,
 }
 
-/// How scanner positions were found.
+/// Report of the search for scanner positions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensorReport {
     /// Pulses in all.
     pub pulse_count: usize,
     /// Pulses whose scanner position is known.
     pub known_count: usize,
-    /// How GPS times became those of the trajectory, where one was used.
+    /// Conversion of GPS times to those of the trajectory, if one was used.
     pub clock: Option<ClockOffset>,
     /// The parts of flight lines that were estimated, by line and time.
     pub parts: Vec<SensorPart>,
@@ -47,13 +47,14 @@ impl SensorPositions {
 
     /// Positions from the directions of pulses with several returns, by flight line.
     ///
-    /// A line is cut where nothing was scanned for two seconds and then into equal parts of at most
-    /// [`SensorEstimateParams::part_s`]. In each part the scanner moves evenly, S + V t, such that the last return of
-    /// each pulse lies as near as possible to the line from the scanner through the first. Misses that stand out count
-    /// less, and level flight is assumed where the pulses tell nothing. The parts of a line are then joined to one path
-    /// by a smoother that knows how far an aircraft leaves a constant velocity; it also places parts with too few
-    /// pulses between or beside good ones, as long as it is sure enough. Parts whose estimate is not fit for use are
-    /// unknown; [`SensorReport::parts`] says why.
+    /// A line is cut where nothing was scanned for two seconds, and then into equal parts of at most
+    /// [`SensorEstimateParams::part_s`]. In each part the scanner moves evenly, S + V t. S and V minimise the distance
+    /// of the last return of each pulse from the line that joins the scanner and the first return. Outliers count less,
+    /// and level flight is assumed where the pulses do not constrain it.
+    ///
+    /// A smoother with a limited acceleration joins the parts of a line to one path. It also places parts with too few
+    /// pulses between or beside good ones, as long as its uncertainty is small enough. Parts whose estimate is refused
+    /// are unknown; [`SensorReport::parts`] gives the reason.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`](belvedere_data::Error::InvalidParameter) for a parameter outside its range.

@@ -1,5 +1,5 @@
-//! By how much the times of a trajectory are off those of a cloud: pulses with several returns point to where the
-//! scanner was.
+//! Offset between the times of a trajectory and those of a cloud: pulses with several returns point to the position of
+//! the scanner.
 
 use super::Pulses;
 use belvedere_data::PointCloud;
@@ -7,39 +7,65 @@ use belvedere_data::contradiction::{FoundContradiction, TRAJECTORY_TIME};
 use belvedere_data::report::rounded;
 use belvedere_data::trajectory::{ClockOffset, Trajectory};
 use belvedere_data::vector::{cross, length, sub};
+use std::f64::consts::PI;
 
-/// Least distance between first and last return for a pulse to give its direction, metres.
-const MIN_LENGTH: f64 = 3.0;
-/// Fewest such pulses, and the most that are looked at: the median angle of two thousand is known to some hundredths.
-const MIN_PAIRS: usize = 100;
-const MAX_PAIRS: usize = 2000;
-/// Offsets that are tried, seconds: UTC is 13 to 18 s behind GPS time since 1999, and clocks were set by hand.
-const FARTHEST: f64 = 30.0;
-/// Steps of the search, seconds: each a tenth of the one before. An aircraft flies 60 m in one.
-const STEPS: [f64; 3] = [1.0, 0.1, 0.01];
-/// Share of the pulses whose place a shifted trajectory must know.
-const MIN_KNOWN: f64 = 0.8;
-/// How many times smaller the median angle between pulses and path must be after the shift, and by how much, radians.
-const MIN_GAIN: f64 = 3.0;
-const MIN_ANGLE: f64 = 0.2 * std::f64::consts::PI / 180.0;
-/// An offset this near to whole seconds is that of a clock, seconds, if pulses then point to within this angle of the
-/// path, radians. Other offsets may be an error of the mounting, which another time only seems to mend.
-const NEAR_WHOLE: f64 = 0.1;
-const CERTAIN_ANGLE: f64 = 1.0 * std::f64::consts::PI / 180.0;
+/// Parameters of the search for a time offset. Neighbouring values were not measured.
+#[derive(Clone, Copy, Debug)]
+struct TimeOffsetParams {
+    /// Minimum distance between first and last return for a pulse to give its direction, metres. Default 3.
+    min_length: f64,
+    /// Minimum number of such pulses. Default 100.
+    min_pairs: usize,
+    /// Maximum number of such pulses that are tested. Default 2000: their median angle is accurate to some hundredths of
+    /// a degree.
+    max_pairs: usize,
+    /// Maximum offset, seconds. Default 30: UTC is 13 to 18 s behind GPS time since 1999, and clocks were set by hand.
+    max_offset: f64,
+    /// Steps of the search, seconds. Default 1, 0.1 and 0.01: an aircraft flies 60 m in the first.
+    steps: [f64; 3],
+    /// Minimum share of the pulses whose position a shifted trajectory knows, 0 to 1. Default 0.8.
+    min_known: f64,
+    /// Minimum factor by which the shift reduces the median angle between pulses and path. Default 3.
+    min_gain: f64,
+    /// Minimum reduction of that angle, radians. Default 0.2 degrees.
+    min_reduction: f64,
+    /// Maximum difference of the offset of a clock from whole seconds, seconds. Default 0.1. Other offsets may be an
+    /// error of the mounting, which another time only seems to correct.
+    max_fraction: f64,
+    /// Maximum median angle between pulses and path at the offset of a clock, radians. Default 1 degree.
+    max_angle: f64,
+}
+
+impl Default for TimeOffsetParams {
+    fn default() -> Self {
+        Self {
+            min_length: 3.0,
+            min_pairs: 100,
+            max_pairs: 2000,
+            max_offset: 30.0,
+            steps: [1.0, 0.1, 0.01],
+            min_known: 0.8,
+            min_gain: 3.0,
+            min_reduction: 0.2 * PI / 180.0,
+            max_fraction: 0.1,
+            max_angle: 1.0 * PI / 180.0,
+        }
+    }
+}
 
 /// An offset of time that was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeOffset {
     /// Seconds to be added to the times of the cloud, beside what [`ClockOffset`] adds.
     pub seconds: f64,
-    /// Whether it is that of another clock, and was used.
+    /// True if it is the offset of another clock, and was used.
     pub is_applied: bool,
     /// Median angle between pulses and the directions to the path before and after, radians.
     pub angles: [f64; 2],
 }
 
 impl TimeOffset {
-    /// What it says against the trajectory.
+    /// Describes the contradiction between the trajectory and the pulses.
     #[must_use]
     pub fn contradiction(&self) -> FoundContradiction {
         let [before, after] = self.angles.map(|angle| rounded(angle.to_degrees(), 2));
@@ -63,14 +89,15 @@ struct PulsePair {
     along: [f64; 3],
 }
 
-/// The offset of time that `trajectory`, on a clock of `clock`, needs for the pulses to point to it; `None` where it
-/// needs none, and where too few pulses have returns far enough apart.
+/// Estimates the time offset of `trajectory`, on a clock of `clock`, for which the pulses point to it. `None` if it
+/// needs none, and if too few pulses have returns far enough apart.
 pub(super) fn time_offset(
     cloud: &PointCloud,
     pulses: &Pulses,
     trajectory: &Trajectory,
     clock: &ClockOffset,
 ) -> Option<TimeOffset> {
+    let params = TimeOffsetParams::default();
     let place = |row: &u32| {
         let position = cloud.positions.get(*row as usize)?.map(f64::from);
         Some(std::array::from_fn(|i| position[i] + cloud.frame.origin[i]))
@@ -80,19 +107,19 @@ pub(super) fn time_offset(
         let (first, last): ([f64; 3], [f64; 3]) = (place(returns.first()?)?, place(returns.last()?)?);
         let along = sub(last, first);
         let time = clock.trajectory_time(*pulses.times.get(pulse)?);
-        (length(along) >= MIN_LENGTH).then_some(PulsePair { time, first, along })
+        (length(along) >= params.min_length).then_some(PulsePair { time, first, along })
     };
     let all: Vec<PulsePair> = (0..pulses.len()).filter_map(pair).collect();
-    if all.len() < MIN_PAIRS {
+    if all.len() < params.min_pairs {
         return None;
     }
-    let step = all.len().div_ceil(MAX_PAIRS);
+    let step = all.len().div_ceil(params.max_pairs);
     let pairs: Vec<&PulsePair> = all.iter().step_by(step).collect();
-    let angle_at = |shift: f64| median_angle(&pairs, trajectory, shift);
+    let angle_at = |shift: f64| median_angle(&pairs, trajectory, shift, params.min_known);
     let before = angle_at(0.0)?;
     let (mut best, mut least) = (0.0, before);
-    let mut width = FARTHEST;
-    for step in STEPS {
+    let mut width = params.max_offset;
+    for step in params.steps {
         #[expect(clippy::cast_possible_truncation, reason = "some tens of steps")]
         let count = (width / step).round() as i32;
         let around = best;
@@ -105,28 +132,29 @@ pub(super) fn time_offset(
         }
         width = step;
     }
-    let is_better = before > MIN_GAIN * least && before - least > MIN_ANGLE;
+    let is_better = before > params.min_gain * least && before - least > params.min_reduction;
     if !(is_better && TRAJECTORY_TIME.is_exceeded_by(best)) {
         return None;
     }
     let whole = best.round();
-    let of_clock = angle_at(whole).filter(|&angle| (best - whole).abs() <= NEAR_WHOLE && angle <= CERTAIN_ANGLE);
+    let of_clock =
+        angle_at(whole).filter(|&angle| (best - whole).abs() <= params.max_fraction && angle <= params.max_angle);
     Some(match of_clock {
         Some(angle) => TimeOffset { seconds: whole, is_applied: true, angles: [before, angle] },
         None => TimeOffset { seconds: best, is_applied: false, angles: [before, least] },
     })
 }
 
-/// Median angle between pulses and the directions to a path that is `shift` seconds later, radians; `None` where it is
-/// not known for most of them.
-fn median_angle(pairs: &[&PulsePair], trajectory: &Trajectory, shift: f64) -> Option<f64> {
+/// Returns the median angle between pulses and the directions to a path that is `shift` seconds later, radians. `None` if
+/// the path is known for less than the share `min_known` of them.
+fn median_angle(pairs: &[&PulsePair], trajectory: &Trajectory, shift: f64, min_known: f64) -> Option<f64> {
     let angle = |pair: &&PulsePair| {
         let from_scanner = sub(pair.first, trajectory.position_at(pair.time + shift)?);
         let dot: f64 = (0..3).map(|i| from_scanner[i] * pair.along[i]).sum();
         Some(length(cross(from_scanner, pair.along)).atan2(dot))
     };
     let mut angles: Vec<f64> = pairs.iter().filter_map(angle).collect();
-    if (angles.len() as f64) < MIN_KNOWN * pairs.len() as f64 {
+    if (angles.len() as f64) < min_known * pairs.len() as f64 {
         return None;
     }
     let middle = angles.len() / 2;

@@ -4,21 +4,20 @@ use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
-/// How far up the assumed scanner hangs over its point, metres: as high as surveys are flown, so that it is above
-/// everything.
+/// Height of the assumed scanner above its point, metres: a usual flying height, above everything.
 const HEIGHT: f32 = 1000.0;
 
-/// Share of the points with nothing above them from which on vertical pulses are a fair assumption. Clouds of aircraft
-/// have three quarters or more; where the scanner stood among walls it is a fifth, and carving by pulses that never
-/// were blocks most of what is visible.
+/// Minimum share of points with nothing above them for which vertical pulses are assumed. Clouds of aircraft have three
+/// quarters or more. Where the scanner stood among walls it is a fifth, and carving by wrong pulses blocks most of what
+/// is visible.
 pub(crate) const MIN_ASSUMED_SHARE: f64 = 0.5;
 
-/// Which points count as ends of vertical pulses.
+/// Selection of points that count as ends of vertical pulses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VerticalParams {
-    /// How far beside a point another may stand above it and hide it, metres, 0.05 to 10. Default 0.2, half the spacing
-    /// of usual surveys: on simulated towns 0.5 keeps so many pulses off walls that facades lose 9 points, 0.2 loses 3,
-    /// and 0.1 lets pulses through crowns.
+    /// Horizontal distance within which a point above hides another, metres, 0.05 to 10. Default 0.2, half the spacing
+    /// of usual surveys. On simulated towns, 0.5 keeps so many pulses off walls that facades lose 9 points; 0.2 loses
+    /// 3, and 0.1 lets pulses through crowns.
     pub reach: f32,
     /// Minimum height of that other point above this one, metres, 0 to 100. Default 0.5: with less, the slope of a roof
     /// hides itself.

@@ -40,7 +40,7 @@ pub trait Backend: Send + Sync + std::fmt::Debug {
         None
     }
 
-    /// What the processor had to do instead, and why, a line each.
+    /// Returns one line for each piece of work that fell to the processor, with the reason.
     fn notes(&self) -> Vec<String> {
         Vec::new()
     }
@@ -56,16 +56,16 @@ pub trait PreparedBackend: Send + Sync {
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled) and what the device reports.
     fn depth(&self, view: &View, start: f64, control: &Control<'_>) -> Result<DepthBounds>;
 
-    /// What is certain of the lines of sight without end of each of `targets`, (M, 3) local metres, in each of
-    /// `directions`, (D, 3) unit vectors. Neighbours among the targets stand close together in the list.
+    /// Settles the lines of sight without end of each of `targets`, (M, 3) local metres, in each of `directions`, (D,
+    /// 3) unit vectors. Targets that are neighbours in space are close in the list.
     ///
     /// # Errors
     /// As [`PreparedBackend::depth`].
     fn settle(&self, targets: &[[f32; 3]], directions: &[[f64; 3]], control: &Control<'_>) -> Result<Settled>;
 
-    /// What is certain of the lines of sight of each of `targets` to each of a few `viewers`, which stand in the place
-    /// of directions in what is returned; `None`, the default, where this backend is no faster than what is done
-    /// without it: lines of sight one by one, or a tree of targets.
+    /// Settles the lines of sight of each of `targets` to each of a few `viewers`, which take the place of directions
+    /// in the result. `None`, the default, if this backend is no faster than lines of sight one by one, or a tree of
+    /// targets.
     ///
     /// # Errors
     /// As [`PreparedBackend::depth`].
@@ -75,8 +75,8 @@ pub trait PreparedBackend: Send + Sync {
     }
 }
 
-/// By how much the depth of a pixel that a backend draws may differ from that of
-/// [`depth_map`](crate::depth::depth_map()), as a share of it: 1 mm at 100 m.
+/// Maximum difference between the depth of a pixel from a backend and that of [`depth_map`](crate::depth::depth_map()),
+/// as a share of it: 1 mm at 100 m.
 pub const DEPTH_MAP_TOLERANCE: f32 = 1e-5;
 
 /// Balls made ready to be drawn by a backend.
@@ -95,19 +95,19 @@ pub trait Drawable: Send + Sync {
 pub enum Viewers<'a> {
     /// Infinitely far away, in the directions of these unit vectors.
     Directions(&'a [[f64; 3]]),
-    /// At these places, local metres.
+    /// Viewers at these places, local metres.
     Eyes(&'a [[f64; 3]]),
 }
 
 impl Viewers<'_> {
-    /// How many there are.
+    /// Returns the number of viewers.
     #[must_use]
     pub fn len(&self) -> usize {
         let (Self::Directions(vectors) | Self::Eyes(vectors)) = self;
         vectors.len()
     }
 
-    /// Whether there is none.
+    /// Returns true if there is no viewer.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -124,14 +124,14 @@ impl Viewers<'_> {
     }
 }
 
-/// What is known of a line of sight.
+/// State of a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineAnswer {
     /// No ball blocks it.
     Free,
     /// A ball blocks it.
     Blocked,
-    /// Not known: the exact line of sight decides.
+    /// Undecided: the exact line of sight decides.
     Open,
 }
 
@@ -145,8 +145,7 @@ pub(super) const BLOCK: usize = WORDS * WORD;
 /// A bit for each target of a block.
 pub(super) type WordBits = [u64; WORDS];
 
-/// What a backend settled: for each target and direction, or viewer, whether the line of sight is free, blocked or
-/// still open.
+/// Result of a backend: free, blocked or open for each target and each direction or viewer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settled {
     direction_count: usize,
@@ -184,8 +183,8 @@ impl Settled {
         each_word(&mut self.blocked, [direction, count], blocked, |word, known| *word = known);
     }
 
-    /// Joins to what is known of all lines of a direction what is known of them past other balls, given as in
-    /// [`Settled::set_direction`]: free are those that are free past both, blocked those that any blocks.
+    /// Combines the result for a direction with one past other balls, given as in [`Settled::set_direction`]. Lines are
+    /// free if they are free past both, and blocked if either blocks them.
     pub fn join_direction(&mut self, direction: usize, free: &[u32], blocked: &[u32]) {
         let count = self.direction_count;
         each_word(&mut self.free, [direction, count], free, |word, known| *word &= known);
@@ -208,7 +207,7 @@ impl Settled {
         }
     }
 
-    /// What is known of a line.
+    /// Returns the state of a line.
     #[must_use]
     pub fn line(&self, target: usize, direction: usize) -> LineAnswer {
         let (at, word, bit) = self.place(target, direction);

@@ -23,8 +23,8 @@ pub struct BallTree {
     rule: BlockRule,
 }
 
-/// By how much radii are taken for larger until lines are tested exactly: far more than f32 errs. Metres, a share of
-/// the size of the scene, a share of the radius.
+/// Margin of radii until lines are tested exactly: far more than f32 errs. Metres, a share of the size of the scene, a
+/// share of the radius.
 pub(super) const MARGIN: f64 = 1e-3;
 const MARGIN_OF_SCENE: f64 = 1e-6;
 const MARGIN_OF_RADIUS: f32 = 1e-5;
@@ -133,7 +133,7 @@ impl BallTree {
         &self.balls
     }
 
-    /// How the balls block.
+    /// Returns the rule by which the balls block.
     #[must_use]
     pub fn rule(&self) -> &BlockRule {
         &self.rule
@@ -153,7 +153,8 @@ impl BallTree {
         Ray { origin: target, direction: towards, ranges: [bias.min(0.5 * range), range - bias.min(0.0)] }
     }
 
-    /// Where a line of sight leaves the ball of a row, metres from its target, if that ball blocks it.
+    /// Returns the distance from its target at which a line of sight leaves the ball of a row, metres, if that ball
+    /// blocks it.
     #[inline]
     pub(super) fn front(&self, row: usize, ray: &Ray) -> Option<f64> {
         self.rule.blocks_line(*self.balls.get(row)?, ray.origin, ray.direction, self.reach(ray))
@@ -165,34 +166,35 @@ impl BallTree {
         self.rule.blocked_piece(*self.balls.get(row)?, ray.origin, ray.direction, self.reach(ray))
     }
 
-    /// How far a line of sight of `BallTree::ray` reaches, metres.
+    /// Returns the reach of a line of sight of `BallTree::ray`, metres.
     #[inline]
     fn reach(&self, ray: &Ray) -> f64 {
         ray.ranges[1] + self.rule.bias.min(0.0)
     }
 
-    /// By how much more than their radius balls may lie beside a line until the line is tested exactly, where it is
-    /// compared with them in f32, metres; [`near_reach`] adds a share of the radius.
+    /// Returns the margin for comparing balls with lines in f32, metres: balls that far beyond their radius are tested
+    /// exactly. [`near_reach`] adds a share of the radius.
     pub(super) fn near_margin(&self) -> f32 {
         #[expect(clippy::cast_possible_truncation, reason = "what is rounded is far less than the margin")]
         let margin = (MARGIN + MARGIN_OF_SCENE * length(self.index.half_size())) as f32;
         margin
     }
 
-    /// Whether any ball blocks a line of sight.
+    /// Returns true if a ball blocks a line of sight.
     pub(crate) fn blocks(&self, ray: &Ray) -> bool {
         self.index.any(ray, |row| self.front(row, ray).is_some())
     }
 
-    /// Whether any ball blocks the line from `target` along `towards` to a picture plane or a near limit `range` metres
-    /// away.
+    /// Returns true if a ball blocks the line from `target` along `towards` to a picture plane or a near limit `range`
+    /// metres away.
     pub(super) fn blocks_before_plane(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
         let ray = Ray { origin: target, direction: towards, ranges: [self.rule.bias, range] };
         let blocks = |ball: &Ball| self.rule.blocks_before_plane(*ball, target, towards, range).is_some();
         self.index.any(&ray, |row| self.balls.get(row).is_some_and(blocks))
     }
 
-    /// Whether a ball holds an end of lines of sight, so that all of them are blocked ([`BlockRule::holds_end`]).
+    /// Returns true if a ball holds an end of lines of sight, so that all of them are blocked
+    /// ([`BlockRule::holds_end`]).
     pub(super) fn holds_end(&self, end: [f64; 3]) -> bool {
         let holds = |row: usize| self.balls.get(row).is_some_and(|ball| self.rule.holds_end(*ball, end));
         Ray::new(end, [0.0, 0.0, 1.0], [0.0, PROBE]).is_some_and(|ray| self.index.any(&ray, holds))

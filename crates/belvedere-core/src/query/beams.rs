@@ -1,11 +1,12 @@
 //! Many targets for one viewer at once: a tree of targets against the tree of balls.
 //!
-//! All lines of sight of a box of targets run within a beam: from an eye the hull of eye and box, from the sun the box
-//! drawn out along the direction. Balls that the beam of a node misses are left out for all targets below it, a ball
-//! that covers the whole beam answers them all, and where no ball is left all are visible. What remains are targets at
-//! the edge of shadows and close to surfaces; each of these is tested against the few balls in its beam. The answers
-//! are those of the exact lines of sight, to the last bit: a beam only ever leaves out balls that no line of sight in
-//! it can meet, and a shadow being convex, a ball that hides the corners of a box hides all in it.
+//! All lines of sight of a box of targets lie within a beam: the hull of eye and box, or for the sun the box swept
+//! along the direction. Balls that the beam of a node misses are left out for all targets below it. A ball that covers
+//! the whole beam answers them all; if no ball is left, all are visible. Targets at the edge of shadows and close to
+//! surfaces remain, and are tested one by one against the few balls in their beam.
+//!
+//! The answers are those of the exact lines of sight, to the last bit. A beam leaves out only balls that no line of
+//! sight in it can meet. A shadow is convex, so that a ball that hides the corners of a box hides all in it.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -30,10 +31,9 @@ use sweep::TreeSweep;
 const SHARE: usize = 4096;
 
 impl MedialScene {
-    /// The answer for each target, in the order in which they were given: the same as those of
-    /// [`super::Visibility::visible`], at a cost that grows with the border of the visible region rather than with the
-    /// number of targets. Targets that are not finite are [`Answer::OutsideView`], those beside or below the cloud
-    /// [`Answer::OutsideCloud`].
+    /// Returns the answer for each target, in the order given. Answers equal those of [`super::Visibility::visible`],
+    /// at a cost that grows with the border of the visible region instead of the number of targets. Targets that are
+    /// not finite are [`Answer::OutsideView`], those beside or below the cloud [`Answer::OutsideCloud`].
     ///
     /// # Errors
     /// [`Error::InvalidParameter`](belvedere_data::Error::InvalidParameter) for a viewer that is not finite,
@@ -84,9 +84,9 @@ impl MedialScene {
         Ok(answers)
     }
 
-    /// Calls `visit` with the place, in the order of the tree, of every target that nothing blocks, one at the viewer
-    /// itself among them, but none outside the cloud; what pulses prove is not considered. Runs on the calling thread;
-    /// the places ascend.
+    /// Calls `visit` with the place, in the order of the tree, of every target that nothing blocks. A target at the
+    /// viewer itself is one of them, a target outside the cloud is not; proof by pulses is not considered. Runs on the
+    /// calling thread; the places ascend.
     ///
     /// # Errors
     /// As [`MedialScene::answer_among`].
@@ -144,7 +144,7 @@ impl MedialScene {
         Ok(())
     }
 
-    /// What the backend settles of the targets of a tree at once, if it is fast at that.
+    /// Settles the targets of a tree on the backend, if that is fast.
     fn settled_few(
         &self,
         targets: &TargetTree,
@@ -157,8 +157,8 @@ impl MedialScene {
         self.prepared()?.settle_few(targets.positions(), viewers, control)
     }
 
-    /// Whether no ball blocks the line of sight of a target of which `line` is known; true for one at the viewer
-    /// itself.
+    /// Returns true if no ball blocks the line of sight of a target, given the state of its `line`. A target at the
+    /// viewer itself is visible.
     pub(super) fn sees(&self, viewer: Viewer<'_>, target: [f32; 3], line: LineAnswer) -> bool {
         match (line, viewer.sight(0, target)) {
             (LineAnswer::Free, _) | (LineAnswer::Open, None) => true,
@@ -169,7 +169,7 @@ impl MedialScene {
         }
     }
 
-    /// Whether anything but balls hides a target, or it lies outside the cloud.
+    /// Returns true if anything but balls hides a target, or it lies outside the cloud.
     fn is_hidden_otherwise(&self, viewer: Viewer<'_>, target: [f32; 3]) -> bool {
         let is_hidden = (self.triangles().is_some() || !self.far_terrain.is_empty())
             && viewer
@@ -178,8 +178,8 @@ impl MedialScene {
         is_hidden || self.is_outside_cloud(target.map(f64::from))
     }
 
-    /// Whether the view from `eye` of a target that no ball blocks is proven, both local metres;
-    /// [`Answer::OutsideView`] where the two are one.
+    /// Returns the answer for a `target` that no ball blocks from `eye`, both local metres: visible or unproven, unless
+    /// other obstacles block it. [`Answer::OutsideView`] if the two coincide.
     #[must_use]
     pub fn answer_unblocked_from(&self, eye: [f64; 3], target: [f64; 3]) -> Answer {
         match Ray::between(eye, target) {
@@ -189,7 +189,7 @@ impl MedialScene {
     }
 }
 
-/// Whether a viewer is an eye beside or below the cloud.
+/// Returns true if a viewer is an eye beside or below the cloud.
 fn is_eye_outside(scene: &MedialScene, viewer: Viewer<'_>) -> bool {
     matches!(viewer, Viewer::Eye(eye) if scene.is_outside_cloud(eye))
 }

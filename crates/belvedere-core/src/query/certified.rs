@@ -14,20 +14,19 @@ const CHUNK: usize = 1024;
 /// Depth beyond which bounds settle nothing, metres: there f64 itself errs by as much as bounds allow for.
 const FARTHEST_SETTLED: f64 = 1e7;
 
-/// Which answers a [`CertifiedMap`] gives.
+/// Scope of the answers of a [`CertifiedMap`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
-    /// Those of [`MedialScene::query_view`]: the picture and its limits of depth count, and lines of sight end there.
+    /// Answers of [`MedialScene::query_view`]: the picture and its limits of depth count, and lines of sight end there.
     View,
-    /// Those of [`MedialScene::answer`] for every target, as `visible` gives them for the viewer of the view, whose
-    /// picture only saves lines of sight: an eye, or a viewer infinitely far away.
+    /// Answers of [`MedialScene::answer`] for every target, as `visible` returns them for the viewer of the view: an
+    /// eye, or a viewer infinitely far away. The picture only saves lines of sight.
     Viewer,
 }
 
-/// Bounds of depth for each pixel of one view, or of several from one eye, over the balls of a [`MedialScene`]: a
-/// target nearer than the lower bound of its pixel is visible, one farther than the upper bound is blocked, and only
-/// what lies between needs a line of sight. Answers are those of the scene, every one; the resolution decides no more
-/// than the cost.
+/// Bounds of depth for each pixel of one view, or of several from one eye, over the balls of a [`MedialScene`]. A
+/// target nearer than the lower bound of its pixel is visible, one farther than the upper bound is blocked; only those
+/// between need a line of sight. Every answer is that of the scene; the resolution changes the cost only.
 ///
 /// # Source
 /// Bounds of the depth within a pixel serve as in Williams 1978, but from both sides; the proof is on the project's
@@ -38,23 +37,23 @@ pub struct CertifiedMap<'a> {
     scope: Scope,
 }
 
-/// How the answers of a [`CertifiedMap`] came about.
+/// Counts of answers of a [`CertifiedMap`] by how they were found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CertifiedReport {
     /// Targets queried.
     pub target_count: usize,
-    /// Of these, settled by a bound or outside the view.
+    /// Number settled by a bound, or outside the view.
     pub settled_count: usize,
 }
 
-/// Targets for each pixel from which on drawing bounds costs less than the lines of sight they save: a pixel costs 0.4
-/// to 1.2 µs, and a target saves 0.2 to 0.6 (a town of 700 000 balls on two cores).
+/// Minimum number of targets for each pixel for which bounds cost less than the lines of sight that they save. A pixel
+/// costs 0.4 to 1.2 µs, and a target saves 0.2 to 0.6 (a town of 700 000 balls on two cores).
 const TARGETS_PER_PIXEL: usize = 5;
 
 impl MedialScene {
-    /// The answer for each of `targets`, (M, 3) local metres, in `views` of one eye or of one parallel viewer: by a
-    /// [`CertifiedMap`] where there are more than a few targets a pixel, which then reports, by a line of sight each
-    /// where not. The answers are the same.
+    /// Returns the answer for each of `targets`, (M, 3) local metres, in `views` of one eye or of one parallel viewer.
+    /// With more than a few targets a pixel it uses a [`CertifiedMap`] and returns its report, otherwise a line of
+    /// sight each. The answers are the same.
     ///
     /// # Errors
     /// As [`CertifiedMap::new`], the paper's cone excepted, which lines of sight answer.
@@ -101,16 +100,16 @@ fn check_views(views: &[View]) -> Result<()> {
 pub(super) struct LineInView {
     /// All of it, from the target on where it ends at a plane.
     pub(super) sight: Ray,
-    /// Where it ends.
+    /// End of the line on the side of the viewer.
     pub(super) end: LineEnd,
 }
 
-/// Where the line of sight of a target in a view ends.
+/// End of the line of sight of a target in a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LineEnd {
-    /// At the viewer.
+    /// End at the viewer.
     Viewer,
-    /// At the picture plane, or the near limit of a view from an eye.
+    /// End at the picture plane, or the near limit of a view from an eye.
     Plane,
 }
 
@@ -233,20 +232,20 @@ impl<'a> CertifiedMap<'a> {
     }
 }
 
-/// Whether a bound was enough.
+/// Result of comparing a target with the bounds.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum BoundCheck {
     Settled,
     ByLineOfSight,
 }
 
-/// Who looks through a view.
+/// Returns the viewer of a view.
 pub(super) fn viewer_of(view: &View) -> Viewer<'static> {
     if view.is_central() { Viewer::Eye(view.frame.eye) } else { Viewer::Direction(view.frame.forward.map(|v| -v)) }
 }
 
-/// The line of sight of a target within the picture and limits of `view`, up to its picture plane or near limit, or to
-/// the eye of a view without such a limit; `None` for any other target.
+/// Returns the line of sight of a target within the picture and limits of `view`. It ends at the picture plane or near
+/// limit, or at the eye of a view without such a limit. `None` for any other target.
 pub(super) fn line_in_view(view: &View, target: [f32; 3]) -> Option<LineInView> {
     let place = view.project(target)?;
     view.pixel(place)?;

@@ -1,24 +1,23 @@
-//! How high a target must stand to be seen over what blocks it.
+//! Minimum visible height: how high a target must be to be seen over obstacles.
 
 use super::skyline::cut;
 use super::{EarthParams, MedialScene};
 use crate::triangle_tree::Corners;
 use belvedere_data::vector::{length, sub, unit};
 
-/// Least step upward, metres: where rounding leaves a line of sight in a ball whose top it just reached.
+/// Minimum step upward, metres: for rounding that leaves a line of sight in a ball whose top it just reached.
 const MIN_STEP: f64 = 1e-3;
 /// To what the top of a ball that gives way to the target is known, metres.
 const TOP_TOLERANCE: f64 = 1e-3;
 
 impl MedialScene {
-    /// The least height above `foot`, local metres, at which `observer` sees a target straight above it, metres: 0
-    /// where the foot itself is seen; `None` where nothing up to `ceiling` metres is. What is meant is the lowest such
-    /// height, also where higher ones are blocked again, as below a bridge. At most 2 mm above the true one for the
-    /// balls of the scene; pulses are not considered.
+    /// Returns the lowest visible height above `foot`, local metres, for `observer`, metres: 0 if the foot itself is
+    /// visible, `None` if nothing is up to `ceiling` metres. Higher places may be blocked again, as below a bridge. The
+    /// height exceeds the true one of the balls by at most 2 mm; pulses are not considered.
     ///
-    /// Every ball blocks one interval of heights, so each step goes to the top of the highest of all balls that block
-    /// at once, in closed form: the upper tangent from the observer, or the ball's own top. Tops of balls near the
-    /// target, which give way to it, are bisected.
+    /// Every ball blocks one interval of heights. Each step therefore rises to the top of the highest ball that blocks
+    /// at that height, in closed form: the upper tangent from the observer, or the ball's own top. Tops of balls near
+    /// the target, which give way to it, are found by bisection.
     #[must_use]
     pub fn min_visible_height(
         &self,
@@ -55,7 +54,8 @@ impl MedialScene {
         }
     }
 
-    /// Where a blocking ball ends upward on the vertical through `target`, local metres: infinite where it never does.
+    /// Returns the height at which a ball stops blocking on the vertical through `target`, local metres; infinite if it
+    /// never does.
     fn top(&self, number: usize, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> f64 {
         let Some(ball) = self.tree().balls().get(number) else { return target[2] };
         let (center, radius) = (ball.center.map(f64::from), f64::from(ball.radius));
@@ -91,7 +91,7 @@ impl MedialScene {
     }
 }
 
-/// Where the shadow that a triangle casts from `observer` ends upward on the vertical through `target`.
+/// Returns the upper end of the shadow that a triangle casts from `observer` on the vertical through `target`.
 fn shadow_top_of_triangle(corners: &Corners, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> f64 {
     let across = [target[0] - observer[0], target[1] - observer[1]];
     let span = across[0].hypot(across[1]);
@@ -121,7 +121,7 @@ fn shadow_top_of_triangle(corners: &Corners, observer: [f64; 3], target: [f64; 3
     observer[2] + shadow(ends[0]).max(shadow(ends[1])) + fall(span)
 }
 
-/// Where the shadow that a whole ball casts from `observer` ends upward on the vertical through `target`.
+/// Returns the upper end of the shadow that a whole ball casts from `observer` on the vertical through `target`.
 fn shadow_top(center: [f64; 3], radius: f64, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> f64 {
     let across = [target[0] - observer[0], target[1] - observer[1]];
     let span = across[0].hypot(across[1]);

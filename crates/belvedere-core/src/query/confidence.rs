@@ -1,4 +1,4 @@
-//! How likely a target is visible: a probability with every answer.
+//! Probability that a target is visible, with every answer.
 //!
 //! An answer is wrong mostly where its line of sight passes close to an edge of what the scene holds, or through space
 //! that no pulse saw. So the probability follows from lines parallel to it ([`ParallelLines`]), from the length that no
@@ -36,23 +36,23 @@ const CROWNS_DEPTH: f64 = 2.4;
 /// Probabilities are no nearer to 0 and 1 before logarithms are taken.
 const MIN_PROBABILITY: f64 = 1e-4;
 
-/// What speaks for a target being visible, and against it.
+/// Evidence for and against a target being visible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
     /// The line of sight and those beside it.
     pub lines: ParallelLines,
-    /// Whether an end lies inside an obstacle.
+    /// True if an end lies inside an obstacle.
     pub is_inside_obstacle: bool,
-    /// Whether both ends lie below the highest return: a line to an aircraft is like one to the sky.
+    /// True if both ends lie below the highest return: a line to an aircraft is like one to the sky.
     pub is_between_places: bool,
-    /// Whether scanners stood on the ground.
+    /// True if scanners stood on the ground.
     pub is_from_ground: bool,
     /// About how much of the line no pulse came near to, metres ([`Proof::sampled_unproven_length`]); 8 or more where
     /// it is 8 or more.
     pub unproven_length: f64,
 }
 
-/// What a score is given for.
+/// Term of the score.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Term {
     /// The answer alone.
@@ -63,7 +63,7 @@ enum Term {
     /// Lines of the inner ring that end inside an obstacle, and of the outer.
     HeldNear,
     HeldFar,
-    /// Whether an end is inside an obstacle.
+    /// End inside an obstacle.
     Inside,
     /// The class of the length that no pulse came near to, towards the sun or the sky, and between two places.
     UnprovenSky,
@@ -86,7 +86,7 @@ impl Term {
         (Self::UnprovenSkyFromGround, "unproven_sky_from_ground"),
         (Self::UnprovenPairFromGround, "unproven_pair_from_ground"),
     ];
-    /// Most classes of a term.
+    /// Maximum number of classes of a term.
     const CLASSES: usize = 9;
 }
 
@@ -99,7 +99,7 @@ pub struct ScoreKey {
 }
 
 impl std::fmt::Display for ScoreKey {
-    /// As a line of the file of scores begins.
+    /// Writes the beginning of a line of the file of scores.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (_, name) = Term::ALL[self.term as usize];
         write!(f, "{name},{},{}", if self.is_free { "free" } else { "blocked" }, self.class)
@@ -129,7 +129,7 @@ impl Evidence {
     /// Length that no pulse came near to from which on more makes no difference, metres.
     pub const MAX_UNPROVEN: f64 = MAX_UNPROVEN;
 
-    /// That of a line of sight, of which all parts of a scene block so much, where scanners were in the air.
+    /// Creates the evidence for a line of sight from the lines blocked by all parts of a scene (airborne surveys).
     #[must_use]
     pub fn from_the_air(blocked: BlockedLines, is_between_places: bool, unproven_length: f64) -> Self {
         Self {
@@ -165,12 +165,12 @@ impl Evidence {
         terms.into_iter().map(move |(term, class)| ScoreKey { term, is_free, class })
     }
 
-    /// How likely the target is lit, 0 to 1, where crowns of this optical depth stand before it, of whose line this is
-    /// the evidence past all balls, and `solid` is what those block that are no vegetation.
+    /// Returns the probability that the target is lit, 0 to 1, behind crowns of the optical depth `depth`. `self` is
+    /// the evidence past all balls; `solid` has the lines that balls without vegetation block.
     ///
-    /// Where crowns play no part, it is [`Evidence::probability`]. Otherwise light gets past what is solid with the
-    /// probability that solid balls alone give, and through crowns with one that follows from the optical depth and
-    /// from the evidence past all balls; both must be.
+    /// Without crowns it equals [`Evidence::probability`]. Otherwise light must pass both solids and crowns. The
+    /// probability for solids follows from solid balls alone, that for crowns from the optical depth and from the
+    /// evidence past all balls.
     #[must_use]
     pub fn probability_among_crowns(&self, solid: BlockedLines, depth: f64) -> f32 {
         let without_crowns = Self { lines: solid.lines(), is_inside_obstacle: solid.is_inside_obstacle(), ..*self };
@@ -185,7 +185,7 @@ impl Evidence {
         lit
     }
 
-    /// How likely the target is visible, 0 to 1.
+    /// Returns the probability that the target is visible, 0 to 1.
     #[must_use]
     pub fn probability(&self) -> f32 {
         let scores = &FITTED;
@@ -198,9 +198,9 @@ impl Evidence {
 }
 
 impl MedialScene {
-    /// What speaks for the target of a line of sight being visible: the line from `target`, local metres, to `range`
-    /// metres (infinite for a direction) along the unit vector `towards`. All numbers but the range must be finite.
-    /// `None` where pulses are not known.
+    /// Returns the evidence for a line of sight from `target`, local metres, to `range` metres (infinite for a
+    /// direction) along the unit vector `towards`. All numbers but the range must be finite. `None` if pulses are not
+    /// known.
     #[must_use]
     pub fn evidence(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Option<Evidence> {
         Some(self.evidence_with(self.proof.as_ref()?, target, towards, range))
@@ -215,9 +215,9 @@ impl MedialScene {
         Evidence { is_from_ground, ..Evidence::from_the_air(blocked, is_between_places, unproven_length) }
     }
 
-    /// How likely each of `targets`, (M, 3) local metres, is visible for `viewer`, 0 to 1, (M); NaN where
-    /// [`MedialScene::visible_from`] has no answer: a target that is not finite, is the viewer itself, or lies outside
-    /// the cloud. Progress counts targets.
+    /// Returns the probability that each of `targets`, (M, 3) local metres, is visible for `viewer`, 0 to 1, (M). NaN
+    /// where [`MedialScene::visible_from`] has no answer: a target that is not finite, is the viewer itself, or lies
+    /// outside the cloud. Progress counts targets.
     ///
     /// # Errors
     /// As [`MedialScene::visible_from`], and [`Error::InvalidParameter`] where pulses are not known.
@@ -240,8 +240,8 @@ impl MedialScene {
         self.probabilities(targets.len(), sight, control)
     }
 
-    /// How likely the two ends of each of `pairs`, local metres, see each other, 0 to 1; NaN where an end is not finite
-    /// or lies outside the cloud, or both are the same. Progress counts pairs.
+    /// Returns the probability that the two ends of each of `pairs`, local metres, see each other, 0 to 1. NaN if an
+    /// end is not finite or lies outside the cloud, or both coincide. Progress counts pairs.
     ///
     /// # Errors
     /// As [`MedialScene::visible_probabilities`].
@@ -254,8 +254,8 @@ impl MedialScene {
         self.probabilities(pairs.len(), sight, control)
     }
 
-    /// As [`MedialScene::visible_probabilities`], for light through crowns that were measured: `solid` is this scene
-    /// without its vegetation, `medium` its vegetation.
+    /// Computes [`MedialScene::visible_probabilities`] for light through measured crowns: `solid` is this scene without
+    /// its vegetation, `medium` its vegetation.
     ///
     /// # Errors
     /// Those of [`MedialScene::visible_probabilities`].
@@ -313,13 +313,13 @@ impl MedialScene {
     }
 }
 
-/// How certain an answer must be to count: the least probability of what is more likely, visible or not, above 0.5 and
-/// at most 1.
+/// Minimum probability of the more likely answer, visible or not, for which it counts as certain: above 0.5 and at most
+/// 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certainty(f32);
 
 impl Certainty {
-    /// That of a least probability.
+    /// Creates the certainty of a minimum probability.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a number that is not above 0.5 and at most 1.
@@ -335,13 +335,13 @@ impl Certainty {
         })
     }
 
-    /// Whether a target with a probability of being visible is certainly visible; false for NaN.
+    /// Returns true if a target with this probability is certainly visible; false for NaN.
     #[must_use]
     pub fn is_visible(self, probability: f32) -> bool {
         probability >= self.0
     }
 
-    /// Whether an answer with a probability of being visible is less certain; false for NaN.
+    /// Returns true if an answer with this probability of being visible is less certain; false for NaN.
     #[must_use]
     pub fn is_missed_by(self, probability: f32) -> bool {
         probability.max(1.0 - probability) < self.0

@@ -4,11 +4,11 @@ use super::{Answer, Viewer};
 use belvedere_data::Bounds;
 use rayon::prelude::*;
 
-/// How far beside and below its points a cloud still counts as known, metres: points of airborne surveys lie up to a
-/// metre apart, so that the edge of a cloud is no sharper.
+/// Distance beside and below its points up to which a cloud counts as known, metres. Points of airborne surveys lie up
+/// to a metre apart, so that the edge of a cloud is no sharper.
 const MARGIN: f64 = 1.0;
-/// How far above its highest point a position may lie, metres. Nothing stands there, so that an aircraft or a drone may
-/// look from there; what lies higher is a mistake in the coordinates.
+/// Maximum height of a position above the highest point, metres. The air there is free, so that an aircraft or a drone
+/// may look from it; a higher position is a mistake in the coordinates.
 pub(super) const CEILING: f64 = 10_000.0;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 4096;
@@ -36,23 +36,22 @@ impl Coverage {
         self.bounds
     }
 
-    /// Whether `position`, local metres, lies on the map of the cloud, whatever its height.
+    /// Returns true if `position`, local metres, lies over the cloud in plan, at any height.
     #[must_use]
     pub fn holds_on_map(&self, position: [f64; 3]) -> bool {
         let (low, high) = self.bounds.corners();
         (0..2).all(|i| (low[i] - MARGIN..=high[i] + MARGIN).contains(&position[i]))
     }
 
-    /// Whether `position`, local metres, lies over the cloud. False for one that is not finite.
+    /// Returns true if `position`, local metres, lies over the cloud. False for one that is not finite.
     #[must_use]
     pub fn holds(&self, position: [f64; 3]) -> bool {
         let (low, high) = self.bounds.corners();
         self.holds_on_map(position) && (low[2] - MARGIN..=high[2] + CEILING).contains(&position[2])
     }
 
-    /// Whether lines of sight may end at `position`, local metres: over the cloud, or beside it, up to 10 km away, in
-    /// the air above all of it. What stands between the two is unknown and counts as free, as everything beside the
-    /// cloud.
+    /// Returns true if lines of sight may end at `position`, local metres: over the cloud, or up to 10 km beside it and
+    /// above all of it. The space between the two is unknown and counts as free, as everything beside the cloud.
     #[must_use]
     pub fn holds_end(&self, position: [f64; 3]) -> bool {
         let (low, high) = self.bounds.corners();
@@ -60,7 +59,7 @@ impl Coverage {
         self.holds(position) || (is_near && (high[2]..=high[2] + CEILING).contains(&position[2]))
     }
 
-    /// Whether the box between two corners, local metres, meets the space over the cloud.
+    /// Returns true if the box between two corners, local metres, meets the space over the cloud.
     #[must_use]
     pub fn meets(&self, low: [f64; 3], high: [f64; 3]) -> bool {
         let (first, last) = self.bounds.corners();
@@ -82,7 +81,7 @@ impl Coverage {
         positions.par_iter().with_min_len(CHUNK).filter(is_beside).count()
     }
 
-    /// Whether a finite `position`, local metres, does not lie over the cloud.
+    /// Returns true if a finite `position`, local metres, does not lie over the cloud.
     #[must_use]
     pub fn is_outside(&self, position: [f32; 3]) -> bool {
         position.iter().all(|v| v.is_finite()) && !self.holds(position.map(f64::from))

@@ -13,14 +13,14 @@ pub const EARTH_RADIUS: f64 = 6_371_008.8;
 pub const CURVED_FROM: f64 = 2000.0;
 /// Horizontal length of a chord, metres: with the usual refraction it lies 4 mm off the curve at most.
 const CHORD: f64 = 500.0;
-/// Most chords of one line.
+/// Maximum number of chords of one line.
 const MAX_CHORDS: f64 = 10_000.0;
 
-/// Which lines of sight follow the curvature of the earth.
+/// Lines of sight that follow the curvature of the earth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Curvature {
-    /// Those longer than [`CURVED_FROM`].
+    /// Lines longer than [`CURVED_FROM`].
     #[default]
     Auto,
     /// All.
@@ -29,15 +29,14 @@ pub enum Curvature {
     Off,
 }
 
-/// How lines of sight run over the earth.
+/// Parameters of lines of sight over the curved earth.
 ///
-/// In a map with heights above the sea a straight line of sight is a parabola that sags below the straight line between
-/// its ends, by (1 − k) · s · (S − s) / 2R at the horizontal distance s of S, where k is the refraction and R the
-/// radius.
+/// In a map with heights above the sea a straight line of sight is a parabola. It sags below the straight line between
+/// its ends by (1 − k) · s · (S − s) / 2R at the horizontal distance s of S. k is the refraction and R the radius.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct EarthParams {
-    /// Which lines are curved. Default: those of more than 2 km.
+    /// Lines that are curved. Default: lines of more than 2 km.
     pub curvature: Curvature,
     /// Coefficient of refraction, 0 (none) to below 1: the share of the curvature that light follows. Default 1/7, as
     /// in GDAL and GRASS.
@@ -81,7 +80,7 @@ impl EarthParams {
         Ok(())
     }
 
-    /// Whether the line between two points is curved.
+    /// Returns true if the line between two points is curved.
     #[must_use]
     pub fn bends(&self, from: [f64; 3], to: [f64; 3]) -> bool {
         match self.curvature {
@@ -91,31 +90,31 @@ impl EarthParams {
         }
     }
 
-    /// How far below the level plane of an observer a place sinks that lies `span` metres away on the map, metres.
+    /// Returns the depth below the level plane of an observer of a place `span` metres away on the map, metres.
     #[must_use]
     pub(super) fn fall(&self, span: f64) -> f64 {
         (1.0 - self.refraction) * span * span / (2.0 * self.radius)
     }
 
-    /// By how much places sink for each square metre of their distance on the map: 0 over a plane.
+    /// Returns the fall of places for each square metre of their squared distance in plan, 1/m: 0 over a plane.
     #[must_use]
     pub(super) fn fall_rate(&self) -> f64 {
         if self.curvature == Curvature::Off { 0.0 } else { self.fall(1.0) }
     }
 
-    /// The tangent of the elevation at which a place appears that lies `rise` metres higher on the map and `span`
-    /// metres away: that of the line of sight where it starts.
+    /// Returns the tangent of the apparent elevation of a place that lies `rise` metres higher on the map and `span`
+    /// metres away. It is the slope of the line of sight at its start.
     pub(super) fn apparent_tangent(&self, rise: f64, span: f64) -> f64 {
         rise / span - self.fall_rate() * span
     }
 
-    /// How much higher a line of sight that starts with this tangent lies `span` metres on, on the map, metres.
+    /// Returns the rise on the map, metres, of a line of sight that starts with this tangent, after `span` metres.
     pub(super) fn height_along(&self, tangent: f64, span: f64) -> f64 {
         (tangent + self.fall_rate() * span) * span
     }
 
-    /// How far the line lies below the straight one between its ends, metres, at the share `share` of the horizontal
-    /// length `span`, metres.
+    /// Returns the depth of the line below the straight one between its ends, metres, at the share `share` of the
+    /// horizontal length `span`, metres.
     #[must_use]
     pub fn sag(&self, span: f64, share: f64) -> f64 {
         (1.0 - self.refraction) * span * span * share * (1.0 - share) / (2.0 * self.radius)

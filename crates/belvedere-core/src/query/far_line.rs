@@ -36,7 +36,7 @@ impl<'a> FarLine<'a> {
         [self.observer[0] + self.along[0] * span, self.observer[1] + self.along[1] * span, height]
     }
 
-    /// How far a place on it lies from the observer on the map, metres.
+    /// Returns the horizontal distance of a place on the line from the observer, metres.
     pub(super) fn span_to(&self, place: [f64; 3]) -> f64 {
         (place[0] - self.observer[0]).hypot(place[1] - self.observer[1])
     }

@@ -7,33 +7,34 @@ use crate::ray_index::in_order;
 use belvedere_data::vector::{length, sub};
 
 impl MedialScene {
-    /// Whether a position, local metres, lies beyond the cloud and over the raster of
+    /// Returns true if a position, local metres, lies beyond the cloud and over the raster of
     /// [`MedialScene::with_far_terrain`], so that lines of sight to it have answers. It may lie below the surface, and
-    /// its height may be NaN. False where it is not known over which space the cloud lies.
+    /// its height may be NaN. False if the extent of the cloud is not known.
     #[must_use]
     pub fn is_on_far_terrain(&self, position: [f64; 3]) -> bool {
         self.coverage().is_some_and(|coverage| !coverage.holds_on_map(position)) && self.far_terrain.holds(position)
     }
 
-    /// Whether a position, local metres, lies neither over the cloud nor over far terrain.
+    /// Returns true if a position, local metres, lies neither over the cloud nor over far terrain.
     #[must_use]
     pub fn is_outside(&self, position: [f64; 3]) -> bool {
         self.is_outside_cloud(position) && !self.is_on_far_terrain(position)
     }
 
-    /// Whether the line of sight between two ends, local metres, leaves the cloud for far terrain, and has an answer.
+    /// Returns true if the line of sight between two ends, local metres, leaves the cloud for far terrain, and has an
+    /// answer.
     #[must_use]
     pub fn leaves_cloud(&self, ends: [[f64; 3]; 2]) -> bool {
         ends.into_iter().any(|end| self.is_on_far_terrain(end)) && !ends.into_iter().any(|end| self.is_outside(end))
     }
 
-    /// Whether `observer` sees `target`, local metres, where one of them or both lie beyond the cloud. Visible,
-    /// blocked, or unproven where pulses are known; [`Answer::OutsideView`] where a coordinate is not finite or one end
-    /// is above the other.
+    /// Returns whether `observer` sees `target`, local metres, if one or both lie beyond the cloud. Visible, blocked,
+    /// or unproven where pulses are known; [`Answer::OutsideView`] if a coordinate is not finite or one end is above
+    /// the other.
     ///
-    /// Over the box of the cloud on the map, balls and added meshes block as they block any line of sight between the
-    /// same ends ([`MedialScene::sight_answer`]), and pulses prove it. Beyond this box, and a cell of the raster around
-    /// it, the raster of [`MedialScene::with_far_terrain`] blocks where it rises above the line: the same surface over
+    /// Over the box of the cloud in plan, balls and added meshes block as on any line of sight between the same ends
+    /// ([`MedialScene::sight_answer`]), and pulses prove it. Beyond this box, and a cell of the raster around it, the
+    /// raster of [`MedialScene::with_far_terrain`] blocks where it rises above the line. It is the same surface over
     /// the same earth as for horizons. A target on the surface does not hide itself. The profile of far terrain, which
     /// has no distances, is not considered.
     #[must_use]

@@ -1,16 +1,18 @@
-//! How far one sees from an eye along a direction.
+//! Range of free sight from an eye along a direction.
 
-use super::medial_scene::nearer;
+use super::medial_scene::nearest_blocker;
 use super::triangles::LineEnds;
 use super::{Blocker, MedialScene};
 use crate::ray_index::Ray;
 use belvedere_data::vector::{dot, sub};
 
 impl MedialScene {
-    /// What an eye at `eye`, local metres, sees along the unit vector `direction` within `reach` metres (may be
-    /// infinite), and its range, metres. `None` where nothing blocks. Balls that hold the eye are left out, as for
-    /// every line of sight; none gives way, since there is no target. A patch of a surface gives way to the eye only:
-    /// of what it hides, the 0.15 m right behind it still count as its surface for [`MedialScene::answer`].
+    /// Returns the first obstacle that an eye at `eye`, local metres, sees along the unit vector `direction` within
+    /// `reach` metres (may be infinite), and its range, metres. `None` if nothing blocks. Balls that hold the eye are
+    /// left out, as for every line of sight. The surface tolerance is not applied, since there is no target.
+    ///
+    /// A surface patch gives way to the eye only: places up to 0.15 m behind it still count as its surface for
+    /// [`MedialScene::answer`].
     #[must_use]
     pub fn seen_along(&self, eye: [f64; 3], direction: [f64; 3], reach: f64) -> Option<(Blocker, f64)> {
         let ray = Ray { origin: eye, direction, ranges: [0.0, reach] };
@@ -19,17 +21,17 @@ impl MedialScene {
         });
         let ball = ball.and_then(|(number, range)| Some((self.blocker_of_ball(number)?, range)));
         let ends = LineEnds { target: eye, viewer: None };
-        nearer(ball, self.triangles().and_then(|triangles| triangles.nearest(&ray, &ends)))
+        nearest_blocker(ball, self.triangles().and_then(|triangles| triangles.nearest(&ray, &ends)))
     }
 
-    /// What a place on a surface, such as a window, has before it along the unit vector `direction`, without end, and
-    /// its range, metres. `None` where nothing blocks.
+    /// Returns the first obstacle before a place on a surface, such as a window, along the unit vector `direction`, and
+    /// its range, metres. `None` if nothing blocks.
     ///
-    /// Other than for [`MedialScene::seen_along`] the place is a target: balls near it give way by
-    /// [`BlockRule::shell`](super::BlockRule::shell), so that the surface that it lies on does not hide what is beside
-    /// it. Something blocks in exactly the directions that the visibility matrix has as blocked by balls and meshes. Of
-    /// all balls that block, this is the one that the line enters first; the range is 0 in a ball that holds the place
-    /// even so.
+    /// In contrast to [`MedialScene::seen_along`] the place is a target. Balls near it give way by
+    /// [`BlockRule::shell`](super::BlockRule::shell), so that the surface of the place does not hide what is beside it.
+    /// An obstacle is found in exactly the directions that the visibility matrix has as blocked by balls and meshes. Of
+    /// all balls that block, it is the one that the line enters first. The range is 0 in a ball that holds the place
+    /// even with the shell.
     #[must_use]
     pub fn seen_from_surface(&self, place: [f64; 3], direction: [f64; 3]) -> Option<(Blocker, f64)> {
         // a ball may be entered before the bias, after which it must be left
@@ -43,6 +45,6 @@ impl MedialScene {
         let ball = ball.and_then(|(number, range)| Some((self.blocker_of_ball(number)?, range)));
         let line = Ray { ranges: [0.0, f64::INFINITY], ..ray };
         let ends = LineEnds { target: place, viewer: None };
-        nearer(ball, self.triangles().and_then(|triangles| triangles.nearest(&line, &ends)))
+        nearest_blocker(ball, self.triangles().and_then(|triangles| triangles.nearest(&line, &ends)))
     }
 }

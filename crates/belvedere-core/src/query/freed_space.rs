@@ -72,7 +72,7 @@ impl FreedSpace {
 }
 
 /// The parts of a line that lie outside all of `spaces`: from and to.
-pub(super) fn outside(spaces: &[FreedSpace], ray: &Ray) -> Vec<[f64; 2]> {
+pub(super) fn pieces_outside(spaces: &[FreedSpace], ray: &Ray) -> Vec<[f64; 2]> {
     spaces.iter().fold(vec![ray.ranges], |pieces, space| {
         let mut outside = Vec::with_capacity(pieces.len() + 1);
         pieces.into_iter().for_each(|piece| space.cut(ray, piece, &mut outside));
@@ -93,7 +93,7 @@ mod tests {
         }
         let space = [FreedSpace::new(grid, tops).unwrap()];
         let cut = |origin: [f64; 3], direction: [f64; 3], end: f64| {
-            outside(&space, &Ray { origin, direction, ranges: [0.0, end] })
+            pieces_outside(&space, &Ray { origin, direction, ranges: [0.0, end] })
         };
         assert_eq!(cut([-2.0, 1.5, 3.0], [1.0, 0.0, 0.0], 10.0), [[0.0, 3.0], [5.0, 10.0]]);
         assert_eq!(cut([-2.0, 1.5, 5.5], [1.0, 0.0, 0.0], 10.0), [[0.0, 10.0]]);

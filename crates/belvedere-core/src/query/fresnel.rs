@@ -16,7 +16,7 @@ const FREQUENCIES_GHZ: [f64; 2] = [0.001, 1000.0];
 /// Length of the pieces of a link whose boxes are searched for obstacles, metres: shorter ones search less air and more
 /// often.
 const PIECE: f64 = 16.0;
-/// Most pieces of a link: longer ones have longer pieces.
+/// Maximum number of pieces of a link: longer ones have longer pieces.
 const MAX_PIECES: f64 = 10_000.0;
 /// Steps in which the narrowest place of a zone is found: each keeps two thirds of the range.
 const STEPS: usize = 60;
@@ -82,8 +82,8 @@ impl Link {
         if self.is_bent { self.earth.sag(self.span, (along / self.length).clamp(0.0, 1.0)) } else { 0.0 }
     }
 
-    /// How far along the straightened link a place lies, and how far beside it, metres.
-    fn beside(&self, place: [f64; 3]) -> [f64; 2] {
+    /// Returns the distance of a place along the straightened link, and its distance from the link, metres.
+    fn position_along(&self, place: [f64; 3]) -> [f64; 2] {
         let [x, y, z] = sub(place, self.start);
         let raised = [x, y, z + self.sag(dot([x, y, z], self.axis))];
         let along = dot(raised, self.axis);
@@ -96,7 +96,7 @@ impl Link {
         self.wave.zone_radius([along, self.length - along])
     }
 
-    /// The part of the radius of the zone that is free if something lies `beside` metres from the line at `along`:
+    /// Returns the free share of the radius of the zone for an obstacle `beside` metres from the line at `along`. It is
     /// infinite at the ends, where the zone is a point.
     fn share(&self, along: f64, beside: f64) -> f64 {
         let radius = self.radius(along);
@@ -105,7 +105,7 @@ impl Link {
 
     /// The share of the zone that a ball of `radius` metres leaves free, if it is less than `max`.
     fn share_beside(&self, center: [f64; 3], radius: f64, max: f64) -> f64 {
-        let [along, beside] = self.beside(center);
+        let [along, beside] = self.position_along(center);
         let [from, to] = [(along - radius).max(0.0), (along + radius).min(self.length)];
         if from >= to || beside - radius >= max * self.radius((self.length / 2.0).clamp(from, to)) {
             return f64::INFINITY;
@@ -122,7 +122,7 @@ impl Link {
         // it leaves at least what the sphere around it leaves; the sag raises its corners by less than this beside its
         // middle
         let around = reach * (1.0 + 4.0 * self.sag(self.length / 2.0) / self.length);
-        if self.beside(middle)[1] - around >= max * self.radius(self.length / 2.0) {
+        if self.position_along(middle)[1] - around >= max * self.radius(self.length / 2.0) {
             return f64::INFINITY;
         }
         let beside_ends = self.between_ends(corners);
@@ -135,7 +135,7 @@ impl Link {
             min(0.0, 1.0, |across| {
                 let [from, to] = [pair[0], pair[1]].map(|corner| between(a, corner, across));
                 min(0.0, 1.0, |t| {
-                    let [along, beside] = self.beside(between(from, to, t));
+                    let [along, beside] = self.position_along(between(from, to, t));
                     self.share(along, beside)
                 })
             })
@@ -148,7 +148,7 @@ impl Link {
         let mut part = corners.to_vec();
         for beyond in [|_: &Self, along: f64| -along, |link: &Self, along: f64| along - link.length] {
             let whole = std::mem::take(&mut part);
-            let depths: Vec<f64> = whole.iter().map(|&corner| beyond(self, self.beside(corner)[0])).collect();
+            let depths: Vec<f64> = whole.iter().map(|&corner| beyond(self, self.position_along(corner)[0])).collect();
             for i in 0..whole.len() {
                 let next = (i + 1) % whole.len();
                 if depths[i] <= 0.0 {
@@ -181,7 +181,7 @@ impl Link {
         })
     }
 
-    /// How far a piece of this length lies from its chord at most, metres.
+    /// Returns the maximum distance of a piece of this length from its chord, metres.
     fn sag_within(&self, piece: f64) -> f64 {
         if self.is_bent { self.earth.sag(self.span * piece / self.length, 0.5) } else { 0.0 }
     }
@@ -202,9 +202,9 @@ fn min(mut from: f64, mut to: f64, value: impl Fn(f64) -> f64) -> f64 {
 }
 
 impl MedialScene {
-    /// How much of the first Fresnel zone of a radio link between two points, local metres, is free: the share of its
-    /// radius that nothing reaches into, 0 where something touches the line itself, and at most `max`. A zone counts as
-    /// free from 0.6 on (ITU-R P.530). NaN for points that are not finite, or are the same.
+    /// Returns the free share of the radius of the first Fresnel zone of a radio link between two points, local metres.
+    /// It is 0 if something touches the line itself, and at most `max`. A zone counts as free from 0.6 on (ITU-R
+    /// P.530). NaN for points that are not finite, or coincide.
     ///
     /// Balls that hold an end are left out and balls near an end give way to it, as to a target; so do triangles on
     /// which an end lies. Whether the line of sight is proven is another question, and far terrain is not
@@ -214,7 +214,7 @@ impl MedialScene {
         let Some(link) = Link::new(ends, wave, earth) else { return f64::NAN };
         let mut clearance = max;
         for [low, high] in link.boxes(max) {
-            self.tree().index().near(low, high, |number| {
+            self.tree().index().visit_near(low, high, |number| {
                 let Ball { center, radius } = self.ball(number);
                 let center = center.map(f64::from);
                 let distances = ends.map(|end| length(sub(center, end)));
@@ -228,7 +228,7 @@ impl MedialScene {
         }
         if let Some(triangles) = self.triangles() {
             let ends = LineEnds { target: ends[0], viewer: Some(ends[1]) };
-            for corners in triangles.near(link.boxes(max), &ends) {
+            for corners in triangles.triangles_near(link.boxes(max), &ends) {
                 if clearance > 0.0 {
                     clearance = clearance.min(link.share_before(corners, clearance));
                 }

@@ -6,8 +6,8 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// A value that is made on first use.
 ///
-/// Whoever asks first makes it, on threads of its own: the caller may itself be one of many threads at work, of which
-/// one that waits for shared threads could be handed work that needs this very value.
+/// The first caller makes the value, on threads of its own. A caller may be one of many threads at work. If it waited
+/// for shared threads, it could be given work that needs this very value.
 #[derive(Default)]
 pub(super) struct Lazy<T> {
     value: OnceLock<T>,
@@ -19,7 +19,7 @@ impl<T: Send + Sync> Lazy<T> {
         Self { value: OnceLock::new(), making: Mutex::new(()) }
     }
 
-    /// Whether it is there.
+    /// Returns true if the value exists.
     pub(super) fn is_made(&self) -> bool {
         self.value.get().is_some()
     }
@@ -55,7 +55,7 @@ fn on_own_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
 /// Runs `work` on as many new threads as the caller may use.
 #[cfg(not(target_family = "wasm"))]
 fn on_own_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    /// How long a thread is waited for that the system refuses, and how often it is tried.
+    /// Pause between attempts to start a thread that the system refuses, and number of attempts.
     const PAUSE: std::time::Duration = std::time::Duration::from_millis(50);
     const MAX_TRIES: usize = 100;
     let threads = rayon::current_num_threads();

@@ -12,8 +12,8 @@ use belvedere_data::view::View;
 
 /// Targets of an eye from which on ordering them into a tree costs less than the lines of sight that it saves.
 const TREE_FROM: usize = 10_000;
-/// Targets of a viewer infinitely far away from which on bounds of depth cost less than the lines of sight that they
-/// save: drawing those of a million balls takes as long as ten million lines of sight.
+/// Minimum number of targets of a viewer infinitely far away for which bounds of depth cost less than lines of sight.
+/// Drawing those of a million balls takes as long as ten million lines of sight.
 const MAP_FROM: usize = 16_000_000;
 /// Pixel of these bounds, metres, where targets are many enough; smaller ones settle a little more but are more to
 /// draw.
@@ -26,8 +26,8 @@ impl MedialScene {
     /// targets. What is not finite, or is the viewer itself, is [`Answer::OutsideView`]; what lies beside or below the
     /// cloud [`Answer::OutsideCloud`].
     ///
-    /// Every answer is that of [`MedialScene::answer`]. Few targets get a line of sight each, many of one eye are
-    /// ordered into a tree of targets, and very many under one sun are looked up in bounds of depth first.
+    /// Every answer is that of [`MedialScene::answer`]. A few targets get a line of sight each. Many targets of one eye
+    /// are ordered into a tree, and very many under one sun are compared with bounds of depth first.
     ///
     /// # Errors
     /// As [`super::Visibility::visible`], and [`Error::Cancelled`](belvedere_data::Error::Cancelled).

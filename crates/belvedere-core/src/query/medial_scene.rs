@@ -5,7 +5,7 @@ use super::ball_tree::BallTree;
 use super::certified::{LineEnd, LineInView, line_in_view, viewer_of};
 use super::cpu::Cpu;
 use super::far_terrain::FarTerrain;
-use super::freed_space::{FreedSpace, outside};
+use super::freed_space::{FreedSpace, pieces_outside};
 use super::lazy::Lazy;
 use super::triangles::{BlockingTriangles, LineEnds};
 use super::{Answer, Blocker, Coverage, Proof, Sight, Viewer, Visibility};
@@ -24,16 +24,18 @@ const CHUNK: usize = 1024;
 /// Medial balls indexed for exact lines of sight, for any number of viewers.
 ///
 /// A target is blocked if its line of sight to the viewer runs through a ball more than [`BlockRule::bias`] metres from
-/// both ends. Balls give way to both ends by [`BlockRule::shell`], which depth maps ([`super::query_points`]) know
-/// nothing of, so that a ball that bulges a little neither blinds an observer nor hides a target. The two ends of a
-/// line can change places. Ends that lie deeper in a ball are inside an obstacle: all their lines of sight are blocked,
-/// and [`MedialScene::mark_inside_obstacles`] tells these from others.
+/// both ends. Balls give way to both ends by [`BlockRule::shell`], so that a ball that bulges a little neither blinds
+/// an observer nor hides a target. Depth maps ([`super::query_points`]) do not. The two ends of a line can change
+/// places.
+///
+/// Ends that lie deeper in a ball are inside an obstacle: all their lines of sight are blocked, and
+/// [`MedialScene::mark_inside_obstacles`] marks them.
 ///
 /// With pulses ([`MedialScene::with_pulses`]) a target that nothing blocks is [`Answer::Unproven`] where too much of
 /// its line of sight runs through space that no pulse came near to.
 ///
-/// With triangles ([`MedialScene::with_triangles`]), of meshes that were added and of surface patches, these block too,
-/// exactly as they are; space inside and around them stays as proven or unproven as it was.
+/// Triangles of added meshes and of surface patches ([`MedialScene::with_triangles`]) block too, exactly. They do not
+/// change which space inside and around them is proven.
 ///
 /// With a coverage ([`MedialScene::with_coverage`]) what lies beside or below the cloud is [`Answer::OutsideCloud`].
 pub struct MedialScene {
@@ -136,14 +138,14 @@ impl MedialScene {
         self
     }
 
-    /// What stands beyond the cloud, as far as that was given.
+    /// Returns the terrain beyond the cloud, as far as it was given.
     #[must_use]
     pub fn far_terrain(&self) -> &FarTerrain {
         &self.far_terrain
     }
 
-    /// How much of a line of sight `proof` does not prove, metres: [`Proof::unproven_length`] outside the space that
-    /// was freed.
+    /// Returns the length of a line of sight that `proof` does not prove, metres: [`Proof::unproven_length`] outside
+    /// the freed space.
     pub(super) fn unproven_length(&self, proof: &Proof, target: [f64; 3], towards: [f64; 3], range: f64) -> f64 {
         let pieces = self.pieces_outside_freed(target, towards, range);
         pieces.map(|(from, piece)| proof.unproven_length(from, towards, piece)).sum()
@@ -160,7 +162,7 @@ impl MedialScene {
         pieces.map(|(from, piece)| proof.sampled_unproven_length(from, towards, piece, enough)).sum()
     }
 
-    /// Where the pieces of a line of sight outside the space that was freed begin, and how long they are.
+    /// Returns the start and length of each piece of a line of sight outside the freed space.
     fn pieces_outside_freed(
         &self,
         target: [f64; 3],
@@ -168,7 +170,7 @@ impl MedialScene {
         range: f64,
     ) -> impl Iterator<Item = ([f64; 3], f64)> {
         let ray = Ray { origin: target, direction: towards, ranges: [0.0, range] };
-        outside(&self.freed, &ray).into_iter().map(move |[from, to]| (ray.at(from), to - from))
+        pieces_outside(&self.freed, &ray).into_iter().map(move |[from, to]| (ray.at(from), to - from))
     }
 
     /// Over which space the cloud lies, where that is known.
@@ -177,8 +179,8 @@ impl MedialScene {
         self.coverage.as_ref()
     }
 
-    /// Whether an end of lines of sight, local metres, lies inside an obstacle: deeper in a ball than the ball gives
-    /// way ([`BlockRule::holds_end`]). Nothing is seen from there, and nothing there is seen.
+    /// Returns true if an end of lines of sight, local metres, lies inside an obstacle: deeper in a ball than the ball
+    /// gives way ([`BlockRule::holds_end`]). Nothing is visible from there or to there.
     #[must_use]
     pub fn is_inside_obstacle(&self, end: [f64; 3]) -> bool {
         self.tree.holds_end(end)
@@ -222,8 +224,8 @@ impl MedialScene {
         })
     }
 
-    /// Whether a position, local metres, lies beside or below the cloud, so that no line of sight ends there
-    /// ([`Coverage::holds_end`]): in the air beside the cloud and above all of it they do.
+    /// Returns true if a position, local metres, lies beside or below the cloud, so that no line of sight ends there
+    /// ([`Coverage::holds_end`]). Lines may end in the air beside the cloud and above all of it.
     #[must_use]
     pub fn is_outside_cloud(&self, position: [f64; 3]) -> bool {
         self.coverage.is_some_and(|coverage| !coverage.holds_end(position))
@@ -255,8 +257,8 @@ impl MedialScene {
         self.answer_free(target, towards, range)
     }
 
-    /// As [`MedialScene::answer`] where the line ends at a viewer; where it ends at a picture plane or a near limit,
-    /// balls that reach past that block nothing.
+    /// Returns the answer of [`MedialScene::answer`] for a line that ends at a viewer. At a picture plane or a near
+    /// limit, balls that reach past it block nothing.
     pub(super) fn answer_of(&self, line: &LineInView) -> Answer {
         let &LineInView { sight: Ray { origin, direction, ranges: [_, range] }, end } = line;
         let is_blocked = match end {
@@ -282,9 +284,9 @@ impl MedialScene {
         if self.is_unproven(target, towards, range) { Answer::Unproven } else { Answer::Visible }
     }
 
-    /// Whether too much of the line from `target`, local metres, to `range` metres (may be infinite) along the unit
-    /// vector `towards` runs through space that no pulse came near to; false where pulses are not known. What blocks
-    /// the line is not considered.
+    /// Returns true if too much of a line runs through space that no pulse came near to. The line starts at `target`,
+    /// local metres, and runs `range` metres (may be infinite) along the unit vector `towards`. False if pulses are not
+    /// known. Obstacles on the line are not considered.
     #[must_use]
     pub fn is_unproven(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
         self.proof.as_ref().is_some_and(|proof| {
@@ -293,20 +295,20 @@ impl MedialScene {
         })
     }
 
-    /// Visible, unproven, or blocked by a triangle or by far terrain, for a line of sight from `target` along the
-    /// unit vector `towards` without end of which it is known that no ball blocks it.
+    /// Returns the answer for a line of sight from `target` along the unit vector `towards` without end that no ball
+    /// blocks. It is visible, unproven, or blocked by a triangle or by far terrain.
     #[must_use]
     pub fn answer_unblocked_towards(&self, target: [f64; 3], towards: [f64; 3]) -> Answer {
         self.answer_unblocked(target, towards, f64::INFINITY)
     }
 
-    /// How its balls block.
+    /// Returns the rule by which its balls block.
     #[must_use]
     pub fn params(&self) -> &BlockRule {
         self.tree.rule()
     }
 
-    /// How many balls hold `eye`, local metres: they give way to it, or it is inside an obstacle.
+    /// Returns the number of balls that hold `eye`, local metres: they give way to it, or it is inside an obstacle.
     #[must_use]
     pub fn around_eye_count(&self, eye: [f64; 3]) -> usize {
         self.tree.balls().par_iter().with_min_len(CHUNK).filter(|ball| ball.depth_of(eye) >= 0.0).count()
@@ -326,8 +328,7 @@ impl MedialScene {
         })
     }
 
-    /// What `answer` gives for each of `targets`, (M, 3) local metres, and its number; outside the view where that is
-    /// `None`.
+    /// Evaluates `answer_of` for each of `targets`, (M, 3) local metres, and its index; `None` gives outside the view.
     pub(super) fn answer_by(
         &self,
         targets: &[[f32; 3]],
@@ -347,11 +348,10 @@ impl MedialScene {
         Ok(answers)
     }
 
-    /// Answers for `targets`, (M, 3) local metres, in `view`, as [`super::query_points`] gives them from its depth map,
-    /// but by exact lines of sight: each ends at the picture plane, or at the near limit of a view from an eye. What
-    /// lies beside the picture or beyond its limits is [`Answer::OutsideView`], and balls that reach before the plane
-    /// or the limit block nothing. [`MedialScene::visible_in_views`] gives the same
-    /// answers, faster where there are many.
+    /// Returns answers for `targets`, (M, 3) local metres, in `view`, as [`super::query_points`] does from its depth
+    /// map, but by exact lines of sight. Each ends at the picture plane, or at the near limit of a view from an eye.
+    /// Targets beside the picture or beyond its limits are [`Answer::OutsideView`]. Balls that reach before the plane
+    /// or the limit block nothing. [`MedialScene::visible_in_views`] returns the same answers, faster for many targets.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
@@ -384,8 +384,8 @@ impl MedialScene {
         self.tree.ray(target, towards, range)
     }
 
-    /// What a line of sight from `target` meets first on its way to `range` metres along the unit vector `towards`, and
-    /// where the line leaves it, metres from the target. `None` where nothing blocks.
+    /// Returns the first obstacle of a line of sight from `target` to `range` metres along the unit vector `towards`,
+    /// and the distance from the target at which the line leaves it, metres. `None` if nothing blocks.
     #[must_use]
     pub fn first_block(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Option<(Blocker, f64)> {
         let ray = self.ray(target, towards, range);
@@ -393,10 +393,10 @@ impl MedialScene {
         let ball = ball.and_then(|(number, front)| Some((self.blocker_of_ball(number)?, front)));
         let ends = LineEnds { target, viewer: range.is_finite().then(|| ray.at(range)) };
         let line = Ray { ranges: [0.0, range], ..ray };
-        nearer(ball, self.triangles().and_then(|triangles| triangles.nearest(&line, &ends)))
+        nearest_blocker(ball, self.triangles().and_then(|triangles| triangles.nearest(&line, &ends)))
     }
 
-    /// Whether anything but balls blocks a line of sight: a triangle, or far terrain.
+    /// Returns true if anything but balls blocks a line of sight: a triangle, or far terrain.
     #[inline]
     pub(super) fn is_behind_others(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
         self.is_behind_triangles(target, towards, range) || self.is_behind_terrain(target, towards, range)
@@ -417,7 +417,8 @@ impl MedialScene {
         self.tree.rows().get(number).map(|&row| Blocker::Ball(row as usize))
     }
 
-    /// Where a line of sight leaves ball `number`, metres from its target, if that ball blocks it.
+    /// Returns the distance from its target at which a line of sight leaves ball `number`, metres, if that ball blocks
+    /// it.
     #[inline]
     pub(super) fn front(&self, number: usize, ray: &Ray) -> Option<f64> {
         self.tree.front(number, ray)
@@ -425,7 +426,10 @@ impl MedialScene {
 }
 
 /// The nearer of a ball and a triangle, each with its range; the ball where both are equally near.
-pub(super) fn nearer(ball: Option<(Blocker, f64)>, triangle: Option<(Blocker, f64)>) -> Option<(Blocker, f64)> {
+pub(super) fn nearest_blocker(
+    ball: Option<(Blocker, f64)>,
+    triangle: Option<(Blocker, f64)>,
+) -> Option<(Blocker, f64)> {
     match (ball, triangle) {
         (Some(ball), Some(triangle)) if triangle.1 < ball.1 => Some(triangle),
         (None, triangle) => triangle,

@@ -6,7 +6,7 @@ use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 
-/// What to make of faces that are turned away from the viewer.
+/// Treatment of faces that are turned away from the viewer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BackFaces {
@@ -19,15 +19,15 @@ pub enum BackFaces {
     BothSides,
 }
 
-/// How the visibility of faces is queried.
+/// Parameters of visibility queries for faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshTargetParams {
-    /// What to make of faces turned away from the viewer. Default: not visible.
+    /// Treatment of faces turned away from the viewer. Default: not visible.
     pub back_faces: BackFaces,
     /// Distance between a face and its target, on the side of the viewer, metres, 0 or more. Default 0.1: balls stand
-    /// out by about as much where no pulse reached. On a simulated town this takes the false-blocked share of facades
-    /// in the sun from 15.7 to 9.6 % and the error of a building's share from 0.10 to 0.05, for a point more of
-    /// false-visible on facades and three on roofs.
+    /// out by about as much where no pulse reached. On a simulated town this reduces the false-blocked share of facades
+    /// in the sun from 15.7 to 9.6 %. The error of a building's share falls from 0.10 to 0.05. The false-visible share
+    /// grows by a point on facades and three on roofs.
     pub lift: f64,
 }
 
@@ -54,14 +54,14 @@ impl MeshTargetParams {
     }
 }
 
-/// What is seen of a face, of an object, or of anything put together of them, m².
+/// Visible area of a face, of an object, or of a set of them, m².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SeenArea {
     /// Area that counts; 0 where [`BackFaces::LeftOut`] leaves all of it out.
     pub area: f64,
-    /// Of this, what is seen.
+    /// Visible part of it, m².
     pub visible: f64,
-    /// Of this, what nothing blocks but is not proven; not among the visible.
+    /// Unproven part of it, m²: nothing blocks it, and it is not part of `visible`.
     pub unproven: f64,
     /// Square of the standard error of `visible`, m⁴.
     pub variance: f64,
@@ -104,7 +104,7 @@ impl SurfacePiece {
         self.lifted_along_normal(if self.is_before(viewer) { lift } else { -lift })
     }
 
-    /// Whether the viewer is on the side that the normal points to, or edge-on.
+    /// Returns true if the viewer is on the side that the normal points to, or edge-on.
     #[must_use]
     pub fn is_before(&self, viewer: Viewer<'_>) -> bool {
         !(dot(self.normal.map(f64::from), self.towards(viewer)) < 0.0)
@@ -118,7 +118,7 @@ impl SurfacePiece {
     }
 }
 
-/// Whether each piece of `surface` is turned to `viewer`. Pieces seen exactly edge-on are not; those of a surface
+/// Flags the pieces of `surface` that are turned to `viewer`. Pieces seen exactly edge-on are not; those of a surface
 /// without a known outside all are.
 ///
 /// # Errors
@@ -135,13 +135,13 @@ pub fn facing(surface: &SurfacePieces, viewer: Viewer<'_>) -> Result<Vec<bool>> 
     }
 }
 
-/// What `viewer` sees of each face of `surface`, (faces). `ask` answers for places, (M, 3) local metres, such as
-/// [`super::Visibility::visible`] for the same viewer; whatever is not [`Answer::Visible`] or [`Answer::Unproven`]
-/// counts as not seen.
+/// Returns the area of each face of `surface` that `viewer` sees, (faces). `ask` answers for places, (M, 3) local
+/// metres, such as [`super::Visibility::visible`] for the same viewer. Answers other than [`Answer::Visible`] or
+/// [`Answer::Unproven`] count as not visible.
 ///
 /// Each piece counts as its place does. The standard error of a face follows from pairs of neighbouring pieces that
-/// differ (collapsed strata), and errs to the large side; a face of one piece has the greatest there can be, half its
-/// area. Areas and squares of errors of faces add up to those of objects.
+/// differ (collapsed strata), and tends to be too large. A face of one piece has the greatest possible error, half its
+/// area. Areas and squared errors of faces add up to those of objects.
 ///
 /// # Errors
 /// Those of [`facing`], of [`MeshTargetParams::validate`] and of `ask`, and [`Error::LengthMismatch`] where it answers
@@ -183,7 +183,7 @@ pub fn seen_faces(
     Ok(faces)
 }
 
-/// What is seen of the pieces of one face.
+/// Returns the visible area of the pieces of one face.
 fn seen_of(pieces: &[SurfacePiece], answers: &[Answer], is_queried: bool) -> SeenArea {
     let mut seen = SeenArea::default();
     for (piece, answer) in pieces.iter().zip(answers) {
@@ -214,7 +214,8 @@ fn seen_of(pieces: &[SurfacePiece], answers: &[Answer], is_queried: bool) -> See
     seen
 }
 
-/// What is seen of each of `count` objects, given the object of each face, (faces); faces of others are left out.
+/// Returns the visible area of each of `count` objects, given the object of each face, (faces); faces of others are
+/// left out.
 #[must_use]
 pub fn seen_objects(faces: &[SeenArea], objects: &[u32], count: usize) -> Vec<SeenArea> {
     let mut seen = vec![SeenArea::default(); count];
@@ -226,7 +227,7 @@ pub fn seen_objects(faces: &[SeenArea], objects: &[u32], count: usize) -> Vec<Se
     seen
 }
 
-/// What is seen of all faces together.
+/// Returns the visible area of all faces together.
 #[must_use]
 pub fn seen_in_all(faces: &[SeenArea]) -> SeenArea {
     let mut sum = SeenArea::default();

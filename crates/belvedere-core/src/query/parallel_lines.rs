@@ -6,8 +6,8 @@ use crate::ray_index::{END, Ray, Visit};
 use belvedere_data::vector::{cross, dot, sub, unit};
 use std::f64::consts::FRAC_PI_4;
 
-/// How far the two rings of lines run beside the line itself, metres: half a spacing and a spacing at ten pulses per
-/// m². A third ring at 0.08 m made probabilities no better.
+/// Radii of the two rings of lines around the line itself, metres: half a spacing and a spacing at ten pulses per m². A
+/// third ring at 0.08 m made probabilities no better.
 const RINGS: [f64; 2] = [0.16, 0.32];
 /// Lines of each ring.
 pub(super) const RING_LINES: usize = 8;
@@ -16,19 +16,19 @@ const LINES: usize = 1 + RINGS.len() * RING_LINES;
 /// Slots for lines, a multiple of those that are tested at once.
 const SLOTS: usize = 24;
 
-/// What blocks a line of sight and those beside it.
+/// Obstruction of a line of sight and of the lines beside it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ParallelLines {
-    /// Whether nothing blocks the line itself.
+    /// True if nothing blocks the line itself.
     pub is_free: bool,
-    /// How many of eight lines 0.16 m beside it are free, and of eight 0.32 m beside it.
+    /// Numbers of free lines among the eight at 0.16 m and the eight at 0.32 m.
     pub free: [u8; 2],
-    /// How many of each ring are blocked because an end is inside an obstacle; 0 where all lines agree.
+    /// Number of lines of each ring that are blocked because an end is inside an obstacle; 0 if all lines agree.
     pub held: [u8; 2],
 }
 
 impl ParallelLines {
-    /// Whether all lines are free, or all blocked.
+    /// Returns true if all lines are free, or all blocked.
     #[must_use]
     pub fn agree(&self) -> bool {
         #[expect(clippy::cast_possible_truncation, reason = "eight")]
@@ -37,7 +37,7 @@ impl ParallelLines {
     }
 }
 
-/// What one part of a scene blocks of a line of sight and of those beside it. Parts are added up.
+/// Lines, of a line of sight and those beside it, that one part of a scene blocks. Parts are added up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BlockedLines {
     /// A bit for each line that is free, the line itself first.
@@ -47,18 +47,18 @@ pub struct BlockedLines {
 }
 
 impl BlockedLines {
-    /// What nothing blocks.
+    /// No line blocked.
     pub const NONE: Self = Self { free: ALL, held: 0 };
-    /// How far beside the line itself the others run at most, metres.
+    /// Maximum distance of the lines from the line of sight, metres.
     pub const WIDTH: f64 = RINGS[1];
 
-    /// Whether an end of the line itself is inside an obstacle.
+    /// Returns true if an end of the line itself is inside an obstacle.
     #[must_use]
     pub fn is_inside_obstacle(self) -> bool {
         self.held & 1 == 1
     }
 
-    /// How many lines of each ring are free.
+    /// Counts the free lines of each ring.
     #[must_use]
     pub fn lines(self) -> ParallelLines {
         let in_ring = |bits: u32, ring: usize| (bits >> (1 + ring * RING_LINES) & 0xFF).count_ones();
@@ -71,17 +71,17 @@ impl BlockedLines {
 }
 
 impl MedialScene {
-    /// What blocks the line of sight from `target`, local metres, to `range` metres (infinite for a direction) along
-    /// the unit vector `towards`, and lines parallel to it. All numbers but the range must be finite. The line itself
-    /// is free where [`MedialScene::answer`] is not blocked.
+    /// Finds what blocks the line of sight from `target`, local metres, to `range` metres (infinite for a direction)
+    /// along the unit vector `towards`, and lines parallel to it. All numbers but the range must be finite. The line
+    /// itself is free unless [`MedialScene::answer`] is blocked.
     #[must_use]
     pub fn parallel_lines(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> ParallelLines {
         self.blocked_lines(BlockedLines::NONE, target, towards, range).lines()
     }
 
-    /// What this part of a scene blocks of the lines of [`MedialScene::parallel_lines`], beside what others have
-    /// `blocked`. Of lines that are all blocked only the first is looked at for ends inside an obstacle: of the others
-    /// it makes no difference.
+    /// Adds the lines of [`MedialScene::parallel_lines`] that this part of a scene blocks to those that others have
+    /// `blocked`. If all lines are blocked, only the first is tested for ends inside an obstacle; for the others it
+    /// makes no difference.
     #[must_use]
     pub fn blocked_lines(
         &self,
@@ -141,11 +141,11 @@ impl Axes {
 struct Left<'a> {
     scene: &'a MedialScene,
     lines: &'a [Ray; LINES],
-    /// Where places count from, local metres.
+    /// Origin of the places, local metres.
     middle: [f32; 3],
     /// Across the lines, and across these and the first.
     axes: [[f32; 3]; 2],
-    /// Where each line runs along the axes, metres; infinitely far away for slots without a line.
+    /// Position of each line across the axes, metres; infinitely far away for slots without a line.
     places: [[f32; SLOTS]; 2],
     margin: f32,
     free: u32,

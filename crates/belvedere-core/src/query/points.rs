@@ -6,16 +6,17 @@ use belvedere_data::random;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Whether a target can be seen.
+/// Visibility of a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[repr(u8)]
 pub enum Answer {
     /// A ball lies before it.
     Blocked = 0,
-    /// Nothing lies before it.
+    /// Visible: nothing lies before it.
     Visible = 1,
-    /// Nothing lies before it, but too much of the line of sight runs through space that no pulse came near to.
+    /// Unproven: nothing lies before it, but too much of the line of sight runs through space that no pulse came near
+    /// to.
     Unproven = 2,
     /// It lies beside the picture or behind its plane, or its position is not finite: the view says nothing of it.
     OutsideView = 3,
@@ -26,7 +27,7 @@ pub enum Answer {
     InsideObstacle = 5,
 }
 
-/// What to make of [`Answer::Unproven`].
+/// Treatment of [`Answer::Unproven`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum UnprovenAs {
@@ -50,7 +51,7 @@ impl UnprovenAs {
     }
 }
 
-/// How many targets got which answer.
+/// Number of targets for each answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AnswerCounts {
     /// [`Answer::Visible`].
@@ -128,9 +129,10 @@ pub fn query_points(map: &DepthMap, targets: &[[f32; 3]], depth_bias: f32) -> Ve
         .collect()
 }
 
-/// Most random targets of one run, which needs some 100 bytes for each. More come from runs with other seeds.
+/// Maximum number of random targets of one run, which needs some 100 bytes for each. More come from runs with other
+/// seeds.
 pub const MAX_RANDOM_TARGETS: usize = 50_000_000;
-/// Most random pairs of one run, which needs some 400 bytes for each.
+/// Maximum number of random pairs of one run, which needs some 400 bytes for each.
 pub const MAX_RANDOM_PAIRS: usize = 10_000_000;
 
 /// `count` positions spread evenly at random over the local box from `low` to `high`: the paper's experiment. The same

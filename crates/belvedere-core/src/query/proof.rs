@@ -1,4 +1,4 @@
-//! Whether pulses saw the space that a line of sight runs through.
+//! Proof by pulses of the space along a line of sight.
 
 use super::lazy::Lazy;
 use super::seen_space::SeenSpace;
@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// How far ahead the next pulse is looked for where none is near, metres: half a street.
+/// Distance ahead within which the next pulse is searched if none is near, metres: half a street.
 const LOOK_AHEAD: f64 = 4.0;
 /// Nearness where pulses are dense enough, metres: what carves balls of half a metre leaves no room for things that
 /// block.
@@ -20,23 +20,23 @@ const GROUND_SHARE: f64 = 0.3;
 /// Side of the cells that pulses are counted in, metres.
 const COUNTING_CELL: f32 = 4.0;
 
-/// When visible counts as proven.
+/// Parameters of the proof of a visible line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProofParams {
-    /// How near a pulse must pass for a place to count as seen, metres, above 0; `None`, the default, for
+    /// Maximum distance of a pulse from a place that counts as seen, metres, above 0; `None`, the default, for
     /// [`nearness`] of the pulses.
     pub nearness: Option<f64>,
-    /// How much of a line of sight, in total, may run through space not seen, metres, 0 or more. Default 0.5: less than
-    /// what a person or a trunk takes.
+    /// Maximum total length of a line of sight in space not seen, metres, 0 or more. Default 0.5: less than the width
+    /// of a person or a trunk.
     pub tolerance: f64,
     /// Step where no pulse is near, metres, above 0. Default 0.1. A seen piece shorter than this between two that are
     /// not may be counted with them; all other lengths are exact.
     pub step: f64,
-    /// What is thought of space beside the survey.
+    /// Treatment of space beside the survey.
     pub beside: Beside,
 }
 
-/// What is thought of space beside the box around the lower ends of all pulses.
+/// Treatment of space beside the box around the lower ends of all pulses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Beside {
     /// It needs no proof: a line of sight is followed to the edge of the survey.
@@ -58,7 +58,7 @@ pub struct Proof {
     nearness: f64,
     params: ProofParams,
     pulses: ProofSource,
-    /// What was kept of an index, until it is made of that.
+    /// Parts kept from an index, until it is made of them.
     kept: Arc<Mutex<Option<ProofParts>>>,
     index: Arc<Lazy<ProofIndex>>,
 }
@@ -69,7 +69,7 @@ impl fmt::Debug for Proof {
     }
 }
 
-/// What a proof is made of.
+/// Pulses of which a proof is made.
 #[derive(Clone)]
 enum ProofSource {
     /// Indexed already.
@@ -86,8 +86,8 @@ struct ProofIndex {
     extent: [[f64; 2]; 2],
 }
 
-/// How near a pulse must pass for a place to count as seen, metres: 0.7, or the usual distance between pulses,
-/// 1/√density, where that is more. The density is the median over cells of 4 m that have any.
+/// Returns the maximum distance of a pulse from a place that counts as seen, metres: 0.7, or the typical distance
+/// between pulses, 1/√density, if larger. The density is the median over cells of 4 m that have any.
 ///
 /// # Source
 /// This project's own.
@@ -155,7 +155,7 @@ impl Proof {
     /// Its index, to be kept; `None` as long as it is not made.
     pub(crate) fn to_parts(&self) -> Option<ProofParts> {
         if !self.index.is_made() {
-            return self.kept().clone();
+            return self.lock_kept().clone();
         }
         let index = self.index.get(|control| self.make_index(control))?;
         let seen_space = index.seen_space.to_words().unwrap_or_default();
@@ -163,7 +163,7 @@ impl Proof {
         Some(ProofParts { order, boxes, seen_space })
     }
 
-    fn kept(&self) -> MutexGuard<'_, Option<ProofParts>> {
+    fn lock_kept(&self) -> MutexGuard<'_, Option<ProofParts>> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -190,7 +190,7 @@ impl Proof {
     }
 
     fn make_index(&self, control: &Control<'_>) -> Result<ProofIndex> {
-        let kept = self.kept().take();
+        let kept = self.lock_kept().take();
         let free_segments = match (&self.pulses, &kept) {
             (ProofSource::Indexed(free_segments), _) => Arc::clone(free_segments),
             (ProofSource::Columns(columns), kept) => {
@@ -222,20 +222,20 @@ impl Proof {
         Ok(ProofIndex { free_segments, seen_space, extent })
     }
 
-    /// How near a pulse must pass, metres.
+    /// Returns the maximum distance of a pulse from a place that counts as seen, metres.
     #[must_use]
     pub fn nearness(&self) -> f64 {
         self.nearness
     }
 
-    /// Whether most pulses are those of scanners on the ground: they run more sideways than up.
+    /// Returns true if most pulses are those of scanners on the ground: they run more sideways than up.
     #[must_use]
     pub fn is_from_ground(&self) -> bool {
         let index = self.index.get(|control| self.make_index(control));
         index.is_some_and(|index| index.free_segments.sideways_share() > GROUND_SHARE)
     }
 
-    /// Whether a place, local metres, lies above the highest return.
+    /// Returns true if a place, local metres, lies above the highest return.
     #[must_use]
     pub fn is_above_all(&self, place: [f64; 3]) -> bool {
         let index = self.index.get(|control| self.make_index(control));
@@ -248,17 +248,18 @@ impl Proof {
         self.params.tolerance
     }
 
-    /// How much of the way from `target`, local metres, along the unit vector `towards` to `range` metres (infinite for
-    /// a direction) runs through space that no pulse came near to, metres. Above the highest return everything is free.
-    /// Without any pulse all of it is unseen; so is a line that runs down without end.
+    /// Returns the length, metres, of a line through space that no pulse came near to. The line starts at `target`,
+    /// local metres, and runs `range` metres (infinite for a direction) along the unit vector `towards`. All space
+    /// above the highest return is free. Without any pulse the whole line is unseen, and so is a line that runs down
+    /// without end.
     #[must_use]
     pub fn unproven_length(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> f64 {
         self.length(target, towards, range, f64::INFINITY, |_| ())
     }
 
-    /// How much of the piece of a line between two distances from `origin`, metres, runs through space that no pulse
-    /// came near to, or more than `enough` as soon as it is known to exceed that. Nothing is known of what lies beside
-    /// the survey or above its returns: all of the piece counts. For surveys of which a part is in memory at a time.
+    /// Returns the length, metres, of a piece of a line in space that no pulse came near to. The piece lies between two
+    /// distances from `origin`. The search stops once the length exceeds `enough`. Space beside the survey or above its
+    /// returns is unknown and counts whole. For surveys of which a part is in memory at a time.
     #[must_use]
     pub fn unseen_length_between(
         &self,
@@ -296,21 +297,21 @@ impl Proof {
         })
     }
 
-    /// Whether more than the tolerated length runs through unseen space; quicker than measuring it.
+    /// Returns true if more than the tolerated length runs through unseen space; faster than measuring it.
     #[must_use]
     pub fn is_unproven(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
         self.length(target, towards, range, self.params.tolerance, |_| ()) > self.params.tolerance
     }
 
-    /// Whether a pulse came near to a place, local metres, or it lies above the highest return.
+    /// Returns true if a pulse came near to a place, local metres, or it lies above the highest return.
     #[must_use]
     pub fn is_seen(&self, place: [f64; 3]) -> bool {
         let index = self.index.get(|control| self.make_index(control));
         self.is_above_all(place) || index.is_some_and(|index| index.free_segments.passes_within(place, self.nearness))
     }
 
-    /// The pieces that [`Proof::unproven_length`] counts, metres from `target`, each from and to, in the order in which
-    /// the line runs; none where there are no pulses at all, and none beside the survey.
+    /// Returns the pieces that [`Proof::unproven_length`] counts, from and to, metres from `target`, along the line.
+    /// Empty without pulses, and beside the survey.
     #[must_use]
     pub fn unproven_pieces(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> Vec<[f64; 2]> {
         let mut pieces = Vec::new();
@@ -331,8 +332,8 @@ impl Proof {
         })
     }
 
-    /// What `measure` finds unseen of the piece of a line over the survey, and what lies beside. It gets the line, the
-    /// piece of it, and from which length on it may stop.
+    /// Returns the unseen length that `measure` finds on the piece of a line over the survey, plus the length beside
+    /// it. `measure` gets the line, the piece, and the length at which it may stop.
     fn length_by(
         &self,
         (target, towards, range): ([f64; 3], [f64; 3], f64),
@@ -430,7 +431,7 @@ fn sampled_length(
     seen_space.unseen_length(free_segments, line, piece, enough)
 }
 
-/// Whether the steps along a line begin at its far end.
+/// Returns true if the steps along a line begin at its far end.
 fn runs_back(towards: [f64; 3], range: f64) -> bool {
     range.is_finite() && towards.into_iter().find(|v| *v != 0.0).is_some_and(|v| v < 0.0)
 }

@@ -41,9 +41,9 @@ pub(super) struct SeenSpace {
     per_side: f64,
     /// Boxes above one another.
     layers: usize,
-    /// How near a pulse must pass, less its possible shift by rounding.
+    /// Maximum distance of a pulse, less its possible shift by rounding, metres.
     nearness: f64,
-    /// How near a pulse must pass to the middle line of a box.
+    /// Maximum distance of a pulse from the middle line of a box, metres.
     reach: f64,
     size: [usize; 2],
     /// Tiles in a row.
@@ -63,16 +63,16 @@ struct BoxColumns {
     blocks: [u64; BLOCKS * BLOCKS],
     /// The layers on which all columns of the tile are near pulses.
     all: u64,
-    /// What was found at the middles of other boxes, once any was looked at.
+    /// Results at the middles of other boxes, once any was tested.
     middles: OnceLock<Box<[Middles; TILE * TILE]>>,
 }
 
 /// The middles of the boxes of a column: bits as in [`BoxColumns`].
 #[derive(Default)]
 struct Middles {
-    /// Those that were looked at.
+    /// Bit mask of the middles that were tested.
     known: AtomicU64,
-    /// Those that a pulse came near to.
+    /// Bit mask of the middles near a pulse.
     near: AtomicU64,
 }
 
@@ -110,7 +110,7 @@ impl BoxColumns {
         groups.into_iter().find(|(_, word)| word >> layer & 1 == 1)
     }
 
-    /// Whether a pulse came near to the middle of a box; `look` finds it out the first time.
+    /// Returns true if a pulse came near to the middle of a box; `look` tests it the first time.
     fn is_middle_near(&self, column: usize, layer: usize, look: impl FnOnce() -> bool) -> bool {
         let middles = self.middles.get_or_init(|| Box::new(std::array::from_fn(|_| Middles::default())));
         let Middles { known, near } = &middles[column];
@@ -202,9 +202,9 @@ impl SeenSpace {
     }
 
     /// Marks the boxes of a tile that are near a pulse: those with all corners near it, since the space near a pulse is
-    /// convex. Where it passes through a layer it must be within `reach` of the middle line of a box both where it
-    /// enters and where it leaves; in the layer that it begins in, nearer, since the lower corners lie below its end.
-    /// Where it does so it lies over the rectangle `over`.
+    /// convex. The pulse must be within `reach` of the middle line of a box where it enters and where it leaves the
+    /// layer. In the layer where it begins it must be nearer, since the lower corners lie below its end. Such boxes lie
+    /// below the part of the pulse over the rectangle `over`.
     fn mark(
         &self,
         [start, end]: [[f64; 3]; 2],
@@ -293,8 +293,9 @@ impl SeenSpace {
         }
     }
 
-    /// Columns or rows of a tile whose middles may be within reach of what lies between two places, metres from the
-    /// middle of its first box, and perhaps one more: rounding up would take longer than to test one in vain.
+    /// Returns the columns or rows of a tile whose middles may be within reach of the interval between two places,
+    /// metres from the middle of its first box. It may return one more: exact rounding would take longer than a vain
+    /// test.
     #[inline]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the tile")]
     fn boxes_between(&self, a: f64, b: f64, reach: f64) -> Range<usize> {
@@ -319,8 +320,8 @@ impl SeenSpace {
         }
     }
 
-    /// Where a line leaves the boxes around the one that it is in at `at`, if all of these are near `free_segments`,
-    /// those that the grid was made for.
+    /// Returns the distance along a line at which it leaves the boxes around the one at `at`, if all of these are near
+    /// `free_segments`, those of the grid.
     pub(super) fn near_until(&self, free_segments: &FreeSegments, line: ([f64; 3], [f64; 3]), at: f64) -> Option<f64> {
         let [column, row, layer] = self.places(line, at);
         if !(column >= 0.0 && row >= 0.0 && layer >= 0.0) {
@@ -379,8 +380,8 @@ impl SeenSpace {
         Some(unseen)
     }
 
-    /// Where a line is at `at`, in boxes from the lowest corner. A little on, so that a line at the edge of a box is
-    /// taken for in the one it enters.
+    /// Returns the position of a line at `at`, in boxes from the lowest corner. It is advanced slightly, so that a line
+    /// at the edge of a box counts in the one it enters.
     fn places(&self, (origin, direction): ([f64; 3], [f64; 3]), at: f64) -> [f64; 3] {
         let within = at + 1e-9;
         let sides = self.sides();
@@ -404,7 +405,7 @@ impl SeenSpace {
         Some((tile.get_or_init(|| self.tile(free_segments, first)), cell.map(|index| index % TILE)))
     }
 
-    /// Where a line leaves boxes, from one edge to another along each axis.
+    /// Returns the distance at which a line leaves boxes, given from one edge to another along each axis.
     fn exit(&self, (origin, direction): ([f64; 3], [f64; 3]), edges: [[f64; 2]; 3]) -> f64 {
         let sides = self.sides();
         let mut exit = f64::INFINITY;
@@ -418,8 +419,8 @@ impl SeenSpace {
     }
 }
 
-/// The edges of the group of columns around a box, `width` of them a side, and of the layers above and below it that
-/// are near as well, by the word of the group.
+/// Returns the edges of the group of columns around a box, `width` columns a side, and of the layers above and below
+/// that are near as well. `word` is the bit mask of the group.
 fn boxes_around([column, row, layer]: [usize; 3], width: usize, word: u64) -> [[usize; 2]; 3] {
     let up = (word >> layer).trailing_ones() as usize;
     let down = (word << (63 - layer)).leading_ones() as usize;
@@ -433,7 +434,7 @@ fn whole(number: f64) -> usize {
     number as usize
 }
 
-/// From the middle of a square to its corners.
+/// Returns the distance from the middle of a square to its corners.
 fn half_diagonal(side: f64) -> f64 {
     side * std::f64::consts::FRAC_1_SQRT_2
 }

@@ -1,8 +1,8 @@
 //! Lines of sight between pairs of points: what blocks them first, and all that lies on them.
 
 use super::ball_tree::PROBE;
-use super::freed_space::outside;
-use super::medial_scene::nearer;
+use super::freed_space::pieces_outside;
+use super::medial_scene::nearest_blocker;
 use super::triangles::LineEnds;
 use super::{Answer, EarthParams, MedialScene};
 use crate::blocking::{Chord, Sheet};
@@ -16,19 +16,19 @@ use rayon::prelude::*;
 /// Pairs handed to a thread at once.
 const CHUNK: usize = 256;
 
-/// What is known of a line of sight.
+/// Result for a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineOfSight {
     /// Visible, blocked, unproven where pulses are known, or outside the cloud.
     pub answer: Answer,
-    /// What the observer sees in place of the target, if the line is blocked.
+    /// Obstacle that the observer sees instead of the target, if the line is blocked.
     pub first_block: Option<Obstruction>,
-    /// How much of it no pulse came near to, metres; 0 where pulses are not known, and where it is blocked; NaN
-    /// outside the cloud. Of a line that leaves the cloud, only the part over the cloud counts.
+    /// Length that no pulse came near to, metres; 0 if pulses are not known or the line is blocked; NaN outside the
+    /// cloud. On a line that leaves the cloud, only the part over the cloud counts.
     pub unproven_length: f64,
 }
 
-/// What stands in a line of sight.
+/// Kind of an obstacle on a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Blocker {
     /// A ball, by its row among those that the scene was made of.
@@ -54,22 +54,22 @@ impl Blocker {
         if let Self::Mesh(number) = self { Some(number) } else { None }
     }
 
-    /// What a patch is a part of.
+    /// Returns the kind of the patch, if it is one.
     #[must_use]
     pub fn patch(self) -> Option<PatchKind> {
         if let Self::Patch(kind) = self { Some(kind) } else { None }
     }
 }
 
-/// What stands before a target.
+/// Obstacle before a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Obstruction {
-    /// Where the line of sight meets it, metres from the observer along the line; on a line that leaves the cloud,
-    /// straight from the observer.
+    /// Distance from the observer along the line of sight, metres; straight from the observer on a line that leaves the
+    /// cloud.
     pub range: f64,
-    /// What it is.
+    /// Kind of the obstacle.
     pub blocker: Blocker,
-    /// Where the line meets it, local metres.
+    /// Point where the line meets it, local metres.
     pub place: [f64; 3],
 }
 
@@ -78,16 +78,16 @@ pub struct Obstruction {
 pub struct Crossing {
     /// In what it lies.
     pub blocker: Blocker,
-    /// Where the line enters and leaves it, metres from the observer, cut to the line.
+    /// Distances at which the line enters and leaves it, metres from the observer, cut to the line.
     pub ranges: [f64; 2],
 }
 
 /// The balls that hold a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Enclosure {
-    /// How many.
+    /// Number of balls.
     pub ball_count: usize,
-    /// How deep below the surface of the deepest of them, metres; 0 outside.
+    /// Depth below the surface of the deepest of them, metres; 0 outside.
     pub depth: f64,
 }
 
@@ -97,7 +97,7 @@ struct LinePiece {
     ray: Ray,
     /// The ranges in which balls count: less the bias where it reaches an end of the whole line.
     for_balls: Ray,
-    /// Whether it is the whole line.
+    /// True if it is the whole line.
     is_whole: bool,
     /// Ends of the whole line, in order.
     ends: [[f64; 3]; 2],
@@ -114,8 +114,8 @@ impl LinePiece {
 }
 
 impl MedialScene {
-    /// What is known of the line of sight from `observer` to `target`, local metres, over the earth of `earth`; `None`
-    /// where a coordinate is not finite or both are the same point.
+    /// Evaluates the line of sight from `observer` to `target`, local metres, over the earth of `earth`. `None` if a
+    /// coordinate is not finite or both points coincide.
     ///
     /// The answer is that of [`MedialScene::answer`] for the same pair on a plane earth. It stays the same when the two
     /// change places. A curved line is cut into chords; the rules for the ends (balls near them give way) are applied
@@ -138,7 +138,7 @@ impl MedialScene {
         Some(self.sight_on_chords(observer, ends, &earth.corners(ends[0], ends[1])))
     }
 
-    /// What `observer` knows of the part of a line of sight that [`MedialScene::answer_on_chords`] answers.
+    /// Returns what `observer` sees along the part of a line of sight that [`MedialScene::answer_on_chords`] answers.
     pub(super) fn sight_on_chords(&self, observer: [f64; 3], ends: [[f64; 3]; 2], corners: &[[f64; 3]]) -> LineOfSight {
         let pieces = self.chords(ends, corners);
         let is_from_start = observer == ends[0];
@@ -174,7 +174,7 @@ impl MedialScene {
         let mut found = Vec::new();
         let Some(proof) = &self.proof else { return found };
         for LinePiece { ray, .. } in self.pieces(observer, target, earth) {
-            for [from, to] in outside(&self.freed, &ray) {
+            for [from, to] in pieces_outside(&self.freed, &ray) {
                 let pieces = proof.unproven_pieces(ray.at(from), ray.direction, to - from);
                 found.extend(pieces.into_iter().map(|piece| piece.map(|at| ray.at(from + at))));
             }
@@ -223,9 +223,8 @@ impl MedialScene {
         self.answer_on_chords(ends, &earth.corners(ends[0], ends[1]))
     }
 
-    /// The answer for the part of a line of sight between two ends, given in order ([`in_order`]), that runs along
-    /// chords through `corners`, from the side of the first end on. The rules for the ends are applied to the whole
-    /// line.
+    /// Returns the answer for the part of a line of sight that runs along chords through `corners`, from the side of
+    /// the first end on. The two ends are given in order ([`in_order`]); the rules for ends apply to the whole line.
     pub(super) fn answer_on_chords(&self, ends: [[f64; 3]; 2], corners: &[[f64; 3]]) -> Answer {
         let pieces = self.chords(ends, corners);
         let is_blocked = |piece: &LinePiece| {
@@ -246,7 +245,7 @@ impl MedialScene {
         Answer::Visible
     }
 
-    /// What a line of sight between two ends that something blocks is called.
+    /// Returns the answer for a blocked line of sight between two ends: blocked, or inside an obstacle.
     fn blocked_between(&self, ends: [[f64; 3]; 2]) -> Answer {
         match ends.into_iter().any(|end| self.is_inside_obstacle(end)) {
             true => Answer::InsideObstacle,
@@ -254,11 +253,11 @@ impl MedialScene {
         }
     }
 
-    /// Every ball, mesh and patch on the line of sight from `observer` to `target`, local metres, by its whole radius,
-    /// in the order in which the line enters them. Balls around the ends are among them, and those that give way to the
-    /// target. A mesh holds what lies between every two of its surfaces, counted from the target, and from the last one
-    /// to the observer where their number is odd; a patch is a point. Empty for a line without length or with
-    /// coordinates that are not finite.
+    /// Returns every ball, mesh and patch on the line of sight from `observer` to `target`, local metres, in the order
+    /// in which the line enters them. Balls count by their whole radius, also those around the ends and those that give
+    /// way to the target. A mesh holds the space between every two of its surfaces, counted from the target; if their
+    /// number is odd, also from the last one to the observer. A patch is a point. Empty for a line without length or
+    /// with coordinates that are not finite.
     #[must_use]
     pub fn crossings(&self, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> Vec<Crossing> {
         let corners = earth.corners(observer, target);
@@ -369,8 +368,8 @@ impl MedialScene {
         corners.windows(2).filter_map(piece).collect()
     }
 
-    /// What an observer beyond the start of a piece, or beyond its end, meets first on it, and where, metres from the
-    /// end of the piece on the observer's side.
+    /// Returns the first obstacle on a piece for an observer beyond its start or its end, and the distance from the end
+    /// of the piece on that side, metres.
     fn first_on(&self, piece: &LinePiece, is_from_start: bool) -> Option<(Blocker, f64)> {
         let reach = piece.length();
         // a bias below zero lets balls beyond the ends block
@@ -391,7 +390,7 @@ impl MedialScene {
             true => triangles.nearest(&piece.ray, &ends),
             false => triangles.farthest(&piece.ray, &ends).map(|(blocker, range)| (blocker, reach - range)),
         });
-        nearer(ball, triangle)
+        nearest_blocker(ball, triangle)
     }
 
     /// The piece of a chord that a ball blocks, as [`BlockRule::blocked_piece`](super::BlockRule::blocked_piece) gives

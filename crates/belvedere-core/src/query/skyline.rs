@@ -12,7 +12,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// Balls handed to a thread at once.
 const CHUNK: usize = 1 << 15;
 
-/// Where the sky begins in one direction.
+/// Lower edge of the sky in one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SkylinePoint {
     /// The least elevation above which nothing blocks up to the zenith, radians, −π/2 (nothing blocks at all) to π/2
@@ -20,7 +20,7 @@ pub struct SkylinePoint {
     pub elevation: f64,
     /// Range of what stands there, metres; infinite where nothing does, and for far terrain.
     pub range: f64,
-    /// What stands there; `None` for far terrain and where nothing does.
+    /// Obstacle there; `None` for far terrain and for no obstacle.
     pub blocker: Option<Blocker>,
 }
 
@@ -45,11 +45,11 @@ impl MedialScene {
     /// The skyline around `eye`, local metres: at `count` azimuths, the first north, clockwise in equal steps. Empty
     /// for an eye that is not finite.
     ///
-    /// Exact for the union of balls, for meshes that were added and for surface patches, by the tangents of every ball
-    /// in the vertical plane of each azimuth: nothing that floats above a gap is missed, and there is no step to
-    /// choose. The eye may be a place on a surface: balls give way to it by [`crate::blocking::BlockRule::shell`] as to
-    /// any target. Those that hold it even so are left out; [`MedialScene::enclosure`] tells of them. Over the earth of
-    /// `earth` far balls sink.
+    /// Exact for the union of balls, for added meshes and for surface patches, by the tangents of every ball in the
+    /// vertical plane of each azimuth. Nothing that floats above a gap is missed, and there is no step to choose. The
+    /// eye may be a place on a surface: balls give way to it by [`crate::blocking::BlockRule::shell`] as to any target.
+    /// Balls that hold it even so are left out; [`MedialScene::enclosure`] returns them. Over the earth of `earth` far
+    /// balls sink.
     ///
     /// # Errors
     /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -90,7 +90,7 @@ impl MedialScene {
                 control.check()?;
                 let mut skyline = vec![EMPTY; count];
                 for (i, &ball) in balls.iter().enumerate() {
-                    let Some((offset, radius)) = self.before(eye, ball, earth) else { continue };
+                    let Some((offset, radius)) = self.offset_and_radius(eye, ball, earth) else { continue };
                     let blocker = self.blocker_of_ball(chunk * CHUNK + i);
                     each_azimuth(offset, radius, [first, step], count, |azimuth| {
                         if let Some((elevation, range)) = top(offset, radius, directions[azimuth]) {
@@ -102,7 +102,7 @@ impl MedialScene {
             })
             .try_reduce(|| vec![EMPTY; count], |a, b| Ok(a.into_iter().zip(b).map(|(a, b)| a.or(b)).collect()));
         let mut skyline = of_balls?;
-        for (corners, blocker) in self.triangles().into_iter().flat_map(|triangles| triangles.before(eye)) {
+        for (corners, blocker) in self.triangles().into_iter().flat_map(|triangles| triangles.triangles_before(eye)) {
             control.check()?;
             let corners = corners.map(|corner| self.offset(eye, corner, earth));
             let middle = std::array::from_fn(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 3.0);
@@ -125,7 +125,7 @@ impl MedialScene {
         Ok(skyline)
     }
 
-    /// From the eye to a place; over a curved earth far places sink.
+    /// Returns the vector from the eye to a place; over a curved earth far places sink.
     fn offset(&self, eye: [f64; 3], place: [f64; 3], earth: &EarthParams) -> [f64; 3] {
         let mut offset = sub(place, eye);
         if earth.bends(eye, place) {
@@ -134,8 +134,9 @@ impl MedialScene {
         offset
     }
 
-    /// From the eye to the centre of a ball, and its radius after giving way; `None` if it holds the eye even so.
-    fn before(&self, eye: [f64; 3], ball: Ball, earth: &EarthParams) -> Option<([f64; 3], f64)> {
+    /// Returns the vector from the eye to the centre of a ball, and its reduced radius; `None` if it holds the eye even
+    /// so.
+    fn offset_and_radius(&self, eye: [f64; 3], ball: Ball, earth: &EarthParams) -> Option<([f64; 3], f64)> {
         let (mut offset, radius) = self.tree().rule().seen_from(ball, eye)?;
         if earth.bends(eye, ball.center.map(f64::from)) {
             offset[2] -= earth.fall(offset[0].hypot(offset[1]));

@@ -7,7 +7,7 @@ use belvedere_data::vector::{cross, dot, length, sub, unit};
 use belvedere_data::{Error, Mesh, Parameter, Result};
 use rayon::prelude::*;
 
-/// Most pieces of a surface: 60 bytes each still fit into the memory of a usual machine.
+/// Maximum number of pieces of a surface: 60 bytes each still fit into the memory of a usual machine.
 const MAX_PIECES: usize = 50_000_000;
 /// Number of neighbours whose distance gives the area that a point represents.
 const NEIGHBORS: usize = 8;
@@ -27,7 +27,7 @@ pub struct SurfacePiece {
     pub face: u32,
 }
 
-/// Whether a surface knows its outside.
+/// Outside of a surface: known, or both sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sides {
     /// Faces have an outside, as those of closed meshes.
@@ -43,17 +43,17 @@ pub struct SurfacePieces {
     pub pieces: Vec<SurfacePiece>,
     /// Number of faces, those without area among them, which have no piece.
     pub face_count: usize,
-    /// Whether faces have an outside.
+    /// Outside of the faces: known, or both sides.
     pub sides: Sides,
 }
 
 impl SurfacePieces {
-    /// The triangles of `mesh`, metres, about the local origin `origin`, metres, each cut into slices and cells until
-    /// no side is longer than `spacing` metres; at least one piece a triangle that has an area. A place is drawn on
-    /// each from `seed`.
+    /// Cuts the triangles of `mesh`, metres, around the local origin `origin`, metres, into slices and cells until no
+    /// side is longer than `spacing` metres. A triangle with an area has at least one piece. A random place on each is
+    /// drawn from `seed`.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a spacing that is not above zero or would make more than 50 million pieces, and
+    /// [`Error::InvalidParameter`] for a spacing that is not above zero or would make more than 50 million pieces. Also
     /// for vertices that are not finite or lie 10 000 km or more from the origin.
     pub fn of_mesh(mesh: &Mesh, origin: [f64; 3], spacing: f64, seed: u64) -> Result<Self> {
         if !(spacing.is_finite() && spacing > 0.0) {
@@ -100,9 +100,9 @@ impl SurfacePieces {
         Ok(Self { pieces: pieces.concat(), face_count: mesh.triangles.len(), sides: Sides::Known })
     }
 
-    /// The surface that `points`, (N, 3) local metres, lie on: about each a triangle square to its normal (`normals`,
-    /// (N, 3), of any sign), whose area follows from how near the eighth neighbour is, π d² / 8, and is that of a disc
-    /// of `max_radius` metres at most. Points without a normal, (0, 0, 0), are turned upward.
+    /// Creates the surface of `points`, (N, 3) local metres. Each is a triangle perpendicular to its normal (`normals`,
+    /// (N, 3), of any sign). Its area is π d² / 8 for the distance d to the eighth neighbour, at most that of a disc of
+    /// `max_radius` metres. Points without a normal, (0, 0, 0), face upward.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] unless there is a normal for each point, [`Error::InvalidParameter`] for a point that

@@ -50,7 +50,7 @@ impl TargetTree {
         self.given_count
     }
 
-    /// Whether no target was given.
+    /// Returns true if no target was given.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.given_count == 0
@@ -74,7 +74,8 @@ impl TargetTree {
         self.nodes.first().map(|root| [root.low, root.high])
     }
 
-    /// Whether a corner of that box fulfils `condition`, for one that holds beyond some distance if it holds anywhere.
+    /// Returns true if a corner of that box fulfils `condition`, for one that holds beyond some distance if it holds
+    /// anywhere.
     pub fn any_corner(&self, condition: impl Fn([f64; 3]) -> bool) -> bool {
         self.bounds().is_some_and(|bounds| {
             (0..8).any(|corner| condition(std::array::from_fn(|axis| f64::from(bounds[corner >> axis & 1][axis]))))

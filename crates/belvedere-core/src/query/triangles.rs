@@ -1,5 +1,5 @@
-//! Triangles that block lines of sight beside the balls: of meshes that were added to a scene, such as planned
-//! buildings, and of patches of surfaces that are known from the survey.
+//! Triangles that block lines of sight beside the balls: of added meshes, such as planned buildings, and of surface
+//! patches that are known from the survey.
 
 use super::{Blocker, Coverage};
 use crate::blocking::{CONTACT, PATCH_DEPTH, Sheet};
@@ -18,14 +18,15 @@ const MAX_DEGREES: f64 = 360.0;
 /// Triangles that block lines of sight, from both sides, watertight or not: of added meshes and of surface patches.
 ///
 /// A triangle blocks a line of sight that passes through it, edges included, unless an end of the line lies on it
-/// ([`Sheet`]): within 1 mm of the plane of a mesh, and up to 0.15 m behind that of a patch. So a target on a roof or a
-/// wall is not hidden by that roof or wall, and an eye inside a closed mesh sees its inside and nothing beyond it.
+/// ([`Sheet`]). That is within 1 mm of the plane of a mesh, and up to 0.15 m behind that of a patch. A target on a roof
+/// or a wall is therefore not hidden by that roof or wall. An eye inside a closed mesh sees its inside and nothing
+/// beyond it.
 #[derive(Clone)]
 pub struct BlockingTriangles {
     tree: Arc<TriangleTree>,
     /// For each triangle of the tree.
     faces: Arc<[Face]>,
-    /// Of the meshes.
+    /// Names of the meshes.
     names: Arc<[String]>,
 }
 
@@ -35,11 +36,11 @@ impl std::fmt::Debug for BlockingTriangles {
     }
 }
 
-/// What is known of a triangle beside its corners.
+/// Properties of a triangle beside its corners.
 #[derive(Clone, Copy)]
 struct Face {
     sheet: Sheet,
-    /// What it is part of: a mesh or a patch.
+    /// Mesh or patch that it belongs to.
     blocker: Blocker,
 }
 
@@ -144,8 +145,8 @@ impl BlockingTriangles {
         self.tree.triangles().iter().zip(self.faces.iter()).map(|(corners, face)| (corners, face.blocker))
     }
 
-    /// Without the triangles of meshes for whose middles, local metres, `is_cleared` is true; `None` where none is
-    /// left. Patches stay.
+    /// Removes the triangles of meshes for whose middles, local metres, `is_cleared` is true; `None` if none is left.
+    /// Patches stay.
     ///
     /// # Errors
     /// Those of [`TriangleTree::new`].
@@ -157,7 +158,7 @@ impl BlockingTriangles {
         if left.is_empty() { Ok(None) } else { Self::of_triangles(&left, self.names.to_vec()).map(Some) }
     }
 
-    /// Whether any triangle is one of a mesh that was added.
+    /// Returns true if any triangle is one of an added mesh.
     #[must_use]
     pub fn has_meshes(&self) -> bool {
         self.faces.iter().any(|face| face.blocker.mesh().is_some())
@@ -191,8 +192,8 @@ impl BlockingTriangles {
         }
     }
 
-    /// Whether a place, local metres, lies inside a mesh, which may lack its bottom: lines up, east and north pass
-    /// through an odd number of surfaces each.
+    /// Returns true if a place, local metres, lies inside a mesh, which may lack its bottom: lines up, east and north
+    /// pass through an odd number of surfaces each.
     #[must_use]
     pub fn encloses(&self, place: [f64; 3]) -> bool {
         if !place.iter().all(|v| v.is_finite()) {
@@ -210,8 +211,8 @@ impl BlockingTriangles {
         above.into_iter().filter(|blocker| blocker.mesh().is_some()).any(is_inside)
     }
 
-    /// Whether a triangle blocks the line of sight from `target` to `range` metres (infinite for a direction) along the
-    /// unit vector `towards`.
+    /// Returns true if a triangle blocks the line of sight from `target` to `range` metres (infinite for a direction)
+    /// along the unit vector `towards`.
     #[must_use]
     pub fn blocks(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> bool {
         let ray = Ray { origin: target, direction: towards, ranges: [0.0, range] };
@@ -219,8 +220,8 @@ impl BlockingTriangles {
         self.blocks_piece(&ray, &ends)
     }
 
-    /// Calls `visit` with the numbers of those of the lines of sight from `targets`, neighbours together, along the
-    /// unit vector `towards` without end that a triangle blocks: those that [`BlockingTriangles::blocks`] finds.
+    /// Calls `visit(index)` for each line of sight that a triangle blocks, as [`BlockingTriangles::blocks`] finds it.
+    /// The lines start at `targets`, neighbours in space, and run along the unit vector `towards` without end.
     pub(super) fn each_blocked(&self, targets: &[[f64; 3]], towards: [f64; 3], mut visit: impl FnMut(usize)) {
         self.tree.any_of(targets, towards, |number, row| {
             let blocks = self.is_between(row, &LineEnds { target: targets[number], viewer: None });
@@ -231,7 +232,7 @@ impl BlockingTriangles {
         });
     }
 
-    /// Whether a triangle blocks the piece `ray` of a line of sight between `ends`.
+    /// Returns true if a triangle blocks the piece `ray` of a line of sight between `ends`.
     pub(super) fn blocks_piece(&self, ray: &Ray, ends: &LineEnds) -> bool {
         self.tree.any(ray, |row| self.is_between(row, ends))
     }
@@ -241,7 +242,7 @@ impl BlockingTriangles {
         self.nearest(ray, &LineEnds { target: ray.origin, viewer: None }).map(|(_, range)| range)
     }
 
-    /// What the piece `ray` of a line of sight between `ends` meets last, and the range.
+    /// Returns the last obstacle on the piece `ray` of a line of sight between `ends`, and its range.
     pub(super) fn farthest(&self, ray: &Ray, ends: &LineEnds) -> Option<(Blocker, f64)> {
         let mut last: Option<(usize, f64)> = None;
         self.tree.each(ray, |row, range| {
@@ -253,7 +254,7 @@ impl BlockingTriangles {
         Some((self.faces.get(row)?.blocker, range))
     }
 
-    /// What the piece `ray` of a line of sight between `ends` meets first, and the range.
+    /// Returns the first obstacle on the piece `ray` of a line of sight between `ends`, and its range.
     pub(super) fn nearest(&self, ray: &Ray, ends: &LineEnds) -> Option<(Blocker, f64)> {
         let (row, range) = self.tree.nearest(ray, |row| self.is_between(row, ends))?;
         Some((self.faces.get(row)?.blocker, range))
@@ -272,7 +273,7 @@ impl BlockingTriangles {
 
     /// The triangles between `ends` whose boxes may meet one of `boxes`, given by their lowest and highest corner,
     /// local metres; each once.
-    pub(super) fn near(
+    pub(super) fn triangles_near(
         &self,
         boxes: impl Iterator<Item = [[f64; 3]; 2]>,
         ends: &LineEnds,
@@ -285,7 +286,7 @@ impl BlockingTriangles {
         rows.into_iter().filter_map(|row| self.tree.triangles().get(row))
     }
 
-    /// Where a line passes through surfaces: of what, and the range, in this order.
+    /// Returns the surfaces that a line passes through, each with its range, sorted by both.
     pub(super) fn passages(&self, ray: &Ray) -> Vec<(Blocker, f64)> {
         let mut passages = Vec::new();
         self.tree.each(ray, |row, range| {
@@ -298,7 +299,7 @@ impl BlockingTriangles {
     }
 
     /// The triangles that do not give way to `eye`, and what they are part of.
-    pub(super) fn before(&self, eye: [f64; 3]) -> impl Iterator<Item = (Corners, Blocker)> + '_ {
+    pub(super) fn triangles_before(&self, eye: [f64; 3]) -> impl Iterator<Item = (Corners, Blocker)> + '_ {
         let seen = move |(_, face): &(&Corners, &Face)| !face.sheet.gives_way_to(eye);
         let faces = self.tree.triangles().iter().zip(self.faces.iter()).filter(seen);
         faces.map(|(corners, face)| (*corners, face.blocker))

@@ -1,17 +1,17 @@
-//! What any way of answering visibility has in common.
+//! Interface of all methods that answer visibility.
 
 use super::Answer;
 use crate::ray_index::Ray;
 use belvedere_data::{Error, Parameter, Result};
 
-/// Who looks at the targets: the other end of each line of sight.
+/// Viewer of the targets: the other end of each line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Viewer<'a> {
     /// Infinitely far away, in this direction from the scene (local, unit length): the sun.
     Direction([f64; 3]),
-    /// At one point, local metres: an observer.
+    /// One point, local metres: an observer.
     Eye([f64; 3]),
-    /// At a point of its own for each target, (M, 3), local metres: pairs of points.
+    /// One point for each target, (M, 3), local metres: pairs of points.
     Each(&'a [[f32; 3]]),
 }
 
@@ -38,8 +38,8 @@ pub trait Visibility: Sync {
         self.seen_from(viewer)?(targets)
     }
 
-    /// How likely each of `targets`, (M, 3) local metres, is visible for `viewer`, 0 to 1, NaN where there is no
-    /// answer; `None`, the default, for a method that does not say.
+    /// Returns the probability that each of `targets`, (M, 3) local metres, is visible for `viewer`, 0 to 1, NaN
+    /// without an answer. `None`, the default, for a method without probabilities.
     ///
     /// # Errors
     /// As [`Visibility::visible`].
@@ -84,9 +84,9 @@ impl Viewer<'_> {
         }
     }
 
-    /// The line of sight of target number `index` as exact answers look at it: between both ends, from the first of
-    /// them by [`Ray::between`], or from the target towards a viewer infinitely far away. `None` where a coordinate is
-    /// not finite or the two points are the same.
+    /// Returns the line of sight of target `index` for exact answers: between both ends, from the first of them by
+    /// [`Ray::between`], or from the target towards a viewer infinitely far away. `None` if a coordinate is not finite
+    /// or the two points coincide.
     #[must_use]
     pub fn sight(&self, index: usize, target: [f32; 3]) -> Option<Ray> {
         match self {
@@ -99,8 +99,8 @@ impl Viewer<'_> {
         }
     }
 
-    /// The line of sight of target number `index`: unit vector from the target to its viewer and the range of the
-    /// viewer (infinite for a direction), or `None` where a coordinate is not finite or the two points are the same.
+    /// Returns the line of sight of target `index`: the unit vector from the target to its viewer and the range of the
+    /// viewer (infinite for a direction). `None` if a coordinate is not finite or the two points coincide.
     #[must_use]
     pub fn line_of_sight(&self, index: usize, target: [f32; 3]) -> Option<([f64; 3], f64)> {
         let target = target.map(f64::from);

@@ -17,9 +17,9 @@ use rayon::prelude::*;
 
 /// Boxes from which on a tree is made of parts: fewer take some hundredths of a second.
 const LARGE: usize = 1 << 16;
-/// Most boxes of a leaf.
+/// Maximum number of boxes of a leaf.
 const MAX_IN_LEAF: u32 = 3;
-/// What tells a node among the parts of a node, beside the number of its place.
+/// Bits that mark a node among the parts of a node, beside its place.
 const IS_NODE: u8 = 0b0011_1000;
 
 /// The tree over `boxes`, which must not be empty. It depends on the boxes only, not on the number of threads.
@@ -41,8 +41,9 @@ fn tree_of(boxes: &[Aabb], rows: &mut [u32]) -> CwBvh {
     joined(&trees)
 }
 
-/// The tree over the boxes of `rows`, made at once: the steps of `build_cwbvh`, but for its check of the boxes in debug
-/// builds, which allows for errors of 1e-5 and panics on sound trees wider than some hundred metres.
+/// Builds the tree over the boxes of `rows` at once. The steps are those of `build_cwbvh` without its check of the
+/// boxes in debug builds. That check allows for errors of 1e-5 and panics on sound trees wider than some hundred
+/// metres.
 fn one_tree(boxes: &[Aabb], rows: &[u32]) -> CwBvh {
     let params = BvhBuildParams::medium_build();
     let of_rows: Vec<Aabb> = rows.iter().map(|&row| boxes[row as usize]).collect();

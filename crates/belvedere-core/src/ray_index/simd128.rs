@@ -1,7 +1,7 @@
 //! Eight boxes in WebAssembly: the same arithmetic as [`super::walk::RayScalar`], in the same order.
 
 use super::walk::{LANES, Test, TreeRay};
-use crate::eight::Eight;
+use crate::f32x8::Eight;
 use obvhs::cwbvh::node::CwBvhNode;
 
 pub(super) struct RaySimd128;

@@ -9,8 +9,8 @@ use smallvec::SmallVec;
 
 /// Children of a node.
 pub(super) const LANES: usize = 8;
-/// What replaces the inverse of a component that is zero or nearly so: the ray then leaves the box between two sides at
-/// ranges beyond every scene, and products with coordinates stay finite.
+/// Replacement for the inverse of a component that is zero or nearly so. The ray then leaves the box between two sides
+/// at ranges beyond every scene, and products with coordinates stay finite.
 const STEEPEST: f32 = 1e20;
 
 /// A ray as the tree takes it, counted from the middle of the scene.
@@ -19,9 +19,9 @@ pub(super) struct TreeRay {
     origin: [f32; 3],
     /// One by each component of the direction.
     inverse: [f32; 3],
-    /// How much larger boxes are taken for along each axis, metres: how far rays that run beside this one lie from it.
+    /// Increase of boxes along each axis, metres: the maximum distance of rays that run beside this one.
     room: [f32; 3],
-    /// How far the ray runs, metres.
+    /// Length of the ray, metres.
     pub(super) reach: f32,
     /// The bits of a child's number that are turned over, so that the children with the highest numbers come first
     /// along the ray.
@@ -37,8 +37,9 @@ impl TreeRay {
         Self { origin, inverse, room, reach, turned }
     }
 
-    /// Ranges at which the ray meets the sides of the children of a node along an axis are multiples of the first
-    /// number, counted from the second for low sides and from the third for high ones.
+    /// Returns the factors of the ranges at which the ray meets the sides of the children of a node along an axis.
+    /// Ranges are multiples of the first number, counted from the second for low sides and from the third for high
+    /// ones.
     #[inline(always)]
     pub(super) fn scale(&self, node: &CwBvhNode) -> [[f32; 3]; 3] {
         let (corner, steps) = (node.p.to_array(), node.compute_extent().to_array());
@@ -53,7 +54,7 @@ impl TreeRay {
 /// A set of children, a bit each.
 type Children = u8;
 
-/// How the boxes of a node are tested.
+/// Test of the boxes of a node.
 pub(super) trait Test {
     /// The children of a node whose boxes the ray meets.
     fn met(node: &CwBvhNode, ray: &TreeRay) -> Children;
@@ -114,7 +115,7 @@ const fn turned() -> [[Children; 256]; LANES] {
     table
 }
 
-/// What is done with the rows that a walk comes to.
+/// Visitor of the rows that a walk comes to.
 pub(crate) trait Visit {
     /// Looks at a row, and returns how far the ray still runs, metres; below zero ends the walk.
     fn visit(&mut self, row: usize) -> f32;

@@ -1,4 +1,4 @@
-//! How densely the walls of buildings are covered: what airborne scans are poorest in.
+//! Density of points on the walls of buildings, which airborne scans cover worst.
 
 use std::f64::consts::PI;
 
@@ -16,8 +16,8 @@ const BUILDING: u8 = 6;
 const STEEPEST_NORMAL: f32 = 0.3;
 /// Number of neighbours that give the area of wall that a point represents.
 const NEIGHBORS: u8 = 8;
-/// How far the eighth neighbour on a wall may be for a point to represent wall, metres: at this distance a wall has a
-/// tenth of a point per square metre, fewer than any survey of buildings leaves.
+/// Maximum distance to the eighth neighbour on a wall of a point that represents wall, metres. At this distance a wall
+/// has a tenth of a point per square metre, fewer than in any survey of buildings.
 const MAX_REACH: f64 = 5.0;
 /// Fewest points on walls, near each other, whose area is estimated.
 const MIN_STEEP: usize = 50;
@@ -32,7 +32,7 @@ const SQUARE: f32 = 64.0;
 pub struct FacadeSummary {
     /// Building points that were looked at.
     pub building_point_count: usize,
-    /// Those of them on steep surfaces.
+    /// Number of them on steep surfaces.
     pub steep_point_count: usize,
     /// The walls; `None` where fewer than 50 of these lie near each other, which is too few to estimate them.
     pub walls: Option<Walls>,
@@ -50,11 +50,11 @@ pub struct Walls {
 impl FacadeSummary {
     /// Facade density of `cloud`; `None` where it has no points of class 6 (building).
     ///
-    /// Points of class 6 are on a wall where the normal of their 16 neighbours of that class is within 17° of the
-    /// horizon. Each represents an eighth of the disc that reaches to its eighth neighbour on a wall, unless that is
-    /// farther than 5 m. On simulated scans a tenth of the wall points, near eaves and corners, is taken for roof, and
-    /// the density comes out within a quarter of that of the walls above ground. Walls without any points do not count;
-    /// roofs steeper than 73° do. Clouds of more than two million building points are judged by a part of their area.
+    /// Points of class 6 are on a wall if the normal of their 16 neighbours of that class is within 17° of the horizon.
+    /// Each represents an eighth of the disc that reaches to its eighth neighbour on a wall, unless that is farther
+    /// than 5 m. On simulated scans a tenth of the wall points, near eaves and corners, is taken for roof, and the
+    /// density is within a quarter of that of the walls above ground. Walls without any points do not count; roofs
+    /// steeper than 73° do. Clouds of more than two million building points are sampled by a part of their area.
     ///
     /// # Errors
     /// Those of [`NeighborIndex::new`] and [`estimate`].

@@ -8,32 +8,57 @@ use belvedere_data::{Bounds, Result};
 
 /// A normal is along an axis where its component is more than this: within 14°.
 pub(super) const ALONG: f32 = 0.97;
-/// Points at either end of an axis that count as its ends no more, as a share: noise, and what is seen through doors.
-const TRIMMED: f64 = 0.01;
-/// Part of the height, from either end, in which floor and ceiling lie: thresholds, beams and lamps.
-const SLAB: f32 = 0.12;
-/// Least share of the level points in each of the two.
-const MIN_SLAB_SHARE: f64 = 0.2;
-/// Least share of the points on level surfaces and on walls.
-const MIN_LEVEL_SHARE: f64 = 0.15;
-const MIN_WALL_SHARE: f64 = 0.1;
-/// How high a room is at most as a share of its sides, if nothing but its extents tells its height.
-const MAX_HEIGHT: f32 = 0.8;
-/// How high it is at least as a share of its longer side: a ceiling over a field is a town seen from far above.
-const MIN_HEIGHT: f32 = 0.04;
-/// Heights of rooms, metres: building rules ask for 2.1 m and more, and stairwells and halls reach three storeys.
-const ROOM_HEIGHTS: [f32; 2] = [2.1, 9.0];
-/// A corridor is longer than so many times its height, and narrower than so many times.
-const CORRIDOR_LENGTH: f32 = 5.0;
-const CORRIDOR_WIDTH: f32 = 1.5;
 /// Units of exports, metres.
 const UNITS: [f64; 2] = [0.01, 0.001];
-/// How many times as many points stand in the lower half of a room as in the upper one, if furniture shows the floor.
-const MIN_FURNITURE: f64 = 1.05;
+
+/// Thresholds for rooms. Neighbouring values were not measured.
+#[derive(Clone, Copy, Debug)]
+struct RoomParams {
+    /// Share of the points that are cut off at either end of an axis, 0 to 0.5. Default 0.01: noise, and points seen
+    /// through doors.
+    trimmed: f64,
+    /// Thickness of the slabs of floor and ceiling, as a share of the height, 0 to 0.5. Default 0.12: thresholds, beams
+    /// and lamps.
+    slab: f32,
+    /// Minimum share of the level points in each slab, 0 to 0.5. Default 0.2.
+    min_slab_share: f64,
+    /// Minimum share of the points on level surfaces, 0 to 1. Default 0.15.
+    min_level_share: f64,
+    /// Minimum share of the points on walls, 0 to 1. Default 0.1.
+    min_wall_share: f64,
+    /// Maximum height as a share of the shorter side, if nothing but its extents shows the height. Default 0.8.
+    max_height: f32,
+    /// Minimum height as a share of the longer side. Default 0.04: a ceiling over a field is a town seen from far above.
+    min_height: f32,
+    /// Minimum and maximum height of a room, metres. Default 2.1 to 9: building rules require 2.1 m and more, and
+    /// stairwells and halls have up to three storeys.
+    heights: [f32; 2],
+    /// Minimum length of a corridor, in heights. Default 5.
+    corridor_length: f32,
+    /// Maximum width of a corridor, in heights. Default 1.5.
+    corridor_width: f32,
+    /// Minimum ratio of points in the lower half of a room to those in the upper one, if furniture shows the floor.
+    /// Default 1.05.
+    min_furniture: f64,
+}
+
+const ROOM: RoomParams = RoomParams {
+    trimmed: 0.01,
+    slab: 0.12,
+    min_slab_share: 0.2,
+    min_level_share: 0.15,
+    min_wall_share: 0.1,
+    max_height: 0.8,
+    min_height: 0.04,
+    heights: [2.1, 9.0],
+    corridor_length: 5.0,
+    corridor_width: 1.5,
+    min_furniture: 1.05,
+};
 
 /// A closed room along an axis.
 struct RoomExtent {
-    /// From floor to ceiling, in the unit of the cloud.
+    /// Distance from floor to ceiling, in the unit of the cloud.
     height: f32,
     /// Points above the floor in the lower half of the room for each one in the upper half.
     furniture: f64,
@@ -41,11 +66,11 @@ struct RoomExtent {
     level_share: f64,
 }
 
-/// Whether the cloud is a room with its second axis up and not its third: floor and ceiling face along y, in two slabs
-/// at its ends, walls along the others, and what stands on a floor does not speak for z.
+/// Returns true if the cloud is a room with its second axis up and not its third. Floor and ceiling face along y, in
+/// two slabs at its ends, and walls along the others. Objects on a floor must not indicate z.
 pub(super) fn is_room_along_y(positions: &[[f32; 3]], normals: &[[f32; 3]]) -> bool {
     let Some(along_y) = room_along(1, positions, normals) else { return false };
-    if !(ROOM_HEIGHTS[0]..=ROOM_HEIGHTS[1]).contains(&along_y.height) && unit_of(along_y.height).is_none() {
+    if !(ROOM.heights[0]..=ROOM.heights[1]).contains(&along_y.height) && unit_of(along_y.height).is_none() {
         return false;
     }
     if is_corridor(positions, along_y.height) {
@@ -53,7 +78,7 @@ pub(super) fn is_room_along_y(positions: &[[f32; 3]], normals: &[[f32; 3]]) -> b
     }
     room_along(2, positions, normals).is_none_or(|along_z| {
         along_z.level_share < along_y.level_share
-            && (along_z.furniture < MIN_FURNITURE || along_z.furniture < along_y.furniture)
+            && (along_z.furniture < ROOM.min_furniture || along_z.furniture < along_y.furniture)
     })
 }
 
@@ -63,7 +88,8 @@ fn unit_of_room(positions: &[[f32; 3]], normals: &[[f32; 3]]) -> Option<f64> {
     [2, 1].into_iter().find_map(|axis| unit_of(room_along(axis, positions, normals)?.height))
 }
 
-/// What the height of a room says against metres, which a cloud without a reference system is taken to be in.
+/// Returns the contradiction between the height of a room and the unit, metres by assumption for a cloud without a
+/// reference system.
 fn unit_contradiction(positions: &[[f32; 3]], normals: &[[f32; 3]]) -> Option<FoundContradiction> {
     let unit = unit_of_room(positions, normals)?;
     let name = if unit < UNITS[0] { "millimetres" } else { "centimetres" };
@@ -93,18 +119,18 @@ pub fn unit_contradiction_of(positions: &[[f32; 3]], control: &Control<'_>) -> R
 fn unit_of(height: f32) -> Option<f64> {
     UNITS.into_iter().find(|unit| {
         let metres = f64::from(height) * unit;
-        (f64::from(ROOM_HEIGHTS[0])..=f64::from(ROOM_HEIGHTS[1])).contains(&metres)
+        (f64::from(ROOM.heights[0])..=f64::from(ROOM.heights[1])).contains(&metres)
     })
 }
 
-/// Whether a cloud so high along y may be a corridor that is higher, along z, than wide.
+/// Returns true if a cloud of this height along y may be a corridor that is higher, along z, than wide.
 fn is_corridor(positions: &[[f32; 3]], height: f32) -> bool {
     let Some(Bounds { low, high }) = Bounds::around(positions.iter().copied()) else { return false };
     let [x, z] = [0, 2].map(|axis: usize| high[axis] - low[axis]);
-    x.max(z) > CORRIDOR_LENGTH * height && x.min(z) < CORRIDOR_WIDTH * height
+    x.max(z) > ROOM.corridor_length * height && x.min(z) < ROOM.corridor_width * height
 }
 
-/// What closes a cloud along an axis; `None` where it is no room along it.
+/// Returns the extent of the room that closes a cloud along an axis; `None` if it is no room along it.
 fn room_along(axis: usize, positions: &[[f32; 3]], normals: &[[f32; 3]]) -> Option<RoomExtent> {
     let Bounds { low, high } = Bounds::around(positions.iter().copied())?;
     let others = [(axis + 1) % 3, (axis + 2) % 3];
@@ -112,11 +138,13 @@ fn room_along(axis: usize, positions: &[[f32; 3]], normals: &[[f32; 3]]) -> Opti
     let mut heights: Vec<f32> = positions.iter().map(|p| p[axis]).collect();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a count")]
     let at = |share: f64| ((heights.len() - 1) as f64 * share) as usize;
-    let [first, last] = [at(TRIMMED), at(1.0 - TRIMMED)];
+    let [first, last] = [at(ROOM.trimmed), at(1.0 - ROOM.trimmed)];
     let floor = *heights.select_nth_unstable_by(first, f32::total_cmp).1;
     let ceiling = *heights.select_nth_unstable_by(last, f32::total_cmp).1;
     let height = ceiling - floor;
-    if !(height > 0.0 && height <= MAX_HEIGHT * sides[0].min(sides[1]) && height >= MIN_HEIGHT * sides[0].max(sides[1]))
+    if !(height > 0.0
+        && height <= ROOM.max_height * sides[0].min(sides[1])
+        && height >= ROOM.min_height * sides[0].max(sides[1]))
     {
         return None;
     }
@@ -129,18 +157,22 @@ fn room_along(axis: usize, positions: &[[f32; 3]], normals: &[[f32; 3]]) -> Opti
             *count += usize::from(n[other].abs() > ALONG);
         }
         match part {
-            _ if part < SLAB => slabs[0] += usize::from(is_level),
-            _ if part > 1.0 - SLAB => slabs[1] += usize::from(is_level),
+            _ if part < ROOM.slab => slabs[0] += usize::from(is_level),
+            _ if part > 1.0 - ROOM.slab => slabs[1] += usize::from(is_level),
             _ if part < 0.5 => halves[0] += 1,
             _ => halves[1] += 1,
         }
     }
     let count = positions.len() as f64;
-    let is_closed = slabs.into_iter().all(|slab| slab as f64 >= MIN_SLAB_SHARE * level as f64);
-    let has_walls = walls.into_iter().map(|wall| wall as f64).sum::<f64>() >= MIN_WALL_SHARE * count;
+    let is_closed = slabs.into_iter().all(|slab| slab as f64 >= ROOM.min_slab_share * level as f64);
+    let has_walls = walls.into_iter().map(|wall| wall as f64).sum::<f64>() >= ROOM.min_wall_share * count;
     let level_share = level as f64 / count;
     let furniture = halves[0] as f64 / halves[1].max(1) as f64;
-    (is_closed && has_walls && level_share >= MIN_LEVEL_SHARE).then_some(RoomExtent { height, furniture, level_share })
+    (is_closed && has_walls && level_share >= ROOM.min_level_share).then_some(RoomExtent {
+        height,
+        furniture,
+        level_share,
+    })
 }
 
 #[cfg(test)]

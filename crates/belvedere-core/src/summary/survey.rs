@@ -1,4 +1,4 @@
-//! What kind of survey a cloud comes from, what carves its balls, and what would make its answers better.
+//! Kind of the survey of a cloud, source of the carving of its balls, and advice for better answers.
 
 use crate::pulses::{MIN_ASSUMED_SHARE, ScannerReport, come_from_the_ground};
 use crate::summary::CloudSummary;
@@ -16,11 +16,11 @@ const UNEVEN_SHARE: f64 = 0.28;
 /// A survey in one line: [`fmt::Display`] joins the three parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SurveyKind {
-    /// What the points come from.
+    /// Source of the points.
     pub kind: String,
-    /// What carves the balls.
+    /// Source of the carving.
     pub carved_by: String,
-    /// What the user can add for better answers.
+    /// Advice for better answers.
     pub advice: String,
 }
 
@@ -31,8 +31,8 @@ impl fmt::Display for SurveyKind {
 }
 
 impl SurveyKind {
-    /// Judges `cloud` by what it was counted to hold, and by `scanner`, (N, 3) local metres, NaN where unknown, as
-    /// [`locate`](crate::pulses::locate) found it by itself; `scanner` may be empty where it found nothing.
+    /// Classifies `cloud` by its summary `counted` and by `scanner`, (N, 3) local metres, NaN where unknown. `scanner`
+    /// is that of [`locate`](crate::pulses::locate) without further input; it may be empty if nothing was found.
     ///
     /// Whether pulses carve is decided as [`SceneModel::build`](crate::model::SceneModel::build) decides it.
     #[must_use]
@@ -69,7 +69,7 @@ impl SurveyKind {
         Self { kind, carved_by, advice }
     }
 
-    /// Where the scanner could not be found.
+    /// Classifies a cloud whose scanner could not be found.
     fn without_pulses(cloud: &PointCloud, counted: &CloudSummary, scanner: &[[f32; 3]]) -> Self {
         let open = pulses(cloud, scanner).filter(|(_, scanner)| scanner[2].is_finite()).count();
         let is_from_above = open as f64 >= MIN_ASSUMED_SHARE * cloud.len() as f64;
@@ -116,7 +116,7 @@ impl SurveyKind {
     }
 }
 
-/// Whether the densest twentieth of the cells, seen from above, holds [`UNEVEN_SHARE`] of the points, as near a scanner
+/// Returns true if the densest twentieth of the cells, in plan, holds [`UNEVEN_SHARE`] of the points, as near a scanner
 /// on the ground.
 fn is_uneven(positions: &[[f32; 3]], side: f64) -> bool {
     #[expect(clippy::cast_possible_truncation, reason = "saturates; clouds are not 2^31 cells wide")]
@@ -137,7 +137,7 @@ fn pulses<'a>(cloud: &'a PointCloud, scanner: &'a [[f32; 3]]) -> impl Iterator<I
     pairs.filter(move |(row, _)| is_first(*row)).map(|(_, pair)| pair)
 }
 
-/// Whether any point has a class of vegetation (ASPRS LAS 1.4, table 17).
+/// Returns true if any point has a class of vegetation (ASPRS LAS 1.4, table 17).
 fn has_vegetation(counted: &CloudSummary) -> bool {
     (3..=5).any(|class| counted.classes.contains_key(&class))
 }

@@ -1,4 +1,4 @@
-//! Whether a cloud stands on its third axis, as surveys do, or lies on its side.
+//! Test of whether a cloud stands on its third axis, as surveys do, or lies on its side.
 
 use super::room::{ALONG, is_room_along_y};
 use crate::neighbors::NeighborIndex;
@@ -8,17 +8,17 @@ use belvedere_data::control::Control;
 use belvedere_data::crs::CrsKind;
 use belvedere_data::{Bounds, Result};
 
-/// Least share of the points on flat surfaces along y of a cloud whose y is up: ground is half of most clouds.
+/// Minimum share of the points on flat surfaces along y of a cloud whose y is up: ground is half of most clouds.
 const MIN_SHARE: f64 = 0.15;
-/// How many times as many points these are as those on flat surfaces along z: walls along one axis are no more than
-/// ground and roofs.
+/// Minimum ratio of these points to those on flat surfaces along z: walls along one axis are no more than ground and
+/// roofs.
 const MIN_RATIO: f64 = 3.0;
-/// How high such a cloud is at most, as a share of its extent along x and z.
+/// Maximum height of such a cloud, as a share of its extent along x and z.
 const MAX_HEIGHT: f32 = 0.75;
 
-/// Whether `positions`, (N, 3), with unit `normals`, (N, 3), zero where a point has none, look as if y were up: most
-/// flat surfaces face along y, few along z, and the cloud is lowest along y; or it is a room whose floor and ceiling
-/// face along y.
+/// Returns true if `positions`, (N, 3), with unit `normals`, (N, 3), zero where a point has none, look as if y were up.
+/// Most flat surfaces then face along y, few along z, and the cloud is lowest along y. Or it is a room whose floor and
+/// ceiling face along y.
 #[must_use]
 pub fn looks_y_up(positions: &[[f32; 3]], normals: &[[f32; 3]]) -> bool {
     let along = |axis: usize| normals.iter().filter(|normal| normal[axis].abs() > ALONG).count() as f64;
@@ -44,7 +44,7 @@ fn is_lowest_along_y(positions: &[[f32; 3]]) -> bool {
     extent_of(positions).is_some_and(|[x, y, z]| y < MAX_HEIGHT * x.min(z))
 }
 
-/// Whether the normals are worth a look: y is the shortest side.
+/// Returns true if the normals need a test: y is the shortest side.
 fn may_lie(positions: &[[f32; 3]]) -> bool {
     extent_of(positions).is_some_and(|[x, y, z]| y < x.min(z))
 }

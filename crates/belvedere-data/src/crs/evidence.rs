@@ -1,4 +1,4 @@
-//! What speaks against a reference system: what else names one, and where it would put the coordinates.
+//! Evidence against a reference system: other names of a system, and the location of the coordinates.
 
 use super::{Crs, CrsKind, registry, unit_name, wkt};
 use crate::{Error, Parameter, Result};
@@ -14,11 +14,10 @@ const SAME_PLACE: f64 = 5.0;
 /// The same without the steps between datums, metres: these move places by a kilometre at most.
 const SAME_ROUGH_PLACE: f64 = 5e3;
 
-/// What is further apart than this contradicts itself, metres: no survey, and no country's use of the zone beside it,
-/// reaches so far.
+/// Minimum distance of a contradiction, metres: no survey, and no country's use of a neighbouring zone, extends so far.
 pub const CONTRADICTION_DISTANCE: f64 = 300e3;
 
-/// How two systems for the same coordinates compare.
+/// Comparison of two systems for the same coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Comparison {
     /// They say the same, or one of them says nothing of a place.
@@ -90,7 +89,7 @@ impl Crs {
         Some(distance_on_earth(place, [latitude.clamp(south, north), nearest].map(f64::to_radians)))
     }
 
-    /// Whether the system says something of heights.
+    /// Returns true if the system defines heights.
     #[must_use]
     pub fn names_heights(&self) -> bool {
         let has_vertical_part = || self.wkt.as_deref().is_some_and(wkt::has_vertical_part);
@@ -167,8 +166,8 @@ impl Crs {
         self.place_of(coordinates).or_else(|| self.grid_projection().ok()?.unproject(metres).ok())
     }
 
-    /// Refuses this system, which a user gives, for the file at `path`: where the file names another, and where the
-    /// coordinates, in the unit of the file, are far from the area of use.
+    /// Refuses this system, which a user gives, for the file at `path`. It is refused if the file names another, and if
+    /// the coordinates, in the unit of the file, are far from the area of use.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`].

@@ -1,4 +1,4 @@
-//! What stands in for the database of reference systems in a build without the cargo feature `crs`: nothing is known.
+//! Replacement for the database of reference systems in a build without the cargo feature `crs`: nothing is known.
 
 use super::Crs;
 

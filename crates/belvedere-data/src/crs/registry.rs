@@ -48,12 +48,12 @@ pub(super) fn wkt(text: &str) -> Option<String> {
     proj_wkt::to_wkt(&proj_wkt::parse_crs(text).ok()?).ok()
 }
 
-/// From longitude and latitude of WGS 84 in degrees to the coordinates of a system, and back.
+/// Conversion between longitude and latitude of WGS 84 in degrees and the coordinates of a system.
 pub(super) struct CrsProjection {
     definition: String,
-    /// With the step between datums that is best for the area of the system.
+    /// Conversion with the step between datums that is best for the area of the system.
     of_area: Projecting,
-    /// With the step that is best at the first place; on failure the reason.
+    /// Conversion with the step that is best at the first place; on failure the reason.
     near: OnceLock<Result<Projecting, String>>,
 }
 
@@ -88,7 +88,7 @@ impl CrsProjection {
 
     /// Coordinates of a longitude and latitude in degrees; on failure the reason.
     pub(super) fn forward(&self, longitude: f64, latitude: f64) -> Result<(f64, f64), String> {
-        self.near(longitude, latitude)?.forward(longitude, latitude)
+        self.projecting_near(longitude, latitude)?.forward(longitude, latitude)
     }
 
     /// Longitude and latitude in degrees of coordinates; on failure the reason.
@@ -97,10 +97,10 @@ impl CrsProjection {
             return near.as_ref().map_err(Clone::clone)?.back(x, y);
         }
         let (longitude, latitude) = self.of_area.back(x, y)?;
-        self.near(longitude, latitude)?.back(x, y)
+        self.projecting_near(longitude, latitude)?.back(x, y)
     }
 
-    fn near(&self, longitude: f64, latitude: f64) -> Result<&Projecting, String> {
+    fn projecting_near(&self, longitude: f64, latitude: f64) -> Result<&Projecting, String> {
         let choose = || {
             if self.of_area.is_without_step() {
                 return Ok(self.of_area.clone());
@@ -149,7 +149,7 @@ impl Projecting {
         Ok(Self::of(valid.unwrap_or(found)))
     }
 
-    /// Without a step between datums.
+    /// Creates the conversion without a step between datums.
     fn untied(system: &CrsDef) -> Result<Self, String> {
         let wgs_84 = proj_core::lookup_epsg(4326).ok_or("WGS 84 is not in the database")?;
         let horizontal = system.horizontal_crs().ok_or("it has no horizontal part")?;
@@ -169,7 +169,7 @@ impl Projecting {
         Self { inverse: forward.inverse().ok(), forward, is_north_first }
     }
 
-    /// Whether both datums are taken as one.
+    /// Returns true if both datums are treated as one.
     fn is_without_step(&self) -> bool {
         self.forward.selected_operation().id.is_none()
     }
@@ -190,8 +190,8 @@ fn parsed(definition: &str) -> Result<CrsDef, String> {
     proj_wkt::parse_crs(definition).map_err(|error| error.to_string())
 }
 
-/// Whether a datum is a frame of the whole earth, as all are of the ellipsoids of GRS 80, WGS 84 and CGCS2000: these
-/// agree with WGS 84 to 2 m. What is left out has such an ellipsoid and other axes.
+/// Returns true if a datum is a frame of the whole earth, as all are of the ellipsoids of GRS 80, WGS 84 and CGCS2000:
+/// these agree with WGS 84 to 2 m. Exceptions have such an ellipsoid and other axes.
 fn is_geocentric(system: &CrsDef) -> bool {
     let ellipsoid = system.datum().ellipsoid();
     let base = system.base_geographic_crs_epsg().and_then(name_of_code).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! How a reference system is written into files: well-known text, EPSG codes and GeoTIFF keys.
+//! Texts of reference systems in files: well-known text, EPSG codes and GeoTIFF keys.
 
 use super::{Crs, CrsKind, UNIT_CODES, registry};
 
@@ -13,7 +13,7 @@ pub struct GeoKeys {
     pub text: String,
 }
 
-/// What the raster keys should say besides the system.
+/// Content of the raster keys besides the system.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum KeyUse {
     /// Points of a LAS file.
@@ -29,8 +29,8 @@ fn codes(crs: &Crs) -> impl Iterator<Item = String> {
     compound.into_iter().chain(crs.epsg.map(|horizontal| format!("EPSG:{horizontal}")))
 }
 
-/// What the code or else the text of the system says, for systems put together by hand.
-fn looked_up(crs: &Crs) -> Option<Crs> {
+/// Looks up the code or else the text of a system that was made by hand.
+fn look_up(crs: &Crs) -> Option<Crs> {
     codes(crs).chain(crs.wkt.clone()).find_map(|text| Crs::parse(&text).ok())
 }
 
@@ -46,7 +46,7 @@ pub fn wkt_line(crs: &Crs) -> Option<String> {
 
 /// GeoTIFF keys for the system and its unit, or `None` where nothing is known of it but that it is in metres.
 pub fn geo_keys(crs: &Crs, key_use: KeyUse) -> Option<GeoKeys> {
-    let known = looked_up(crs).unwrap_or_else(|| crs.clone());
+    let known = look_up(crs).unwrap_or_else(|| crs.clone());
     let key = |code: Option<u32>| code.and_then(|code| u16::try_from(code).ok());
     let code = key(known.horizontal_epsg().or(crs.epsg));
     let wkt = wkt_line(crs);
@@ -123,7 +123,7 @@ pub fn pieces(key: &str, text: &str) -> Vec<String> {
     lines
 }
 
-/// What the lines that begin with `key` say, put together in order; empty where there is none.
+/// Joins the lines that begin with `key`, in order; empty if there is none.
 pub fn joined<'a>(key: &str, lines: impl Iterator<Item = &'a str>) -> String {
     lines
         .filter_map(|line| line.trim().split_once(' ').filter(|&(k, _)| k == key))

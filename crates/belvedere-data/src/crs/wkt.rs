@@ -1,5 +1,5 @@
-//! Just enough of well-known text, versions 1 and 2, to learn kind, unit and codes even where a file strays from the
-//! standard (a vertical system inside the projected one, feet with the factor 1).
+//! Partial parser of well-known text, versions 1 and 2, for kind, unit and codes. It also accepts files that deviate
+//! from the standard, such as a vertical system inside the projected one, or feet with the factor 1.
 
 use super::{Crs, CrsKind, INTERNATIONAL_FOOT, US_SURVEY_FOOT};
 
@@ -65,8 +65,8 @@ fn unit_of_third_axis(horizontal: &WktNode) -> Option<f64> {
     third.and_then(unit).or(of_lengths)
 }
 
-/// What speaks against axes: heights that count downwards, and places that count to the west, are read as heights and
-/// eastings.
+/// Describes the evidence against axes: heights that count downwards, and places that count to the west, are read as
+/// heights and eastings.
 fn doubt_of_axes(horizontal: &WktNode, vertical: Option<&WktNode>) -> Option<String> {
     let directions = |node: &WktNode| -> Vec<String> {
         let of_axis = |child: &WktNode| child.values.get(1).map(|direction| direction.to_ascii_lowercase());
@@ -82,7 +82,7 @@ fn doubt_of_axes(horizontal: &WktNode, vertical: Option<&WktNode>) -> Option<Str
     is_west.then(|| "an axis counts to the west, and was read as if it counted to the east".to_owned())
 }
 
-/// What speaks against a unit that cannot be: zero, negative, or no number.
+/// Describes the evidence against an impossible unit: zero, negative, or no number.
 fn doubt_of_units(kind: CrsKind, horizontal: &WktNode, vertical: Option<&WktNode>) -> Option<String> {
     let of_plane = Some(horizontal).filter(|_| kind != CrsKind::Geographic);
     of_plane.into_iter().chain(vertical).find_map(|node| {
@@ -145,7 +145,7 @@ pub(super) fn area_by_parameters(text: &str) -> Option<[f64; 4]> {
     (is_greenwich && is_in_degrees).then_some(area)
 }
 
-/// Whether the text has a vertical system.
+/// Returns true if the text has a vertical system.
 pub(super) fn has_vertical_part(text: &str) -> bool {
     parse(text).is_some_and(|root| root.find(VERTICAL).is_some())
 }
@@ -163,8 +163,8 @@ pub(super) fn with_heights(horizontal: &str, metres: f64) -> String {
     )
 }
 
-/// What in the text speaks against itself: its zone of UTM against its central meridian, its unit against that of its
-/// code.
+/// Describes a contradiction inside the text: between its zone of UTM and its central meridian, or its unit and that of
+/// its code.
 fn doubt(root: &WktNode, crs: &Crs) -> Option<String> {
     let horizontal = horizontal(root)?;
     let zone = crs.epsg.and_then(zone_of_code).or_else(|| zone_of_name(horizontal.values.first()?));

@@ -31,14 +31,14 @@ fn checked_size(size_px: [usize; 2]) -> Result<[usize; 2]> {
 }
 
 impl View {
-    /// What a pinhole camera at `eye` sees that looks at `look_at`, both local metres: a picture of `size_px` pixels
-    /// (width, height) and `fov` radians from its left to its right edge, of what is `near` to `far` metres deep. The
-    /// picture's up is the world's up, or north when looking straight down or up.
+    /// Creates the view of a pinhole camera at `eye` that looks at `look_at`, both local metres. The picture has
+    /// `size_px` pixels (width, height), spans `fov` radians from its left to its right edge, and shows depths from
+    /// `near` to `far` metres. The picture's up is the world's up, or north when looking straight down or up.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] where a position is not finite or both are the same, for an angle that is not above
-    /// 0 and at most 175°, for an empty picture or one of more than [`MAX_PIXEL_COUNT`] pixels, and for limits of depth
-    /// that are not 0 ≤ `near` < `far`.
+    /// [`Error::InvalidParameter`] if a position is not finite or both are the same, and for an angle that is not above
+    /// 0 and at most 175°. Also for an empty picture or one of more than [`MAX_PIXEL_COUNT`] pixels, and for limits of
+    /// depth that are not 0 ≤ `near` < `far`.
     pub fn perspective(
         eye: [f64; 3],
         look_at: [f64; 3],
@@ -67,14 +67,14 @@ impl View {
         Self { frame: ViewFrame::looking(eye, forward), projection, size_px }.with_limits(near, far)
     }
 
-    /// Everything up to `half_angle` radians off `axis` (local, any length), as seen from `eye`, local metres, in a
-    /// stereographic map of `size_px` by `size_px` pixels. The corners of the square show what lies farther off. The
-    /// picture's up is the world's up, or north for an axis straight up or down; one looks from the inside, so that
-    /// east lies left of north on a map around the zenith.
+    /// Creates a stereographic view of everything up to `half_angle` radians off `axis` (local, any length), seen from
+    /// `eye`, local metres, with `size_px` by `size_px` pixels. The corners of the square show directions farther off.
+    /// The picture's up is the world's up, or north for an axis straight up or down. It is seen from the inside, so
+    /// that east lies left of north on a map around the zenith.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] where the eye is not finite, the axis has no direction, the half-angle is not above
-    /// 0 and at most 170°, or the picture is empty or has more than [`MAX_PIXEL_COUNT`] pixels.
+    /// [`Error::InvalidParameter`] if the eye is not finite, the axis has no direction, or the half-angle is not above
+    /// 0 and at most 170°. Also if the picture is empty or has more than [`MAX_PIXEL_COUNT`] pixels.
     pub fn fisheye(eye: [f64; 3], axis: [f64; 3], half_angle: f64, size_px: usize) -> Result<Self> {
         let Some(forward) = unit(axis) else {
             return Err(Error::InvalidParameter {
@@ -115,9 +115,9 @@ impl View {
     }
 }
 
-/// Unit vector (local) through the middle of a pixel (column, row) of a panorama of `width` columns and half as many
-/// rows: a column is an azimuth, clockwise from south at the left edge over west, north in the middle and east to south
-/// again, a row an elevation, from the zenith to the nadir.
+/// Returns the unit vector (local) through the middle of a pixel (column, row) of a panorama of `width` columns and
+/// half as many rows. A column is an azimuth: clockwise from south at the left edge over west, north in the middle and
+/// east to south again. A row is an elevation, from the zenith to the nadir.
 #[must_use]
 pub fn panorama_direction(width: usize, [column, row]: [usize; 2]) -> [f64; 3] {
     let step = 2.0 * PI / width.max(1) as f64;

@@ -1,4 +1,4 @@
-//! Where a viewer is and which way its picture lies.
+//! Position of a viewer and orientation of its picture.
 
 use crate::vector::{cross, dot, unit};
 

@@ -9,9 +9,9 @@ pub use central::panorama_direction;
 pub use frame::ViewFrame;
 pub use projection::Projection;
 
-/// Most pixels a view may have, so that a mistyped pixel size is an error and not a crash: 1 GiB of f32.
+/// Maximum number of pixels a view may have, so that a mistyped pixel size is an error and not a crash: 1 GiB of f32.
 pub const MAX_PIXEL_COUNT: usize = 1 << 28;
-/// Most pixels on a side: longer pictures are slips, and many programs cannot open them.
+/// Maximum number of pixels on a side: longer pictures are slips, and many programs cannot open them.
 pub const MAX_SIDE: usize = 1 << 16;
 /// Width and height of a camera where no size is given, pixels: what screens show.
 pub const CAMERA_SIZE: [usize; 2] = [1280, 720];
@@ -37,8 +37,8 @@ pub fn to_sun(azimuth: f64, elevation: f64) -> [f64; 3] {
     [azimuth.sin() * elevation.cos(), azimuth.cos() * elevation.cos(), elevation.sin()]
 }
 
-/// Pixel size, metres, that suits a scene between two corners: 0.25 m, half the usual spacing of airborne scans, or a
-/// thousandth of the extent where the scene is a small object.
+/// Returns a pixel size, metres, for a scene between two corners: 0.25 m, half the usual spacing of airborne scans, or
+/// a thousandth of the extent of a small object.
 #[must_use]
 pub fn default_pixel_size(low: [f64; 3], high: [f64; 3]) -> f64 {
     let extent = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);

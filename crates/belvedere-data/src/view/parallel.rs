@@ -11,8 +11,8 @@ impl View {
     /// `p0` is local; all lengths are metres.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] where a value is not finite, a vector has no length, the two are not at right angles
-    /// (to a thousandth), or the picture would be empty or have more than [`MAX_PIXEL_COUNT`] pixels.
+    /// [`Error::InvalidParameter`] if a value is not finite, a vector has no length, or the two are not at right angles
+    /// (to a thousandth). Also if the picture would be empty or have more than [`MAX_PIXEL_COUNT`] pixels.
     ///
     /// # Source
     /// Peters, Ledoux & Biljecki 2015, section 3.2 and Figure 3.
@@ -106,9 +106,9 @@ impl View {
         self
     }
 
-    /// Where the picture of a parallel view straight down or up lies in the plane: easting and northing of its upper
-    /// left corner, of the step to the next column and of the step to the next row, local metres; `None` for any other
-    /// view.
+    /// Returns the position in plan of the picture of a parallel view straight down or up: easting and northing of its
+    /// upper left corner, of the step to the next column and of the step to the next row, local metres. `None` for any
+    /// other view.
     #[must_use]
     pub fn ground_grid(&self) -> Option<[[f64; 2]; 3]> {
         let pixels_per_metre = self.pixels_per_metre()?;

@@ -1,10 +1,10 @@
-//! From positions to places of the picture and back.
+//! Conversion between positions and places of the picture.
 
 use super::{View, ViewFrame};
 use crate::Parameter;
 use crate::vector::dot;
 
-/// How space is projected onto the picture.
+/// Projection of space onto the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
     /// Parallel rays along `forward`. Depth is metres along `forward` from the picture plane.
@@ -17,9 +17,9 @@ pub enum Projection {
     Perspective {
         /// Pixels from the middle of the picture to what is seen 45° off the axis.
         focal_px: f64,
-        /// Least depth that is seen, metres, 0 or more.
+        /// Minimum visible depth, metres, 0 or more.
         near: f64,
-        /// Most depth that is seen, metres, above `near`; may be infinite.
+        /// Maximum visible depth, metres, above `near`; may be infinite.
         far: f64,
     },
     /// A stereographic map of the directions around `forward`: a ball's outline is a disc. A direction at the angle θ
@@ -28,25 +28,25 @@ pub enum Projection {
     Hemispherical {
         /// Pixels from the middle of the picture to directions at right angles to the axis.
         radius_px: f64,
-        /// Least range that is seen, metres, 0 or more.
+        /// Minimum visible range, metres, 0 or more.
         near: f64,
-        /// Most range that is seen, metres, above `near`; may be infinite.
+        /// Maximum visible range, metres, above `near`; may be infinite.
         far: f64,
     },
 }
 
 impl View {
-    /// Where a local position lies in the picture, in pixels from its upper left corner, and its depth, metres, whether
-    /// that is within the picture and its limits or not. `None` for what a projection cannot show: at or behind the eye
-    /// of a perspective view, at the eye or exactly opposite to the axis of a hemispherical one.
+    /// Projects a local position into the picture: pixels from its upper left corner, and depth, metres, inside the
+    /// picture and its limits or not. `None` for a position that a projection cannot show: at or behind the eye of a
+    /// perspective view, at the eye or exactly opposite to the axis of a hemispherical one.
     #[must_use]
     #[inline]
     pub fn project(&self, local: [f32; 3]) -> Option<[f64; 3]> {
         self.place(self.frame.view_from_local(local))
     }
 
-    /// Where a direction from the eye (local, any length) lies in the picture of a view from an eye, pixels, whether
-    /// within or beside it; `None` where [`View::project`] gives none.
+    /// Projects a direction from the eye (local, any length) into the picture of a view from an eye, pixels, inside or
+    /// beside it. `None` where [`View::project`] returns none.
     #[must_use]
     pub fn place_of_direction(&self, direction: [f64; 3]) -> Option<[f64; 2]> {
         let ViewFrame { right, down, forward, .. } = self.frame;
@@ -112,8 +112,8 @@ impl View {
         }
     }
 
-    /// What lies at `depth` metres behind a place of the picture, in pixels from its upper left corner: metres along
-    /// right, down and forward of the frame. The inverse of [`View::project`].
+    /// Returns the position at `depth` metres behind a place of the picture, in pixels from its upper left corner. It
+    /// is in metres along right, down and forward of the frame. The inverse of [`View::project`].
     #[must_use]
     pub fn position(&self, place: [f64; 2], depth: f64) -> [f64; 3] {
         let direction = self.direction(place);
@@ -126,7 +126,7 @@ impl View {
         }
     }
 
-    /// Least and most depth that is seen, metres.
+    /// Returns the minimum and maximum visible depth, metres.
     #[must_use]
     pub fn limits(&self) -> [f64; 2] {
         match self.projection {
@@ -157,7 +157,8 @@ impl View {
         Ok(self)
     }
 
-    /// Whether lines of sight meet in an eye at [`ViewFrame::eye`](super::ViewFrame::eye), rather than run in parallel.
+    /// Returns true if lines of sight meet in an eye at [`ViewFrame::eye`](super::ViewFrame::eye), false if they are
+    /// parallel.
     #[must_use]
     pub fn is_central(&self) -> bool {
         !matches!(self.projection, Projection::Orthographic { .. })
@@ -183,7 +184,7 @@ impl View {
         }
     }
 
-    /// Where the axis of a central view meets the picture, pixels.
+    /// Returns the place at which the axis of a central view meets the picture, pixels.
     #[must_use]
     pub fn middle(&self) -> [f64; 2] {
         self.size_px.map(|size| size as f64 / 2.0)

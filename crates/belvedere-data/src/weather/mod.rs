@@ -23,7 +23,7 @@ pub struct WeatherStep {
     /// The instant whose sun goes with the row: the middle of an interval, or the instant of a value, seconds since
     /// 1970-01-01 UTC.
     pub instant: f64,
-    /// How long the row counts, hours.
+    /// Duration of the row, hours.
     pub hours: f64,
     /// Month in the time of the file, 1 to 12.
     pub month: u8,
@@ -37,7 +37,7 @@ pub struct WeatherStep {
     pub temperature: Option<f64>,
 }
 
-/// What a weather file says the value of a row is.
+/// Meaning of the value of a row in a weather file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowsHold {
     /// The mean of the interval around [`WeatherStep::instant`].
@@ -57,13 +57,13 @@ pub struct Weather {
     pub longitude: f64,
     /// Height above the sea, metres; 0 where the file does not say.
     pub height: f64,
-    /// What rows hold.
+    /// Meaning of the values of rows.
     pub rows_hold: RowsHold,
     /// The rows in the order of the file.
     pub steps: Vec<WeatherStep>,
     /// Rows of the file that hold no radiation, and are left out.
     pub left_out_count: usize,
-    /// What else people should know.
+    /// Further notes for people.
     pub notes: Vec<String>,
 }
 
@@ -79,7 +79,7 @@ impl Weather {
         self.steps.iter().map(|step| step.hours).sum()
     }
 
-    /// What must be said of a period that is not one year: sums are those of its rows.
+    /// Returns a remark on a period that is not one year: sums are those of its rows.
     #[must_use]
     pub fn period_remark(&self) -> Option<String> {
         let years = self.hours() / HOURS_OF_YEAR;

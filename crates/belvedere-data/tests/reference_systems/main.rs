@@ -13,7 +13,7 @@ struct Stored {
     code: u32,
     place: [f64; 2],
     coordinates: [f64; 2],
-    /// Whether PROJ knows the step between the datums. Otherwise the coordinates are those without a step.
+    /// True if PROJ knows the step between the datums. Otherwise the coordinates are those without a step.
     is_known: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Where balls lie in a view: in double precision, with the bits that the CPU draws with.
+//! Positions of balls in a view, in double precision, with the bits that the CPU draws with.
 
 use super::{BEYOND, DevicePicture, Shows, scale_of, single};
 use belvedere_core::blocking::holds_at;
@@ -29,12 +29,12 @@ pub(crate) struct PlacedBalls {
     pub(crate) around_eye_count: usize,
 }
 
-/// Where a ball lies.
+/// Position of a ball.
 enum BallPlace {
     /// Beside the picture, or nowhere.
     Outside,
     AroundEye,
-    /// Where single precision does not suffice.
+    /// Ball for which single precision does not suffice.
     OfCpu,
     At([f32; 4]),
 }

@@ -38,7 +38,7 @@ pub(super) struct DepthStages {
     draw: DepthStage,
 }
 
-/// What stages hand to each other, and what they draw.
+/// Buffers that stages share, and their results.
 #[derive(Debug)]
 pub(super) struct DepthBuffers {
     pub(super) piece: wgpu::Buffer,
@@ -54,11 +54,11 @@ pub(super) struct DepthBuffers {
     steps: wgpu::Buffer,
 }
 
-/// How large buffers have to be.
+/// Sizes of buffers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sizes {
     pub(super) ball_count: usize,
-    /// Whether no other balls come after these.
+    /// True if no other balls come after these.
     pub(super) is_whole: bool,
     /// Columns and rows of a part of a picture.
     pub(super) size_px: [usize; 2],

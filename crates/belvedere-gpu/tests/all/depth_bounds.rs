@@ -1,5 +1,5 @@
-//! Bounds of depth that a device draws hold, and answers by them are those of exact lines of sight: in all projections,
-//! of random and hostile balls, in parts, and when the device is lost in the middle.
+//! Bounds of depth from a device are valid, and answers by them equal those of exact lines of sight. Cases: all
+//! projections, random and hostile balls, parts, and a device lost during the work.
 
 use belvedere::control::Control;
 use belvedere::depth::{BoundsParams, DepthBounds, Profile, depth_bounds};

@@ -1,5 +1,5 @@
-//! What a device draws is what the CPU draws, within the tolerance of depths: in all projections, of random and hostile
-//! balls, in parts, and when the device is lost in the middle.
+//! Depth maps from a device equal those of the CPU, within the tolerance of depths. Cases: all projections, random and
+//! hostile balls, parts, and a device lost during the work.
 
 use crate::{balls_of, devices_or_skip, random_balls};
 use belvedere::control::Control;

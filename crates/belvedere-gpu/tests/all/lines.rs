@@ -1,5 +1,5 @@
-//! What a device decides of lines of sight is what the CPU decides: on random and hostile balls, on whole scenes, and
-//! when the device is lost in the middle.
+//! Lines of sight decided on a device equal those of the CPU: on random and hostile balls, on whole scenes, and with a
+//! device lost during the work.
 
 use belvedere::apps::sky_view::SkyDirections;
 use belvedere::control::Control;

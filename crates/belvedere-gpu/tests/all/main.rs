@@ -1,4 +1,4 @@
-//! What a device answers is what the CPU answers.
+//! Answers of a device equal those of the CPU.
 //!
 //! The tests run on every device of the computer, software ones among them (Debian: `mesa-vulkan-drivers`).
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]

@@ -1,5 +1,5 @@
-//! What a cache keeps, as archives of arrays: a model with all that takes long to make, and rasters. They are no files
-//! for others: only the program that wrote them reads them.
+//! Files of a cache, as archives of arrays: a model with all that takes long to make, and rasters. They are no exchange
+//! format: only the program that wrote them reads them.
 
 use super::npz::{read_arrays, write_arrays};
 use crate::npz_arrays::{array, has, invalid, open, rows, values, write_archive};

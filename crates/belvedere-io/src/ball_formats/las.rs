@@ -3,12 +3,12 @@
 use ::las::Vlr;
 
 use super::{FileBall, as_cloud, index, metadata, patches};
+use crate::file_part::narrow;
 use crate::las::LasFile;
 use crate::las_extra::ExtraField;
 use crate::las_header::RecordSize;
 use crate::laz::LazFields;
 use crate::output::Output;
-use crate::part::narrow;
 use crate::source::Input;
 use crate::write_las;
 use belvedere_data::model::ModelParts;

@@ -1,18 +1,18 @@
-//! What ball files say about themselves, as JSON.
+//! Metadata of ball files, as JSON.
 
 use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
 use super::FileBall;
-use crate::part::narrow;
+use crate::file_part::narrow;
 use belvedere_data::balls::MedialBalls;
 use belvedere_data::cloud::{centre_rounded, to_local};
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::model::ModelParts;
 use belvedere_data::{Bounds, Frame, SurfacePatches};
 
-/// What the numbers beside the metadata mean in files that hold points.
+/// Units of the numbers beside the metadata, in files that hold points.
 pub(super) const FILE_UNITS: &str = "file units, radians; origin in metres, bounds in metres relative to it";
 
 const FORMAT: &str = "belvedere balls 1";
@@ -59,7 +59,7 @@ pub(super) fn to_json(parts: &ModelParts, units: &str) -> String {
     json.to_string()
 }
 
-/// What [`to_json`] keeps; what a file lacks is `None` or the default.
+/// Metadata in [`to_json`]; values missing in a file are `None` or the default.
 #[derive(Default)]
 pub(super) struct Metadata {
     pub(super) crs: Crs,
@@ -72,8 +72,8 @@ pub(super) struct Metadata {
     patch_count: u64,
 }
 
-/// What `text`, written by [`to_json`], says; the defaults where a program dropped it and it is empty. What is wrong
-/// with it otherwise.
+/// Parses `text`, written by [`to_json`]; empty text, dropped by a program, gives the defaults. The error describes the
+/// damage.
 pub(super) fn from_json(text: &str) -> Result<Metadata, String> {
     if text.is_empty() {
         return Ok(Metadata::default());
@@ -119,14 +119,14 @@ fn three(value: &Value) -> Option<[f64; 3]> {
     }
 }
 
-/// What balls let through, empty where a file says so of none.
+/// Returns the transmission of balls; empty if a file has it for none.
 fn transmission(rows: &[FileBall]) -> Vec<f32> {
     let known = rows.iter().any(|row| !row.transmission.is_nan());
     if known { rows.iter().map(|row| row.transmission).collect() } else { Vec::new() }
 }
 
 impl Metadata {
-    /// Whether a file holds as many surface patches as it announces: what is wrong otherwise.
+    /// Returns a check of the number of surface patches against the announced one; its error describes the difference.
     pub(super) fn patch_check(&self) -> impl FnOnce(&SurfacePatches) -> Result<(), String> + use<> {
         let announced = self.patch_count;
         move |patches| match patches.len() as u64 {

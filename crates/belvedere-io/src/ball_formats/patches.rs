@@ -21,9 +21,9 @@ pub(super) fn kinds_of_codes(codes: &[u8]) -> Result<Vec<PatchKind>, String> {
     codes.iter().map(kind).collect()
 }
 
-/// The patches as bytes, for records of files that hold points: the format, a checksum of all that follows, the origin
-/// (three f64, metres), and of each triangle its corners (nine f32, metres relative to the origin) and its kind, all
-/// little-endian. So they keep every bit, also where another program drops the metadata.
+/// Encodes the patches as bytes, for records of files that hold points. The record has the format, a checksum of all
+/// that follows, the origin (three f64, metres), and for each triangle its corners (nine f32, metres relative to the
+/// origin) and its kind. All are little-endian. Every bit is kept, even if another program drops the metadata.
 pub(super) fn to_bytes(patches: &SurfacePatches, origin: [f64; 3]) -> Vec<u8> {
     let mut body: Vec<u8> = origin.iter().flat_map(|v| v.to_le_bytes()).collect();
     for (triangle, kind) in patches.iter() {

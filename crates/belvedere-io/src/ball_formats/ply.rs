@@ -5,7 +5,7 @@ use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 use super::patches::kinds_of_codes;
 use super::write_ply::{METADATA_KEY, PATCH, PATCH_CORNERS, PATCH_KIND};
 use super::{FileBall, index, metadata};
-use crate::part::narrow;
+use crate::file_part::narrow;
 use crate::ply::{PlyFile, scalar};
 use crate::source::Input;
 use belvedere_data::cloud::to_local;

@@ -13,7 +13,7 @@ pub(super) const METADATA_KEY: &str = "belvedere_balls";
 pub(super) const PATCH: &str = "patch";
 /// Coordinates of their corners.
 pub(super) const PATCH_CORNERS: [[&str; 3]; 3] = [["x1", "y1", "z1"], ["x2", "y2", "z2"], ["x3", "y3", "z3"]];
-/// What they are a part of.
+/// Name of the property of a patch that gives its kind.
 pub(super) const PATCH_KIND: &str = "kind";
 
 pub(crate) fn write_ply(output: Output<'_>, parts: &ModelParts) -> Result<()> {

@@ -1,8 +1,8 @@
 //! GPS times of LAZ points, decoded by a loop: the laz crate (0.13) decodes them by recursion, which damaged files
 //! drive through the end of the stack (`docs/upstream.md`).
 //!
-//! Source: M. Isenburg, LASzip: lossless compression of LiDAR data, PE&RS 79(2), 2013, and what LASzip 3 writes: times
-//! follow up to four sequences, and each goes on by about a multiple of its last difference.
+//! Source: M. Isenburg, LASzip: lossless compression of LiDAR data, PE&RS 79(2), 2013, and files of LASzip 3. Times
+//! follow up to four sequences, and each continues by about a multiple of its last difference.
 
 use std::io::{self, Read};
 
@@ -11,7 +11,7 @@ use ::laz::decompressors::{IntegerDecompressor, IntegerDecompressorBuilder};
 use ::laz::models::{ArithmeticModel, ArithmeticModelBuilder};
 use ::laz::record::FieldDecompressor;
 
-/// Greatest and least multiple of the last difference that has a symbol of its own; symbols count from 0 to 500, then
+/// Maximum and minimum multiple of the last difference that has a symbol of its own; symbols count from 0 to 500, then
 /// from −1 to −10.
 const GREATEST_MULTIPLE: i32 = 500;
 const MIN_MULTIPLE: i32 = -10;
@@ -20,7 +20,7 @@ const AFTER_MULTIPLES: u32 = 511;
 /// A sequence takes over a new difference after so many differences that no multiple describes well.
 const MAX_EXTREMES: u32 = 3;
 
-/// Whether a symbol means "the same time as before": formats 6 to 10 store this elsewhere.
+/// Coding of an unchanged time: formats 6 to 10 store it elsewhere.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum SameTime {
     HasSymbol,
@@ -46,7 +46,7 @@ struct TimeSequence {
     extremes: u32,
 }
 
-/// What a symbol says of the next time.
+/// Meaning of a symbol for the next time.
 enum Step {
     Same,
     /// The first difference of a sequence.

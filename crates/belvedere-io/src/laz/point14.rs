@@ -1,7 +1,7 @@
 //! The common fields of LAZ points of formats 6 to 10, which are stored in nine layers.
 //!
-//! The laz crate (0.13) has the same decoder, but decodes GPS times by recursion (`gps_times.rs`), which cannot be
-//! taken out of it: whether a point has a new time stands in the first layer, with its coordinates.
+//! The laz crate (0.13) has the same decoder, but decodes GPS times by recursion (`gps_times.rs`). It cannot be
+//! replaced separately: the first layer, with the coordinates, tells whether a point has a new time.
 //!
 //! Source: what LASzip 3 writes for the item "Point14", versions 3 and 4.
 
@@ -24,15 +24,15 @@ use super::gps_times::{GpsTimeDecoder, SameTime};
 const SIZE: usize = 30;
 const LAYERS: usize = 9;
 
-/// What changes from one point of a channel to the next, besides coordinates: bits of the first symbol of a point. The
-/// lowest two bits tell how the return number changes.
+/// Changes from one point of a channel to the next, besides coordinates: bits of the first symbol of a point. The
+/// lowest two bits give the change of the return number.
 const RETURN_COUNT: u32 = 1 << 2;
 const SCAN_ANGLE: u32 = 1 << 3;
 const TIME: u32 = 1 << 4;
 const SOURCE: u32 = 1 << 5;
 const CHANNEL: u32 = 1 << 6;
 
-/// Which median of differences of coordinates describes a point, by number of returns and return number.
+/// Index of the median of differences of coordinates for a point, by number of returns and return number.
 const MEDIANS: [[u8; 16]; 16] = [
     [0, 1, 2, 3, 4, 5, 3, 4, 4, 5, 5, 5, 5, 5, 5, 5],
     [1, 0, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3],
@@ -68,7 +68,7 @@ type Layer = ArithmeticDecoder<Cursor<Vec<u8>>>;
 
 struct Channel {
     last: Point,
-    /// Whether the last point had a new time.
+    /// True if the last point had a new time.
     new_time: bool,
     x_medians: [Median; 12],
     y_medians: [Median; 12],
@@ -380,8 +380,8 @@ impl<const N: usize> Models<N> {
     }
 }
 
-/// The running median of LASzip: of five sorted values the largest or the smallest one makes room for a new one, in
-/// turn when the new value lies on the other side of the median.
+/// Running median of LASzip. Of five sorted values the largest or the smallest one makes room for a new one, in turn
+/// when the new value lies on the other side of the median.
 #[derive(Clone, Copy)]
 struct Median {
     values: [i32; 5],

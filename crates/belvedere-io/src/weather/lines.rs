@@ -4,15 +4,15 @@ use belvedere_data::weather::CalendarDay;
 use belvedere_data::{Error, Result};
 use std::path::Path;
 
-/// Most radiation that any instrument below the atmosphere shows, W/m², with room for clouds that reflect.
+/// Maximum radiation that any instrument below the atmosphere shows, W/m², with room for clouds that reflect.
 const MAX_RADIATION: f64 = 3000.0;
-/// What programs write where radiation is missing: nines, here and there with zeros behind.
+/// Values that mark missing radiation: nines, in some files with zeros behind.
 const MISSING: std::ops::RangeInclusive<f64> = 9999.0..=1e7;
 const MISSING_BELOW_ZERO: [f64; 5] = [-99.0, -999.0, -9999.0, -9900.0, -99900.0];
 /// Noise of sensors at night, W/m².
 const NOISE: f64 = -20.0;
 
-/// What more cells than names come from.
+/// Advice for more cells than names.
 pub(super) const DECIMAL_COMMAS: &str = "; are there decimal commas? Numbers need points: 10.5";
 
 /// The lines of a weather file.

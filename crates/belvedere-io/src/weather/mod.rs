@@ -25,19 +25,21 @@ const MAX_BYTES: u64 = 500_000_000;
 
 /// Reads the radiation of a weather file. Its rows keep their own years, of which a typical year has several.
 ///
-/// What is missing in a row, or has a value that marks it as missing, stays missing where other columns make up for it,
-/// which the notes count; rows that tell neither global radiation, nor direct and diffuse radiation, are left out and
-/// counted. Values below zero that are noise of sensors at
-/// night, down to −20 W/m², count as zero.
+/// Values missing in a row, or marked as missing, stay missing if other columns replace them, which the notes count.
+/// Rows with neither global radiation, nor direct and diffuse radiation, are left out and counted. Values below zero
+/// that are noise of sensors at night, down to −20 W/m², count as zero.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`], which names the line, for files of another kind, columns that are missing,
-/// dates that do not exist, text in place of numbers, radiation beyond 3000 W/m² or below −20, series of PVGIS on
-/// tilted planes, and files without rows.
+/// - [`Error::Io`].
+/// - [`Error::Malformed`], which names the line, for files of another kind, columns that are missing, dates that do not
+///   exist, and text in place of numbers. Also for radiation beyond 3000 W/m² or below −20, series of PVGIS on tilted
+///   planes, and files without rows.
 ///
 /// # Source
-/// EnergyPlus, Auxiliary Programs, "EnergyPlus Weather File (EPW) Data Dictionary"; Wilcox & Marion 2008, User's manual
-/// for TMY3 data sets; PVGIS user manual, sections 4 and 6; NSRDB, "PSM v3 and v4 CSV".
+/// - EnergyPlus, Auxiliary Programs, "EnergyPlus Weather File (EPW) Data Dictionary".
+/// - Wilcox & Marion 2008, User's manual for TMY3 data sets.
+/// - PVGIS user manual, sections 4 and 6.
+/// - NSRDB, "PSM v3 and v4 CSV".
 pub fn read_weather<'a>(source: impl Into<Source<'a>>) -> Result<Weather> {
     let Input { name, mut reader, size } = source.into().open_text()?;
     let path = name.as_path();

@@ -7,7 +7,7 @@ use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
 /// Lines among which the head of the table must be.
 const MAX_HEAD_LINES: usize = 60;
 
-/// What stands above the table.
+/// Header above the table.
 #[derive(Default)]
 struct Head {
     latitude: Option<f64>,

@@ -27,7 +27,7 @@ fn said_of(name: &str, bytes: &[u8]) -> Result<Vec<&'static str>, String> {
     said(Source::bytes(name, bytes), &ReadOptions::default())
 }
 
-/// What an input with this name must give: a key, words of an error, or nothing.
+/// Expected result of an input with this name: a key, words of an error, or nothing.
 #[derive(Debug)]
 enum Expected {
     Key(&'static str),

@@ -21,7 +21,7 @@ fn names_in(folder: &Path) -> Vec<String> {
     names
 }
 
-/// What `write` gives to a writer, after checking that a file of the same name gets the same bytes.
+/// Returns the bytes that `write` gives to a writer, after checking that a file of the same name gets the same.
 fn written(name: &str, write: impl Fn(Output<'_>) -> belvedere_data::Result<()>) -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);

@@ -11,11 +11,11 @@ const HALF_SIDE: f64 = 10.0;
 const HEIGHT: f64 = 8.0;
 /// The scanner in its middle, metres above the floor.
 const SCANNER_HEIGHT: f64 = 1.8;
-/// Where the court lies: place of the scanner in the file; the scan is turned by 30°.
+/// Position of the scanner in the court, in the coordinates of the file; the scan is turned by 30°.
 const STATION: [f64; 3] = [120.0, 450.0, 31.8];
 const TURN: f64 = FRAC_PI_6;
 
-/// How pulses go round: their number around and up, the lowest, and the step upwards, radians.
+/// Grid of pulses: their number around and up, the lowest, and the step upwards, radians.
 #[derive(Clone, Copy)]
 struct Pulses {
     columns: usize,
@@ -38,7 +38,7 @@ impl Pulses {
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// What stands in the court beside its floor and walls.
+/// Objects in the court beside its floor and walls.
 #[derive(Clone, Copy, PartialEq)]
 enum Court {
     Bare,
@@ -48,7 +48,7 @@ enum Court {
     Covered,
 }
 
-/// Where a pulse along the axes of the scan meets the court; `None` where nothing returns.
+/// Returns the point at which a pulse along the axes of the scan meets the court; `None` without a return.
 fn returned(court: Court, [x, y, z]: [f64; 3]) -> Option<[f64; 3]> {
     let to_wall = HALF_SIDE / x.abs().max(y.abs());
     let to_floor = if z < 0.0 { -SCANNER_HEIGHT / z } else { f64::INFINITY };
@@ -101,7 +101,7 @@ fn read_ptx(text: &str) -> (PointCloud, ReadReport) {
     read("court.ptx", text.as_bytes(), &ReadOptions::default())
 }
 
-/// Whether a direction in the coordinates of the file, for which z is up, passes over the walls.
+/// Returns true if a direction in the coordinates of the file, for which z is up, passes over the walls.
 fn is_sky([x, y, z]: [f64; 3]) -> bool {
     let (s, c) = TURN.sin_cos();
     let [x, y] = [c * x + s * y, c * y - s * x];
@@ -206,7 +206,7 @@ fn rows_from_above_and_scans_whose_y_is_up_see_the_same_sky() {
     assert!(cloud.sky_regions[0].open_cells().all(|cell| cloud.sky_regions[0].direction(cell)[2] > 0.0));
 }
 
-/// How an E57 file holds the cells without a return.
+/// Representation of cells without a return in an E57 file.
 #[derive(Clone, Copy, PartialEq)]
 enum EmptyCells {
     Invalid,

@@ -6,7 +6,7 @@ use std::net::{TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
-/// How a server answers.
+/// Behaviour of a server.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Manner {
     /// The requested part.
@@ -32,7 +32,7 @@ pub(crate) enum Manner {
     Status(u16),
 }
 
-/// What addresses end with on a server that wants a key.
+/// End of addresses on a server that requires a key.
 pub(crate) const KEY: &str = "?sv=2024&sig=a/b.c%3D";
 
 /// Files by their names, as long as the process runs.

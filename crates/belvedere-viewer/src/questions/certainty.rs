@@ -1,8 +1,8 @@
-//! How sure the answers for many points are: a probability with each.
+//! Certainty of the answers for many points: a probability for each.
 
 use belvedere::apps::ask::HowSure;
 
-/// What is at least this likely counts as certain.
+/// Minimum probability of a certain answer.
 const CERTAIN_FROM: f64 = 0.9;
 /// Byte of a probability of 1.
 const SURE: f32 = 200.0;

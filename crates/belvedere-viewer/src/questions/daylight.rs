@@ -1,4 +1,4 @@
-//! Whether it is day, and when the sun is highest: which shadow the page shows first.
+//! Day and solar noon: choice of the first shadow that the page shows.
 
 use super::RequestContext;
 use crate::replies::{QuestionReply, Refusal};

@@ -1,18 +1,18 @@
 //! One file for each question. Each calls the library as the command line does, and says which command gives the same.
 
-mod around;
 mod certainty;
 mod daylight;
 mod line;
 mod places;
 mod plan;
+mod reverse_viewshed;
 mod roof;
 mod seen;
 mod shadow;
 mod sun;
 mod sun_area;
 mod surfaces;
-mod who;
+mod surroundings;
 
 use crate::plans::Plans;
 use crate::replies::{QuestionReply, Refusal};
@@ -21,12 +21,12 @@ use crate::scene_text::SceneText;
 use belvedere::control::Control;
 use serde::de::DeserializeOwned;
 
-/// What every question knows.
+/// Context of every question.
 pub(crate) struct RequestContext<'a> {
     pub(crate) scene: &'a PageScene,
     /// The scene on command lines.
     pub(crate) text: &'a SceneText,
-    /// What is planned in all tabs.
+    /// Plans of all tabs.
     pub(crate) plans: &'a Plans,
     pub(crate) control: &'a Control<'a>,
 }
@@ -39,8 +39,8 @@ pub(crate) fn answer(name: &str, body: &[u8], context: &RequestContext<'_>) -> R
         "daylight" => daylight::answer(&parsed(body)?, context),
         "sun" => sun::answer(&parsed(body)?, context),
         "shadow" => shadow::answer(&parsed(body)?, context),
-        "around" => around::answer(&parsed(body)?, context),
-        "who" => who::answer(&parsed(body)?, context),
+        "around" => surroundings::answer(&parsed(body)?, context),
+        "who" => reverse_viewshed::answer(&parsed(body)?, context),
         "roof" => roof::answer(&parsed(body)?, context),
         "plan" => plan::answer(parsed(body)?, context),
         "sun_area" => sun_area::answer(&parsed(body)?, context),

@@ -1,4 +1,4 @@
-//! What if: the scene with what was drawn; other questions are then about it.
+//! Scenario: the scene with what was drawn, for the questions that follow.
 
 use super::RequestContext;
 use crate::plans::DrawnPlan;

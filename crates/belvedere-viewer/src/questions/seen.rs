@@ -1,4 +1,4 @@
-//! What is seen from here: an answer for each point of the cloud, and how likely it is seen.
+//! Visibility from an eye: an answer for each point of the cloud, and its probability.
 
 use super::RequestContext;
 use super::certainty::{byte_of, how_sure};
@@ -18,7 +18,7 @@ pub(super) struct SeenRequest {
     place: [f64; 3],
     #[serde(default)]
     points: PointChoice,
-    /// Whether to give the probability that a point is visible too.
+    /// True to give the probability that a point is visible too.
     #[serde(default)]
     probability: bool,
 }
@@ -49,7 +49,7 @@ pub(super) fn answer(question: &SeenRequest, context: &RequestContext<'_>) -> Re
         "tells_unproven": blockers.proof().is_some(),
         "certainty": probabilities.as_deref().map(|values| how_sure.section(values, is_unproven)).transpose()?,
         "remarks": how_sure.is_wanted().then(|| remark_from_ground(&blockers)).flatten().as_slice(),
-        "command": context.text.seen(&question.place, how_sure),
+        "command": context.text.seen_points(&question.place, how_sure),
     });
     let mut body = points.in_order(|row| seen.answers[row] as u8);
     body.extend(probabilities.map(|values| points.in_order(|row| byte_of(values[row]))).unwrap_or_default());

@@ -20,10 +20,10 @@ pub(super) struct ShadowRequest {
     zone: String,
     #[serde(default)]
     points: PointChoice,
-    /// What gets through trees.
+    /// Light through trees.
     #[serde(default)]
     trees: ThroughTrees,
-    /// Whether to give the probability that a point is lit too.
+    /// True to give the probability that a point is lit too.
     #[serde(default)]
     probability: bool,
 }

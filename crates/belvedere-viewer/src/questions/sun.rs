@@ -20,10 +20,10 @@ use std::sync::Arc;
 #[serde(deny_unknown_fields)]
 pub(super) struct SunRequest {
     place: [f64; 3],
-    /// Such as 2026-06-21.
+    /// Date, such as 2026-06-21.
     date: String,
     zone: String,
-    /// What gets through trees.
+    /// Light through trees.
     #[serde(default)]
     trees: ThroughTrees,
 }
@@ -41,7 +41,7 @@ pub(super) fn answer(question: &SunRequest, context: &RequestContext<'_>) -> Res
     if blockers.is_outside_cloud(place) {
         return Err(Refusal::Unanswerable("This place is outside the cloud, where nothing is known.".to_owned()));
     }
-    let targets = Arc::new(at(context, place));
+    let targets = Arc::new(target_at(context, place));
     let interval = !question.trees.is_light() && knows_intervals(&scene.inner, control)?;
     let hours_on = |date: Date| {
         let days = Days { dates: vec![date.to_string()], ..Days::default() };
@@ -59,7 +59,7 @@ pub(super) fn answer(question: &SunRequest, context: &RequestContext<'_>) -> Res
             let days = steps_on(date)?;
             Ok(json!({
                 "month": month,
-                "sun_hours": first(&hours_on(date)?, "sun_hours"),
+                "sun_hours": first_value(&hours_on(date)?, "sun_hours"),
                 "possible_hours": rounded(possible(&days), 3),
                 "path": days.iter().flat_map(|day| path(&site, day)).collect::<Vec<_>>(),
             }))
@@ -68,17 +68,17 @@ pub(super) fn answer(question: &SunRequest, context: &RequestContext<'_>) -> Res
     let skyline = HorizonParams::default().with_turn(scene.grid_north(Some(place)));
     let skyline = horizons(&blockers, &[place], &skyline, control)?;
     let horizon: Vec<Value> = skyline.iter().flatten().map(|point| number(point.elevation.to_degrees(), 3)).collect();
-    let lit = lit(&blockers, &targets, &day);
+    let lit = lit_steps(&blockers, &targets, &day);
     let path: Vec<Value> = day.iter().flat_map(|day| path(&site, day)).collect();
     let trees = in_words(question.trees);
     let flags = format!("--date {} --zone {}{trees} -o sun.csv", question.date, zone.name());
     let head = json!({
-        "sun_hours": first(&of_day, "sun_hours"),
-        "interval_hours": interval.then(|| ["hours_low", "hours_high"].map(|end| first(&of_day, end))),
-        "sun_share": first(&of_day, "sun_share"),
-        "first_light": first(&of_day, "first_light"),
-        "last_light": first(&of_day, "last_light"),
-        "longest": first(&of_day, "longest"),
+        "sun_hours": first_value(&of_day, "sun_hours"),
+        "interval_hours": interval.then(|| ["hours_low", "hours_high"].map(|end| first_value(&of_day, end))),
+        "sun_share": first_value(&of_day, "sun_share"),
+        "first_light": first_value(&of_day, "first_light"),
+        "last_light": first_value(&of_day, "last_light"),
+        "longest": first_value(&of_day, "longest"),
         "possible_hours": rounded(possible(&day), 3),
         "remarks": of_day.remarks,
         "horizon_deg": horizon,
@@ -94,7 +94,7 @@ pub(super) fn answer(question: &SunRequest, context: &RequestContext<'_>) -> Res
 }
 
 /// The measure `name` of the first target.
-fn first(answers: &Answers<OnTargets>, name: &str) -> Value {
+fn first_value(answers: &Answers<OnTargets>, name: &str) -> Value {
     let measure = answers.measures.iter().find(|measure| measure.name == name);
     measure.and_then(|measure| measure.values.first()).map_or(Value::Null, |&v| number(f64::from(v), 3))
 }
@@ -105,7 +105,7 @@ fn possible(days: &[SunDay]) -> f64 {
 }
 
 /// The place as the only target.
-pub(super) fn at(context: &RequestContext<'_>, place: [f64; 3]) -> Targets {
+pub(super) fn target_at(context: &RequestContext<'_>, place: [f64; 3]) -> Targets {
     let mut cloud = PointCloud::in_frame(context.scene.model().frame().clone());
     cloud.positions = vec![belvedere::cloud::to_local(place, [0.0; 3])];
     Targets::of_points(&cloud, None)
@@ -127,8 +127,8 @@ fn path(site: &Site, day: &SunDay) -> Vec<Value> {
         .collect()
 }
 
-/// Whether the sun of each step reaches the place.
-fn lit(blockers: &MedialScene, targets: &Targets, days: &[SunDay]) -> Vec<bool> {
+/// Flags the steps whose sun reaches the place.
+fn lit_steps(blockers: &MedialScene, targets: &Targets, days: &[SunDay]) -> Vec<bool> {
     let steps = days.iter().flat_map(|day| &day.steps);
     steps
         .map(|step| {

@@ -15,7 +15,7 @@ pub(super) struct SunAreaRequest {
     corners: Vec<[f64; 2]>,
     date: String,
     zone: String,
-    /// What gets through trees.
+    /// Light through trees.
     #[serde(default)]
     trees: ThroughTrees,
 }

@@ -1,4 +1,4 @@
-//! What is known of the buildings: the lines on which their surfaces end, and the plane of a roof that a point lies on.
+//! Surfaces of the buildings: the lines on which they end, and the plane of a roof that a point lies on.
 
 use super::RequestContext;
 use super::places::{local, number};

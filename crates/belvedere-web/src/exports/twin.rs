@@ -17,7 +17,8 @@ thread_local! {
     static REPLY: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Of the file with the highest number the host gives fewer bytes than were requested, of the others all there are.
+/// Reads bytes of a file. For the file with the highest number the host gives fewer bytes than requested, for the
+/// others all there are.
 ///
 /// # Safety
 /// There is room for `length` bytes.

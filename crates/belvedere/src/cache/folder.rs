@@ -25,7 +25,7 @@ use std::time::SystemTime;
 
 /// Bytes that a cache may take, unless it is given another bound.
 const MAX_BYTES: u64 = 10_000_000_000;
-/// How names of entries end: scenes, their ground, and what reading files gave.
+/// Endings of the names of entries: scenes, their ground, and reports of reading files.
 const SCENE: &str = "scene.npz";
 const GROUND: &str = "ground.npz";
 const READING: &str = "reading.npz";
@@ -44,25 +44,25 @@ pub struct SceneCache {
     max_bytes: u64,
 }
 
-/// What is known of files that were read before.
+/// Information on files that were read before.
 #[derive(Debug)]
 pub struct ReadBefore {
-    /// Where local coordinates lie.
+    /// Frame of local coordinates.
     pub frame: Frame,
     /// The contents of the cloud.
     pub cloud: CloudKey,
-    /// What reading reported, as it was given to [`SceneCache::keep_reading`].
+    /// Report of reading, as given to [`SceneCache::keep_reading`].
     pub notes: Map<String, Value>,
 }
 
 /// A scene of a cache.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CacheEntry {
-    /// What it is of, such as the name of a file.
+    /// Name of its subject, such as that of a file.
     pub name: String,
     /// Its size, bytes.
     pub bytes: u64,
-    /// When it was used last.
+    /// Time of the last use.
     pub used: SystemTime,
 }
 
@@ -79,7 +79,7 @@ impl SceneCache {
         Self { max_bytes, ..self }
     }
 
-    /// Where a user's cache lies by the habits of the system, by what `variable` says of the environment:
+    /// Returns the default folder of a user's cache on the system; `variable` reads the environment. It is in
     /// `XDG_CACHE_HOME`, `LOCALAPPDATA` on Windows, `~/Library/Caches` on a Mac, else `~/.cache`. `None` without a
     /// home.
     #[must_use]
@@ -148,7 +148,7 @@ impl SceneCache {
         Ok(())
     }
 
-    /// What reading these files gave before; `None` where that is not known, they changed, or lie on a server.
+    /// Returns the earlier result of reading these files. `None` if it is not known, they changed, or lie on a server.
     #[must_use]
     pub fn read_before(&self, paths: &[PathBuf], options: &ReadOptions) -> Option<ReadBefore> {
         let path = self.entry(&of_files(paths, options)?, READING)?;
@@ -258,7 +258,7 @@ impl SceneCache {
         Some(self.path(key, kind)).filter(|path| is_plain_file(path) && is_marked(&self.folder))
     }
 
-    /// Where an entry goes; the folder is made.
+    /// Returns the path of a new entry, and creates the folder.
     fn place(&self, key: &str, kind: &str) -> Result<PathBuf> {
         make_marked(&self.folder)?;
         let path = self.path(key, kind);
@@ -318,7 +318,7 @@ struct GroundOfCloud {
     cloud: CloudKey,
 }
 
-/// What is noted of kept ground.
+/// Notes on kept ground.
 #[derive(Serialize, Deserialize)]
 struct GroundNotes {
     corner: [f64; 2],
@@ -381,7 +381,7 @@ fn name_of_survey(folder: &Path) -> Option<String> {
     Some(format!("{}, in tiles", names.join(", ")))
 }
 
-/// Whether a path has the name of an entry of this kind.
+/// Returns true if a path has the name of an entry of this kind.
 fn is_named(path: &Path, kind: &str) -> bool {
     let name = path.file_name().and_then(|name| name.to_str());
     name.and_then(|name| name.strip_suffix(kind)?.strip_suffix('.')).is_some_and(is_key)

@@ -1,4 +1,4 @@
-//! What a kept scene follows from, as a name.
+//! Key of a kept scene: a name for all that it follows from.
 
 use crate::ground::{GroundParams, MapGrid};
 use crate::io::{ReadOptions, Source, cloud_sources, web_address};

@@ -18,23 +18,23 @@ const MARK: &str =
 const FOREIGN: &str = "is a folder of files that this program did not make, or has no mark of its own; \
                        move it away, or give another one that is new or empty";
 
-/// Whether a path is a folder with the mark; a link to one counts.
+/// Returns true if a path is a folder with the mark; a link to one counts.
 pub(super) fn is_marked(folder: &Path) -> bool {
     let tag = folder.join(TAG);
     is_plain_file(&tag) && fs::read(tag).is_ok_and(|bytes| bytes == MARK.as_bytes())
 }
 
-/// Whether a path is a folder with the mark, and no link.
+/// Returns true if a path is a folder with the mark, and no link.
 pub(super) fn is_own_folder(folder: &Path) -> bool {
     is_plain_folder(folder) && is_marked(folder)
 }
 
-/// Whether a path is a file: neither a link nor a pipe, which could wait for ever.
+/// Returns true if a path is a file: neither a link nor a pipe, which could wait for ever.
 pub(super) fn is_plain_file(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|found| found.is_file())
 }
 
-/// Whether a path is a folder and no link.
+/// Returns true if a path is a folder and no link.
 pub(super) fn is_plain_folder(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|found| found.is_dir())
 }
@@ -83,7 +83,7 @@ fn mark(folder: &Path) -> Result<()> {
     atomic::write(&tag, |file| file.write_all(MARK.as_bytes()).map_err(Error::io(&tag)))
 }
 
-/// Whether a folder holds nothing but what an interrupted marking left.
+/// Returns true if a folder holds only the remains of an interrupted marking.
 fn is_empty(folder: &Path) -> Result<bool> {
     let mut rows = folder.read_dir().map_err(Error::io(folder))?;
     let unfinished = format!(".{TAG}.");

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// The file that says what a survey is of.
 pub(super) const PLAN: &str = "plan.json";
-/// How files of tiles end, behind the name of the tile.
+/// Endings of files of tiles, behind the name of the tile.
 const OF_TILES: [&str; 5] = [".npz", ".pulses.npz", ".crowns.npz", ".json", ".tif"];
 
 /// The folder of a survey in tiles, which the program made itself.
@@ -16,7 +16,7 @@ pub struct SurveyFolder {
     path: PathBuf,
 }
 
-/// What a folder within that of a survey is for.
+/// Purpose of a folder within that of a survey.
 #[derive(Clone, Copy)]
 enum Place {
     /// The survey: its plan, and a folder for each version of its balls.
@@ -54,7 +54,7 @@ impl SurveyFolder {
         is_own_folder(&path).then_some(Self { path })
     }
 
-    /// Where it lies.
+    /// Returns its path.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -111,7 +111,7 @@ impl OwnItems {
 }
 
 impl Place {
-    /// What a folder of this name is for; `None` for one of others.
+    /// Returns the purpose of a folder of this name; `None` for one of others.
     fn folder(self, name: &str) -> Option<Self> {
         match (self, name) {
             (Self::Survey, _) => is_sum(name).then_some(Self::Version),
@@ -137,7 +137,7 @@ impl Place {
         }
     }
 
-    /// Whether the name alone says that a folder is the program's, though it be empty.
+    /// Returns true if the name alone identifies a folder as the program's, even if it is empty.
     fn is_named(self) -> bool {
         !matches!(self, Self::Survey | Self::Tiles)
     }

@@ -5,8 +5,8 @@ use crate::io::Georeference;
 use crate::raster::Raster;
 use crate::{PointCloud, Result};
 
-/// Colours of losses and gains from small to large: blue and orange, which people with any colour vision can
-/// distinguish, and which grow darker, so that they differ in print too.
+/// Colours of losses and gains from small to large: blue and orange. People with any colour vision can distinguish
+/// them, and they grow darker, so that they differ in print too.
 ///
 /// # Source
 /// Brewer, ColorBrewer 2.0, PuOr with its purples turned blue.
@@ -16,8 +16,8 @@ const SAME: [u8; 3] = [242, 242, 242];
 /// Share of the changed cells whose change the darkest colours show.
 const DARKEST: f64 = 0.2;
 
-/// The highest points of `cloud` in the cells of a raster of `size` (width, height) at `place`, local metres of the
-/// cloud, which has the reference system of the place; NaN where a cell has none.
+/// Returns the highest points of `cloud` in the cells of a raster of `size` (width, height) at `place`, local metres of
+/// the cloud. The cloud has the reference system of the place. NaN for a cell without points.
 ///
 /// # Errors
 /// Those of [`Raster::from_values`].

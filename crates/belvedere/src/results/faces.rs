@@ -24,7 +24,7 @@ pub(super) fn write_colored(
 pub struct FaceRows<'a> {
     /// Object of each row; empty where there is none.
     pub objects: Vec<&'a str>,
-    /// How many of the first rows are objects.
+    /// Number of the first rows that are objects.
     pub object_count: usize,
     /// Name, values and digits after the point of each column.
     pub columns: Vec<(&'a str, Vec<f64>, usize)>,
@@ -46,7 +46,7 @@ impl<'a> FaceRows<'a> {
         Self { objects, object_count, columns }
     }
 
-    /// What a viewer sees of the faces of a mesh.
+    /// Creates rows of the visible area of the faces of a mesh.
     #[must_use]
     pub fn of_seen(mesh: &'a Mesh, faces: &[SeenArea]) -> Self {
         let mut seen = match mesh.object_names.len() {

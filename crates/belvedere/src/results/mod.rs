@@ -28,10 +28,10 @@ use crate::io::{ExtraColumn, ExtraValues, Georeference, TextRows, WriteReport, w
 use crate::{ElevationGrid, Error, Frame, Mesh, PointCloud, Result};
 use std::path::Path;
 
-/// What targets were taken from, where it is written along with their measures.
+/// Source of targets, if it is written along with their measures.
 #[derive(Clone, Copy)]
 pub enum TakenFrom<'a> {
-    /// Nothing but the targets is written: cells.
+    /// Targets alone are written: cells.
     Nothing,
     /// The points of a cloud, with their attributes.
     Cloud(&'a PointCloud),
@@ -41,7 +41,7 @@ pub enum TakenFrom<'a> {
     Mesh(&'a Mesh),
 }
 
-/// Where a grid lies in the reference system of a frame.
+/// Returns the position of a grid in the reference system of a frame.
 #[must_use]
 pub fn georeference(grid: &MapGrid, frame: &Frame) -> Georeference {
     let unit = frame.crs.metres_per_unit;
@@ -50,7 +50,7 @@ pub fn georeference(grid: &MapGrid, frame: &Frame) -> Georeference {
     Georeference { upper_left, column_step: [step, 0.0], row_step: [0.0, -step], crs: frame.crs.clone() }
 }
 
-/// Where the cells around the nodes of a raster of terrain lie in the reference system of a frame.
+/// Returns the position of the cells around the nodes of a raster of terrain in the reference system of a frame.
 #[must_use]
 pub fn terrain_georeference(terrain: &ElevationGrid, frame: &Frame) -> Georeference {
     let unit = frame.crs.metres_per_unit;

@@ -10,22 +10,22 @@ use crate::raster::Raster;
 use crate::{Error, Result};
 use std::path::Path;
 
-/// Name of the band that says where the first is not proven: 1 where it is 1 but no pulses prove it, 0 where it is
-/// proven or blocked; of several observers how many of those that it counts are not proven.
+/// Name of the band of unproven answers. For one observer it is 1 where the first band is 1 without proof by pulses, 0
+/// where it is proven or blocked. For several observers it is the number of counted ones that are not proven.
 pub const UNPROVEN_BAND: &str = crate::apps::ask::UNPROVEN;
 
-/// Name of the band that is 1 where a cell stands on a mesh that was added, and 0 elsewhere: there is no such place in
-/// the scene as it is.
+/// Name of the band that is 1 where a cell stands on an added mesh, and 0 elsewhere: there is no such place in the
+/// scene as it is.
 pub const ADDED_BAND: &str = "added";
 
 /// The bands of a result, all of one kind.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Pixels {
-    /// Of [`ResultKind::Answer`].
+    /// Values of [`ResultKind::Answer`].
     Answers(Vec<Raster<u8>>),
-    /// Of [`ResultKind::Count`].
+    /// Values of [`ResultKind::Count`].
     Counts(Vec<Raster<u16>>),
-    /// Of [`ResultKind::Number`].
+    /// Values of [`ResultKind::Number`].
     Numbers(Vec<Raster<f32>>),
 }
 
@@ -36,12 +36,12 @@ pub struct ResultRaster {
     pub pixels: Pixels,
     /// Names of the bands.
     pub names: Vec<String>,
-    /// What the values are; empty where nothing is said.
+    /// Description of the values; may be empty.
     pub description: String,
 }
 
 impl Pixels {
-    /// What the values are.
+    /// Returns the kind of the values.
     #[must_use]
     pub fn kind(&self) -> ResultKind {
         match self {
@@ -119,7 +119,7 @@ impl Pixels {
         })
     }
 
-    /// Whether no band has a value.
+    /// Returns true if no band has a value.
     #[must_use]
     pub fn are_nothing(&self) -> bool {
         match self {
@@ -176,8 +176,8 @@ impl ResultRaster {
         Ok(Self { pixels: Pixels::of_measures(measures, size)?, names, description })
     }
 
-    /// What observers see of cells. Of one observer 1 where nothing blocks the view, of several their number; where
-    /// proof was tested, a second band says what of it is not proven ([`UNPROVEN_BAND`]).
+    /// Creates the raster of a viewshed of cells. One observer gives 1 where nothing blocks the view, several give
+    /// their number. If proof was tested, a second band has the unproven part ([`UNPROVEN_BAND`]).
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] unless there is an answer for each cell.

@@ -1,4 +1,4 @@
-//! What pulses prove between their returns, on a crown whose shape is known.
+//! Proof by pulses between their returns, on a crown whose shape is known.
 
 use belvedere::control::Control;
 use belvedere::medial::{CarvedParams, Rule};
@@ -13,7 +13,7 @@ const MIDDLE: [f32; 2] = [15.0, 15.0];
 const RADIUS: f32 = 5.0;
 const TOP: f32 = 8.0;
 
-/// What becomes of the second return of a pulse below the crown.
+/// Fate of the second return of a pulse below the crown.
 #[derive(Clone, Copy, PartialEq)]
 enum Second {
     Kept,
@@ -69,7 +69,7 @@ fn built(cloud: &PointCloud, carved: CarvedParams) -> (SceneModel, BuildReport) 
     SceneModel::build(cloud, &params, &Control::none()).unwrap()
 }
 
-/// What somebody sees who looks east below the crown, 1.5 m above the ground, along the line at `north`.
+/// Returns the answer for an eye that looks east below the crown, 1.5 m above the ground, along the line at `north`.
 fn looking_east(model: &SceneModel, north: f32) -> Answer {
     let scene = model.scene(&model.rule(), UnprovenAs::Reported, &Control::none()).unwrap();
     scene.visible(Viewer::Eye([8.0, f64::from(north), 1.5]), &[[22.0, north, 1.5]]).unwrap()[0]

@@ -1,5 +1,4 @@
-//! When a ball blocks a line of sight, against the same said in another way: roots of quadratics and points on
-//! surfaces.
+//! Blocking of lines of sight by balls, against another derivation: roots of quadratics and points on surfaces.
 
 use belvedere::Error;
 use belvedere::blocking::{Ball, BlockRule, Chord, Profile};
@@ -39,7 +38,7 @@ fn case(number: u64) -> BlockingCase {
     BlockingCase { ball, target: [13, 14, 15].map(coordinate), towards: unit(direction).unwrap(), reach, rule }
 }
 
-/// Where a line meets a sphere, by the roots of |o + t d − c|² = r².
+/// Returns the intersections of a line with a sphere, by the roots of |o + t d − c|² = r².
 fn roots(center: [f64; 3], radius: f64, origin: [f64; 3], direction: [f64; 3]) -> Option<[f64; 2]> {
     let from = sub(origin, center);
     let (b, c) = (2.0 * dot(from, direction), dot(from, from) - radius * radius);
@@ -59,7 +58,8 @@ fn counted(rule: &BlockRule, radius: f64, outside: f64) -> f64 {
     }
 }
 
-/// Where the line leaves a ball that blocks; the error says how near the case is to where that changes.
+/// Returns the place at which the line leaves a ball that blocks; the error is the distance of the case from an
+/// undecided one.
 fn expected(case: &BlockingCase) -> Result<Option<f64>, f64> {
     let BlockingCase { ball, target, towards, reach, rule } = case;
     let (center, radius) = (ball.center.map(f64::from), f64::from(ball.radius));

@@ -1,5 +1,5 @@
-//! Views of a scene of balls and targets at their surfaces, and what bounds of depth and answers by them must fulfil,
-//! those of the CPU and those of a device.
+//! Views of a scene of balls and targets at their surfaces, and requirements on bounds of depth and answers by them,
+//! for the CPU and a device.
 
 use belvedere::blocking::Ball;
 use belvedere::control::Control;
@@ -82,7 +82,7 @@ pub(crate) fn as_list(balls: &MedialBalls) -> Vec<Ball> {
     balls.centers.iter().zip(&balls.radii).map(|(&center, &radius)| Ball { center, radius }).collect()
 }
 
-/// Where lines of sight end in a view of [`views`], metres.
+/// Returns the end of lines of sight in a view of [`views`], metres.
 pub(crate) fn start_of(name: &str) -> f64 {
     if name == "camera with a near limit" { 3.0 } else { 0.0 }
 }

@@ -1,4 +1,4 @@
-//! What cameras cover: against closed forms, against single lines of sight, and against the exact mesh of a town.
+//! Coverage of cameras, against closed forms, single lines of sight, and the exact mesh of a town.
 #![expect(clippy::cast_possible_truncation, reason = "test places in f32")]
 
 use crate::common::simulated::cloud_of;

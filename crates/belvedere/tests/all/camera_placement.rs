@@ -20,7 +20,7 @@ impl RandomNumbers {
     }
 }
 
-/// What each of the cameras covers, at random.
+/// Returns random targets that each of the cameras covers.
 fn lists(random: &mut RandomNumbers, cameras: usize, targets: usize, share: f64) -> Vec<Vec<usize>> {
     (0..cameras).map(|_| (0..targets).filter(|_| random.between(0.0, 1.0) < share).collect()).collect()
 }
@@ -127,7 +127,7 @@ fn problems_without_an_answer_are_refused_with_the_reason() {
     assert_eq!((all.chosen, all.counts, all.bound), (vec![0, 1], vec![1, 1, 1, 0], 0.75));
 }
 
-/// What cameras before the walls of houses see of places between these, within `reach` metres and 90 degrees, on a
+/// Returns the places between houses that cameras before their walls cover, within `reach` metres and 90 degrees, on a
 /// square of `side` metres.
 fn town(seed: u64, (side, houses): (f64, usize), targets: usize, cameras: usize, reach: f64) -> Vec<Vec<usize>> {
     let mut random = RandomNumbers(seed, 0);

@@ -18,7 +18,7 @@ const SUNS_DEG: [[f64; 2]; 3] = [[110.0, 20.0], [170.0, 62.0], [245.0, 35.0]];
 /// Height of targets above the ground, metres: a target on a surface is tested from just outside of it.
 const LIFT: f64 = 0.02;
 
-/// Whether the sun is hidden from a place, by a formula.
+/// Formula that returns true if the sun is hidden from a place.
 type Form<'a> = &'a dyn Fn([f64; 3], [f64; 3]) -> bool;
 
 /// Points about `spacing` metres apart, drawn anew in each cell of a rectangle: what a scanner leaves is no grid.
@@ -44,9 +44,9 @@ fn balls_of(points: Vec<[f32; 3]>, model: &TriangleScene, neighbors: usize) -> M
     shrink(&oriented, &index, Side::Interior, &params, &Control::none()).unwrap().0.shrunk()
 }
 
-/// Whether the shade that balls cast on squares of ground of 2 · `half_side` about `middles` is that of `form`: every
-/// pixel that lies a pixel off the outline has to be. Returns how many pixels were compared, in the sun and in the
-/// shade, each sun having both.
+/// Compares the shade that balls cast on squares of ground of 2 · `half_side` around `middles` with `form`: every pixel
+/// at least a pixel off the outline must agree. Returns the number of pixels compared, in the sun and in the shade, and
+/// each sun has both.
 fn compare(balls: &MedialBalls, form: Form<'_>, pixel: f64, middles: &[[f64; 2]], half_side: f64) -> [usize; 2] {
     let scene = MedialScene::new(balls, &BlockRule::carved()).unwrap();
     let across = (2.0 * half_side / pixel).round() as usize;
@@ -88,7 +88,7 @@ fn compare(balls: &MedialBalls, form: Form<'_>, pixel: f64, middles: &[[f64; 2]]
     compared
 }
 
-/// Whether a line of sight enters a box that stands on the ground, by its slabs.
+/// Returns true if a line of sight enters a box that stands on the ground, by its slabs.
 fn box_hides(half: [f64; 2], height: f64, p: [f64; 3], to_sun: [f64; 3]) -> bool {
     let limits = [[-half[0], half[0]], [-half[1], half[1]], [0.0, height]];
     let (mut enter, mut leave) = (0.0f64, f64::INFINITY);

@@ -9,13 +9,13 @@ use belvedere::query::{BlockRule, MedialScene};
 use belvedere::random::uniform;
 use std::f64::consts::{PI, TAU};
 
-/// Least radius of the balls of a wall, metres. Seen from 2 m or more an edge made of them lies lower by 0.41 of it:
-/// 0.004 of the tangent of its elevation at most, which moves the views of the sky by less than 0.002.
+/// Minimum radius of the balls of a wall, metres. Seen from 2 m or more an edge made of them lies lower by 0.41 of it.
+/// That is at most 0.004 of the tangent of its elevation, which moves the views of the sky by less than 0.002.
 const FINEST: f64 = 0.01;
 
-/// Balls in the corner below `top` and beyond `wall` of a section that stands upright, as (beyond the wall, height,
-/// radius): each touches both, and every line of sight into the wall meets one of them, since the circles beside a
-/// corner that a line misses lie in a ratio of 5.8 and more.
+/// Returns balls in the corner below `top` and beyond `wall` of an upright section, as (beyond the wall, height,
+/// radius). Each touches both. Every line of sight into the wall meets one of them, since the circles beside a corner
+/// that a line misses have a ratio of 5.8 and more.
 fn corner_balls(top: f64, largest: f64) -> impl Iterator<Item = (f64, f64, f64)> {
     let count = (largest / FINEST).log2().ceil() as i32 + 1;
     (0..count).map(move |i| {
@@ -32,7 +32,7 @@ fn add(balls: &mut MedialBalls, center: [f64; 3], radius: f64) {
     balls.separation_angles.push(1.0);
 }
 
-/// How far apart balls stand along a wall, in radii: they leave 3 % of a radius between them.
+/// Spacing of balls along a wall, in radii: they leave 3 % of a radius between them.
 const STEP: f64 = 0.5;
 
 /// Street along x with walls of `heights` at y = 0 and y = `width`, 240 m to either side of x = 0.
@@ -151,8 +151,8 @@ fn tilted_free_planes_see_what_their_tilt_leaves() {
     }
 }
 
-/// Root mean square errors over 400 canyons of sky view factor and openness on the floor and of the sky view factor of
-/// walls, from directions tested with the exact horizon.
+/// Returns the root mean square errors over 400 canyons of sky view factor and openness on the floor, and of the sky
+/// view factor of walls, from directions tested with the exact horizon.
 fn errors_of_directions(count: usize) -> [f64; 3] {
     let sky = SkyDirections::even(count).unwrap();
     let mut squares = [0.0; 3];

@@ -1,4 +1,5 @@
-//! How likely targets are visible: against the exact mesh of a simulated town, and the same whatever the threads.
+//! Probabilities that targets are visible, against the exact mesh of a simulated town, and the same for any number of
+//! threads.
 
 use crate::common::simulated::cloud_of;
 use belvedere::apps::sum_errors::{Outlines, SumKind, class_of, expected_measures};

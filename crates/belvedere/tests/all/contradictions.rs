@@ -80,7 +80,7 @@ fn las(records: &[LasRecord], wkt_decides: bool, place: [f64; 3]) -> Vec<u8> {
     bytes
 }
 
-/// What reading says against the reference system: an error, or the doubt of the cloud.
+/// Returns the message of reading about the reference system: an error, or the doubt of the cloud.
 fn said_of(path: &Path, options: &ReadOptions) -> Option<String> {
     match read_cloud([path], options, &Control::none()) {
         Ok((cloud, report)) => {
@@ -101,7 +101,7 @@ fn said_of_las(records: &[LasRecord], place: [f64; 3], crs: Option<&str>) -> Opt
     said_of(&path, &options)
 }
 
-/// What is said of a file of text beside a `.prj`.
+/// Returns the message about a file of text beside a `.prj`.
 fn said_of_text(beside: Option<&str>, place: [f64; 3], crs: Option<&str>) -> Option<String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("tile.xyz");
@@ -162,7 +162,7 @@ fn said_of_terrain(raster: &str, scene: &str) -> Option<String> {
     read_terrain(path.as_path(), &frame).err().map(|error| error.to_string())
 }
 
-/// What is said of a location for a scene at a place of a system: an error, or remarks.
+/// Returns the message about a location for a scene at a place of a system: an error, or remarks.
 fn said_of_location(crs: &str, place: [f64; 3], location: Option<[f64; 2]>) -> Option<String> {
     let frame = Frame { origin: place, crs: Crs::parse(crs).unwrap() };
     let bounds = Bounds { low: [-50.0, -50.0, 0.0], high: [50.0, 50.0, 10.0] };

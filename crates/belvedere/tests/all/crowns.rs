@@ -10,9 +10,9 @@ use belvedere::pulses::{FreeSegmentParams, FreeSegments, group};
 use belvedere::random::uniform;
 use belvedere::{Attributes, PointCloud};
 
-/// Returns of vertical pulses 0.25 m apart over 12 m × 12 m of ground, with a crown from 3 m up to 8 m on 8 m × 8 m of
-/// it. The first return is at 8 m; every `nth` pulse goes on to the ground, the others have their last return at
-/// `base`.
+/// Creates returns of vertical pulses 0.25 m apart over 12 m × 12 m of ground, with a crown from 3 m up to 8 m on 8 m ×
+/// 8 m of it. The first return is at 8 m. Every `nth` pulse continues to the ground; the others have their last return
+/// at `base`.
 fn tree(nth: usize, base: f32) -> PointCloud {
     let mut cloud = PointCloud::default();
     let (mut classes, mut numbers, mut counts, mut times) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());

@@ -54,7 +54,7 @@ fn nodes<'a>(scene: &'a MedialScene, seen: &'a Viewshed) -> impl Iterator<Item =
     all.map(move |(i, &answer)| (terrain.node(i % width, i / width).unwrap(), answer))
 }
 
-/// How far a line of sight sags below the straight one between its ends: (1 - k) s (S - s) / 2R.
+/// Returns the depth of a line of sight below the straight one between its ends: (1 - k) s (S - s) / 2R.
 pub(crate) fn sag(earth: &EarthParams, s: f64, span: f64) -> f64 {
     if earth.curvature == Curvature::Off {
         0.0
@@ -109,15 +109,15 @@ fn a_ridge_hides_what_lies_below_the_line_over_its_crest() {
     }
 }
 
-/// The least height of a line of sight above the terrain beyond `cloud` and a cell around it, by steps of a 32nd of
-/// each patch: no maxima, no closed form.
+/// Returns the minimum height of a line of sight above the terrain beyond `cloud` and a cell around it, by steps of a
+/// 32nd of each patch: no maxima, no closed form.
 fn clearance(grid: &ElevationGrid, cloud: MapBox, eye: [f64; 3], target: [f64; 3], earth: &EarthParams) -> f64 {
     // NaN is never the smaller one
     heights_above(grid, cloud, eye, target, earth).into_iter().map(|[_, above]| above).fold(f64::INFINITY, f64::min)
 }
 
-/// The heights of a line of sight above the terrain in these steps, with the distance of each from the eye on the map;
-/// NaN where the terrain is not known.
+/// Returns the heights of a line of sight above the terrain in these steps, with the horizontal distance of each from
+/// the eye; NaN where the terrain is not known.
 pub(crate) fn heights_above(
     grid: &ElevationGrid,
     cloud: MapBox,
@@ -159,9 +159,9 @@ pub(crate) fn heights_above(
     found
 }
 
-/// Compares a viewshed with lines followed step by step for each `step`th node. Gives the numbers of blocked and
-/// visible nodes, and of those that differ because terrain rises above the line between two steps only; there it comes
-/// as near as `margin` to the line.
+/// Compares a viewshed with lines followed step by step for each `step`th node. Returns the numbers of blocked and
+/// visible nodes, and of those that differ because terrain rises above the line between two steps only. There it comes
+/// within `margin` of the line.
 fn compared(scene: &MedialScene, cloud: MapBox, eye: [f64; 3], height: f64, step: usize, margin: f64) -> [usize; 3] {
     let (earth, terrain) = (EarthParams::default(), scene.far_terrain().grid().unwrap());
     let found = seen(scene, &[observer(eye)], height, earth);

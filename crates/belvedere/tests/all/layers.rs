@@ -30,7 +30,7 @@ const RESEARCH: [(&str, &[&str]); 5] = [
 
 /// Level of each module of `belvedere-core`: a module imports from lower levels, or from its own folder.
 const LEVELS: [(&str, u8); 18] = [
-    ("eight", 0),
+    ("f32x8", 0),
     ("instructions", 0),
     ("neighbors", 1),
     ("ray_index", 1),
@@ -126,7 +126,7 @@ fn imported_modules(code: &str) -> Vec<String> {
     modules
 }
 
-/// Whether `code` names the crate whose paths begin with `prefix`, and not a module of ours that is called the same.
+/// Returns true if `code` names the crate whose paths begin with `prefix`, and not a module of ours with the same name.
 fn names_crate(code: &str, prefix: &str) -> bool {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
     let bare = prefix.trim_end_matches(':');

@@ -137,8 +137,8 @@ fn observer_and_target_can_change_places() {
 /// A ball by its centre and radius, and the two ends of a line.
 type BallAndLine = (([f32; 3], f32), [[f64; 3]; 2]);
 
-/// Lines that touch a ball of whole metres, lines whose ends lie exactly on its surface, and lines whose ends lie
-/// exactly one metre below it: for each a ball and two ends, of whole numbers all.
+/// Returns lines that touch a ball of whole metres, lines whose ends lie exactly on its surface, and lines whose ends
+/// lie exactly one metre below it. Each is a ball and two ends, all of whole numbers.
 fn undecided_lines(number: u64) -> [BallAndLine; 3] {
     let whole = |k: u64, count: f64| (count * uniform(23, 16 * number + k)).floor();
     let center = [0, 1, 2].map(|k| whole(k, 900.0));

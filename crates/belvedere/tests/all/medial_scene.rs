@@ -68,9 +68,9 @@ fn answers_equal_those_of_every_ball_tried_in_turn() {
     }
 }
 
-/// The rule of the documentation for [`BlockRule::shell`], ball after ball: a ball counts with radius r − (shell −
-/// max(d − r, 0)) where an end at distance d from its centre lies less than the shell from its surface; the lesser of
-/// two.
+/// Applies the documented rule of [`BlockRule::shell`], ball after ball. A ball has radius r − (shell − max(d − r, 0))
+/// if an end at distance d from its centre lies less than the shell from its surface; the smaller radius of two ends
+/// counts.
 fn brute_force_with_shell(balls: &MedialBalls, target: [f32; 3], eye: [f64; 3], bias: f64, shell: f64) -> bool {
     (0..balls.len()).any(|i| {
         let one = |radius: f64| {

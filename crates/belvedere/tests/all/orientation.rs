@@ -425,7 +425,7 @@ fn random3dcity_normals_come_back_from_their_mesh() {
     assert!(share > 0.995, "{share}");
 }
 
-/// Whether the projection of `p` lies in the triangle with unit normal `n`, with a tolerance of a tenth of a
+/// Returns true if the projection of `p` lies in the triangle with unit normal `n`, with a tolerance of a tenth of a
 /// millimetre.
 fn within(corners: &[[f64; 3]; 3], n: &[f64; 3], p: [f64; 3]) -> bool {
     (0..3).all(|i| {

@@ -1,4 +1,4 @@
-//! What pulses prove seen: against every pulse tried in turn, against dense samples of lines, and against closed forms.
+//! Proof of visibility by pulses, against every pulse tried in turn, dense samples of lines, and closed forms.
 #![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use belvedere::Error;

@@ -1,4 +1,4 @@
-//! What pruning leaves, against closed forms and against every pair of balls tried in turn.
+//! Result of pruning, against closed forms and every pair of balls tried in turn.
 
 use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, NO_TOUCH, PruneParams, ShrinkMethod, ShrinkParams, Side, prune, shrink};

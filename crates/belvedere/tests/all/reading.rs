@@ -19,7 +19,7 @@ fn read_as(path: &Path, crs: &str) -> belvedere::Result<(PointCloud, ReadReport)
     read_cloud(&[path.to_owned()], &ReadOptions::new().with_crs(crs.to_owned()), &Control::none())
 }
 
-/// What an outside reader says about a LAS file.
+/// Properties of a LAS file by an outside reader.
 struct ReaderTruth {
     file: &'static str,
     points: usize,

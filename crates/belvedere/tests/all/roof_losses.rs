@@ -1,4 +1,4 @@
-//! What shading takes from the planes of roofs, against rays in the exact mesh of simulated towns.
+//! Losses by shading on the planes of roofs, against rays in the exact mesh of simulated towns.
 
 use crate::common::simulated::cloud_of;
 use belvedere::apps::irradiance::{

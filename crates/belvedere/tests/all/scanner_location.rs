@@ -1,5 +1,5 @@
-//! Where the scanner was, by whatever a cloud has: simulated flights whose path is known, with one means after the
-//! other taken away, and real clouds.
+//! Scanner positions from each source that a cloud has: simulated flights with a known path, with one source after the
+//! other removed, and real clouds.
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,

@@ -104,7 +104,7 @@ fn sorted(balls: &MedialBalls, sources: &[u32]) -> Vec<([u32; 3], u32, u32)> {
     rows
 }
 
-/// Whether two models are the same but for values that are not equal to themselves.
+/// Returns true if two models are the same except for values that are not equal to themselves.
 fn has_nan_only_differences(a: &SceneModel, b: &SceneModel) -> bool {
     let bits = |values: &[f32]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
     a.balls().centers == b.balls().centers

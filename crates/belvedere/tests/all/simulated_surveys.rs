@@ -1,5 +1,5 @@
-//! What a simulated survey delivers agrees with itself: returns with the exact mesh along their rays, angles and times
-//! with the written trajectory, written meshes with the scene.
+//! Consistency of simulated surveys: returns with the exact mesh along their rays, angles and times with the written
+//! trajectory, written meshes with the scene.
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,
@@ -67,8 +67,8 @@ fn normal(scene: &TriangleScene, triangle: usize) -> [f64; 3] {
     unit([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]])
 }
 
-/// How far a return may be moved by the millimetres of the files, metres: half a step along each axis, and a tenth of
-/// it in the trajectory.
+/// Maximum shift of a return by the millimetres of the files, metres: half a step along each axis, and a tenth of it in
+/// the trajectory.
 const FILE_STEP: f64 = 0.000_87 + 0.000_1;
 
 /// Checks that returns lie within four deviations of the mesh along their rays, all but the share that noise explains.

@@ -24,7 +24,7 @@ fn built(cloud: &PointCloud) -> (SceneModel, BuildReport) {
     SceneModel::build(cloud, &ModelParams::default(), &Control::none()).unwrap()
 }
 
-/// How many lines to the suns, free and blocked in truth, are called blocked, visible and unproven.
+/// Counts lines to the suns, free and blocked in truth, that are called blocked, visible and unproven.
 fn lines_to_the_sun(scene: &TriangleScene, cloud: &PointCloud, model: &SceneModel, count: usize) -> [[usize; 3]; 2] {
     let medial = model.scene(&model.rule(), UnprovenAs::Reported, &Control::none()).unwrap();
     let truth = Truth::new(scene);

@@ -11,8 +11,8 @@ use belvedere::query::{BlockRule, MedialScene};
 use belvedere::random::uniform;
 use belvedere::{Attributes, PointCloud};
 
-/// Pulses 0.25 m apart over 20 m × 10 m of ground, tilted by 20° to either side in turn, and what they meet first: a
-/// box along x from `bottom` to `top`, `width` across, in the middle; class 1, the ground class 2.
+/// Simulates pulses 0.25 m apart over 20 m × 10 m of ground, tilted by 20° to either side in turn, and their first
+/// returns. In the middle stands a box along x from `bottom` to `top`, `width` across; class 1, the ground class 2.
 fn survey(bottom: f64, top: f64, width: f64) -> (PointCloud, Vec<[f32; 3]>) {
     let (mut cloud, mut scanner) = (PointCloud::default(), Vec::new());
     let mut classes = Vec::new();

@@ -121,7 +121,7 @@ fn a_fence_that_runs_toward_the_sun_and_a_wall_bound_by_their_lowest_place() {
     assert_eq!(found.report.turned_away_count, wall.len());
 }
 
-/// Whether the way from `place` to the sun meets the box below `top` over a square cell.
+/// Returns true if the path from `place` to the sun meets the box below `top` over a square cell.
 fn is_shaded(place: [f64; 3], sun: [f64; 3], low: [f64; 2], cell: f64, top: f64) -> bool {
     let (mut from, mut to) = (0.0_f64, f64::INFINITY);
     for axis in 0..2 {
@@ -232,7 +232,7 @@ fn cells_that_the_outline_cuts_are_bounded_over_their_part_alone() {
     assert!(partial > 20, "{partial}");
 }
 
-/// Whether each edge of a mesh is walked as often one way as the other, places being compared number for number.
+/// Returns true if each edge of a mesh is walked as often one way as the other; places are compared number for number.
 fn is_closed(mesh: &Mesh) -> bool {
     let mut balance: HashMap<[u32; 2], i32> = HashMap::new();
     for [a, b, c] in &mesh.triangles {

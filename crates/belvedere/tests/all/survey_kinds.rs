@@ -1,4 +1,4 @@
-//! What a survey is called, what carves it and what would help, for clouds whose origin is known.
+//! Names, carving and advice for surveys, for clouds whose origin is known.
 
 use crate::common::data;
 use crate::common::simulated::cloud_of;

@@ -16,8 +16,8 @@ use belvedere_scenes::{
 /// Unproven pieces of a line, local metres.
 type Pieces = Vec<[[f64; 3]; 2]>;
 
-/// Balls that close the ground of 40 m by 30 m, a wall 10 m long and 6 m high along x = 0, and a lower wall from its
-/// middle 4.5 m to the east.
+/// Creates balls that close the ground of 40 m by 30 m, a wall 10 m long and 6 m high along x = 0, and a lower wall
+/// from its middle 4.5 m to the east.
 fn walls() -> MedialBalls {
     let mut balls: Vec<([f32; 3], f32)> = Vec::new();
     let steps = |count: u16, size: f32, from: f32| (0..count).map(move |i| from + f32::from(i) * size);
@@ -38,8 +38,8 @@ fn walls() -> MedialBalls {
     }
 }
 
-/// The walls, seen by pulses that fall straight down on the west side only; single ones at the corners of the ground,
-/// one of them on a mast of 40 m.
+/// Creates the walls, seen by pulses that fall straight down on the west side only; single ones at the corners of the
+/// ground, one of them on a mast of 40 m.
 fn seen_from_the_west() -> MedialScene {
     let mut returns: Vec<[f32; 3]> = (0..38_u16)
         .flat_map(|i| (0..60_u16).map(move |k| [-20.0 + f32::from(i) * 0.5, -15.0 + f32::from(k) * 0.5, 0.0]))
@@ -190,7 +190,7 @@ fn streets() -> Streets {
     Streets { origin, scene, lines, candidates, town }
 }
 
-/// How many lines the pulses of one more scan of the exact town settle.
+/// Counts the lines that the pulses of one more scan of the exact town settle.
 fn truly_settled(streets: &Streets, station: [f64; 3]) -> usize {
     let scan = scan_terrestrial(&streets.town, &scanner(Stations::At(vec![station])));
     let first = (0..scan.len()).filter(|&row| scan.return_number[row] == 1);

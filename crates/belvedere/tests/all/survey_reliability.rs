@@ -1,4 +1,4 @@
-//! How reliable answers on a survey are: pulses kept out, against the same figures counted line by line.
+//! Reliability of answers on a survey: pulses kept out, against the same figures counted line by line.
 
 use crate::common::simulated::cloud_of;
 use belvedere::apps::ask::{calibrate, with_reliability};

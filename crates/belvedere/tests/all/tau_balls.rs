@@ -61,7 +61,7 @@ fn house(seed: u64) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
     (points, normals)
 }
 
-/// How far the deepest point lies inside a ball, metres, in f64.
+/// Returns the depth of the deepest point inside a ball, metres, in f64.
 fn deepest_penetration(points: &[[f32; 3]], center: [f32; 3], radius: f32) -> f64 {
     points
         .iter()

@@ -16,7 +16,7 @@ const HEIGHT: f64 = 3.0;
 /// West, south, east, north of the slab.
 const SLAB: [f64; 4] = [-5.0, -3.0, 5.0, 3.0];
 
-/// What stands on level ground.
+/// Object on level ground.
 #[derive(Clone, Copy, PartialEq)]
 enum Built {
     Canopy,

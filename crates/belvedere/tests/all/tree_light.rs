@@ -31,7 +31,7 @@ impl ClassifiedBalls {
         Self { balls, classes: list.iter().map(|&(.., class)| class).collect() }
     }
 
-    /// What all balls leave free, and those that are not vegetation.
+    /// Returns the free lines past all balls, and past those that are not vegetation.
     fn matrices(&self, directions: &[[f64; 3]]) -> [VisibilityMatrix; 2] {
         let opaque = without_vegetation(&self.balls, &vegetation_of_classes(&self.balls, &self.classes)).unwrap();
         [&self.balls, &opaque].map(|balls| {

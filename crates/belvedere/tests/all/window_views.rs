@@ -2,7 +2,7 @@
 
 use crate::common::simulated::cloud_of;
 use crate::mountains::grid;
-use belvedere::apps::exposure::WINDOW_LIFT;
+use belvedere::apps::targets::TARGET_LIFT;
 use belvedere::apps::targets::{Targets, Window};
 use belvedere::apps::window_views::{
     ClassMeanings, Kinds, Proving, SeenKind, VIEW_DIRECTIONS, WindowView, balls_seen, leave_out_level, view_directions,
@@ -84,7 +84,7 @@ fn endless_wall(y: f64, top: f64) -> BlockingTriangles {
 fn a_window_before_an_endless_wall_sees_what_the_closed_form_leaves() {
     let count = 20_000;
     for (distance, height, top) in [(10.0, 4.0, 15.0), (30.0, 2.0, 12.0), (5.0, 8.0, 9.0), (12.0, 9.0, 6.0)] {
-        let scene = level_ground().with_triangles(Some(endless_wall(distance + WINDOW_LIFT, top)));
+        let scene = level_ground().with_triangles(Some(endless_wall(distance + TARGET_LIFT, top)));
         let kinds = Kinds { balls: &[SeenKind::Ground], meshes: &[SeenKind::Building] };
         let [view] = views(&scene, &[window([0.0, 0.0, height], 0.0)], kinds, count)[..] else { panic!() };
         // planes through the window that are level along the wall cut the half space in wedges, each with the share of
@@ -162,7 +162,7 @@ fn what_is_seen_from_a_surface_is_what_the_matrix_has_as_blocked_and_what_is_ent
     }
 }
 
-/// What a material is to people at a window.
+/// Returns the kind of a material for people at a window.
 fn kind(material: Material) -> SeenKind {
     match material {
         Material::Terrain => SeenKind::Ground,

@@ -1,4 +1,4 @@
-//! What is written can be read back, by the crates of the formats themselves, and never appears half done.
+//! Written files can be read back, by the crates of the formats themselves, and never appear half done.
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,
@@ -293,7 +293,7 @@ fn rasters_keep_values_place_and_nodata() {
     assert_eq!(array.into_vec::<f32>().unwrap(), values);
 }
 
-/// Whether two columns are there and alike within `tolerance`.
+/// Returns true if two columns are there and alike within `tolerance`.
 fn alike<T: Copy + Into<f64>>(found: Option<&Vec<T>>, expected: Option<&Vec<T>>, tolerance: f64) -> bool {
     let (Some(found), Some(expected)) = (found, expected) else { return found.is_none() && expected.is_none() };
     let close = |(f, e): (&T, &T)| ((*f).into() - (*e).into()).abs() <= tolerance;

@@ -1,4 +1,4 @@
-//! How cameras look.
+//! Lenses and motion of cameras.
 
 use crate::cameras::{Lens, Motion, MountingParams};
 use belvedere_data::Result;
@@ -23,11 +23,11 @@ pub struct CameraLens {
     pub headings: Option<usize>,
     /// Angles below the horizon to choose from, degrees, -90 to 90; none for 15.
     pub tilts_deg: Vec<f64>,
-    /// Whether they turn and tilt to each target.
+    /// True if they turn and tilt to each target.
     pub is_turning: bool,
-    /// Least horizontal distance, metres; `None` for 0.
+    /// Minimum horizontal distance, metres; `None` for 0.
     pub min_distance: Option<f64>,
-    /// Greatest horizontal distance, metres; `None` for no limit.
+    /// Maximum horizontal distance, metres; `None` for no limit.
     pub max_distance: Option<f64>,
 }
 
@@ -46,7 +46,7 @@ impl CameraLens {
         Ok(lens)
     }
 
-    /// How cameras are put up.
+    /// Returns the mounting of cameras.
     ///
     /// # Errors
     /// Those of [`CameraLens::lens`].

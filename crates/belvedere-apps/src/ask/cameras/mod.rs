@@ -27,30 +27,31 @@ use report::ChoiceSection;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Which of many possible cameras to put up so that they cover much of some places.
+/// Selection of cameras from many possible ones that covers much of some places.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct CamerasQuestion {
-    /// What they are chosen for.
+    /// Goal of the selection.
     pub goal: CameraGoal,
     /// Cameras that each target needs, 1 or more; one with fewer counts in proportion. Default 1.
     pub per_target: u32,
-    /// Most branches of the search for the proven optimum, 0 for no search; `None` for about half a minute.
+    /// Maximum number of branches of the search for the proven optimum, 0 for no search; `None` for about half a
+    /// minute.
     pub search_limit: Option<usize>,
-    /// Where they could stand.
+    /// Possible positions.
     pub candidates: Candidates,
     /// Cameras that stay.
     #[serde(skip)]
     pub existing: Vec<GivenCamera>,
     /// Height of cameras above the ground or the roof, metres; `None` for 4 above the ground and 1 above roofs.
     pub camera_height: Option<f64>,
-    /// How they look.
+    /// Lenses and motion.
     pub lens: CameraLens,
-    /// What they are to cover, and what they must not see.
+    /// Targets to cover, and places that must stay private.
     pub targets: CameraTargets,
-    /// From which north azimuths count.
+    /// North of azimuths.
     pub north: North,
-    /// How lines of sight run over the earth.
+    /// Curvature of the earth on lines of sight.
     #[serde(skip)]
     pub earth: EarthParams,
     /// Frequency of radio links, GHz, 0.001 to 1000: a target is only covered if the first Fresnel zone is free too.
@@ -58,15 +59,15 @@ pub struct CamerasQuestion {
     pub frequency_ghz: Option<f64>,
     /// Share of the radius of that zone that must be free, percent, above 0 to 100; `None` for 60.
     pub fresnel_percent: Option<f64>,
-    /// What targets count as that nothing blocks but that are not proven visible; they are covered only where they
-    /// count as visible. What is given needs pulses.
+    /// Treatment of unproven targets that nothing blocks: they are covered only if they count as visible. A given value
+    /// needs pulses.
     pub unproven: Option<UnprovenAs>,
     /// The least probability, above 0.5 and at most 1, with which a target must be visible to be covered; `None`, the
     /// default, where the answer alone counts. What is given needs pulses.
     pub certain: Option<f64>,
 }
 
-/// What cameras are chosen for.
+/// Goal of a selection of cameras.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CameraGoal {
@@ -100,11 +101,11 @@ impl Default for CamerasQuestion {
 /// A camera that stays or is to be put up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChosenCamera {
-    /// Where it stands and how it looks.
+    /// Position and direction.
     pub pose: CameraPose,
-    /// Whether it is to be put up.
+    /// True if it is to be installed.
     pub is_new: bool,
-    /// What it adds to the coverage, percent; NaN for one that stays.
+    /// Coverage that it adds, percent; NaN for one that stays.
     pub added_percent: f64,
     /// Rows of the targets that it covers.
     pub covered: Vec<usize>,
@@ -112,11 +113,11 @@ pub struct ChosenCamera {
 
 /// The cameras that were chosen.
 pub struct CamerasResults {
-    /// Those that stay, then the new ones, those that add most first.
+    /// Existing cameras, then the new ones, by the coverage that they add, descending.
     pub cameras: Vec<ChosenCamera>,
-    /// What is proven of the choice.
+    /// Proven properties of the selection.
     pub placed: Placement,
-    /// What is to be covered.
+    /// Targets to cover.
     pub targets: Targets,
     /// Number of cameras that could be chosen.
     pub candidates: usize,
@@ -124,7 +125,7 @@ pub struct CamerasResults {
     pub grid_north: f64,
 }
 
-/// What cameras stand on and look through.
+/// Ground and obstacles of cameras.
 pub(super) struct CameraSite<'a> {
     pub(super) scene: &'a Scene,
     pub(super) blockers: &'a Arc<MedialScene>,
@@ -133,7 +134,7 @@ pub(super) struct CameraSite<'a> {
 }
 
 impl CamerasResults {
-    /// How many cameras cover a target; `None` for one that does not count.
+    /// Returns the number of cameras that cover a target; `None` for one that does not count.
     #[must_use]
     pub fn count(&self, row: usize) -> Option<u32> {
         let counts = self.targets.is_target(row) && self.targets.weight(row) > 0.0;

@@ -5,7 +5,7 @@ use crate::eyes::EyesReport;
 use belvedere_data::report::{percent, rounded};
 use serde::Serialize;
 
-/// What is known of a choice of cameras.
+/// Report of a selection of cameras.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct CamerasReport {
     pub(super) targets: usize,
@@ -27,7 +27,7 @@ pub(super) struct ChoiceSection {
     pub(super) existing: usize,
 }
 
-/// What cameras have in their pictures.
+/// Targets in the pictures of cameras.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub(super) struct PicturesSection {
     pixels_per_m: f64,
@@ -36,7 +36,7 @@ pub(super) struct PicturesSection {
     covered_pairs: usize,
 }
 
-/// What chosen cameras cover.
+/// Coverage of the selected cameras.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub(super) struct CoverageSection {
     new_cameras: usize,

@@ -1,4 +1,4 @@
-//! Where cameras stand.
+//! Positions of cameras.
 
 use super::{CameraSite, CamerasQuestion, CamerasReport};
 use crate::ask::observers::{Reach, skip_unfit};
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 /// Side of the cells that cameras stand in unless said otherwise, metres.
 const SPACING: f64 = 5.0;
 
-/// Where cameras could stand.
+/// Possible positions of cameras.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Candidates {
@@ -22,7 +22,7 @@ pub enum Candidates {
     Ground(f64),
     /// Above roofs, in the middle of each cell of this side, metres.
     Roofs(f64),
-    /// Where somebody says.
+    /// Given positions.
     #[serde(skip)]
     Given(Vec<GivenCamera>),
 }
@@ -46,7 +46,7 @@ pub struct GivenCamera {
     pub tilt_deg: Option<f64>,
     /// Horizontal field of view, degrees.
     pub fov_deg: Option<f64>,
-    /// Least and greatest horizontal distance, metres.
+    /// Minimum and maximum horizontal distance, metres.
     pub distance: [Option<f64>; 2],
     /// Azimuths that it can be turned to, degrees.
     pub azimuth_deg: Option<[f64; 2]>,
@@ -120,8 +120,8 @@ impl CamerasQuestion {
 }
 
 impl Candidates {
-    /// Where they look from, `height` metres above the ground or the roof where nothing else is said of one, and how
-    /// many cannot look: these are NaN.
+    /// Returns the eyes of the candidates, and the number that cannot look, which are NaN. Eyes are `height` metres
+    /// above the ground or the roof, unless given for one of them.
     pub(in crate::ask) fn eyes(
         &self,
         (height, points): (f64, GroundPoints),

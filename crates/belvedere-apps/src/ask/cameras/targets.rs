@@ -1,4 +1,4 @@
-//! What cameras are to cover, and what they must not see.
+//! Targets of cameras, and places that must stay private.
 
 use super::CameraSite;
 use crate::ask::observers::Standing;
@@ -11,25 +11,25 @@ use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 
-/// What cameras are to cover beside [`Places`], and what they must not see.
+/// Targets of cameras beside [`Places`], and places that must stay private.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct CameraTargets {
     /// Height of cells, and of points without a height, above the ground, metres. Default 1.5.
     pub height: f64,
-    /// Which points are ground.
+    /// Source of ground points.
     #[serde(skip)]
     pub ground: GroundPoints,
     /// Points that may stand on the ground, in place of [`Places`].
     #[serde(skip)]
     pub points: Vec<Standing>,
-    /// How much each point counts, 0 or more; empty where all count alike.
+    /// Weight of each point, 0 or more; empty for equal weights.
     #[serde(skip)]
     pub weights: Vec<f64>,
     /// Areas on the map: cells beside them are no targets. Empty for all cells.
     #[serde(skip)]
     pub areas: Vec<WeightedArea>,
-    /// What no camera may have in its picture.
+    /// Places that no camera may have in its picture.
     #[serde(skip)]
     pub private: PrivatePlaces,
 }

@@ -1,4 +1,4 @@
-//! Who looks, and where to.
+//! Observers and their limits.
 
 use crate::ask::observers::Standing;
 use crate::viewshed::SightLimits;
@@ -8,24 +8,24 @@ use serde::{Deserialize, Serialize};
 /// Someone who looks around, or a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StandingObserver {
-    /// Where.
+    /// Position.
     pub standing: Standing,
-    /// Where it looks. What is `None` follows from the question.
+    /// Limits. Values of `None` follow from the question.
     pub limits: ViewLimits,
 }
 
-/// Where observers look; what lies outside has no answer.
+/// Limits of direction and distance; targets outside have no answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ViewLimits {
     /// Azimuths from and to, clockwise from the north of the question, degrees; 300 to 60 runs through north. `None`
     /// for all.
     pub azimuth_range_deg: Option<[f64; 2]>,
-    /// Least and greatest angle above the horizon, degrees, -90 to 90. `None` for all.
+    /// Minimum and maximum angle above the horizon, degrees, -90 to 90. `None` for all.
     pub elevation_range_deg: Option<[f64; 2]>,
-    /// Least distance on the map, metres; `None` for 0.
+    /// Minimum distance on the map, metres; `None` for 0.
     pub min_distance: Option<f64>,
-    /// Greatest distance on the map, metres; `None` for no limit.
+    /// Maximum distance on the map, metres; `None` for no limit.
     pub max_distance: Option<f64>,
 }
 
@@ -38,7 +38,7 @@ impl ViewLimits {
         self.sight_limits(0.0).map(|_| ())
     }
 
-    /// Those of `self`, and of `usual` where it has none.
+    /// Returns the limits of `self`, completed by those of `usual`.
     #[must_use]
     pub fn or(&self, usual: &Self) -> Self {
         Self {

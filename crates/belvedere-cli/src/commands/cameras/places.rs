@@ -1,4 +1,4 @@
-//! Where cameras stand and how they look: from flags and files to a question.
+//! Positions and lenses of cameras, from flags and files to a question.
 
 use crate::arguments::CameraLensArguments;
 use crate::commands::surroundings::{ObserverUse, observer_rows};
@@ -13,7 +13,7 @@ use std::path::Path;
 /// Metres between the candidates on a line of GeoJSON.
 const STEP: f64 = 5.0;
 
-/// How cameras look, as the flags say.
+/// Returns the lenses of cameras from the flags.
 pub(super) fn lens(flags: &CameraLensArguments) -> ask::CameraLens {
     ask::CameraLens {
         fov_deg: flags.fov,

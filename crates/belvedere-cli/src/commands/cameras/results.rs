@@ -17,7 +17,7 @@ use std::path::Path;
 /// Colours of cells with no camera, one, two, three, and more.
 const COLORS: [[u8; 3]; 5] = [[120, 40, 50], [253, 225, 60], [110, 200, 95], [35, 145, 140], [60, 80, 165]];
 
-/// What is written.
+/// Results to write.
 pub(super) struct CameraOutput<'a> {
     pub(super) found: &'a CamerasResults,
     pub(super) scene: &'a Scene,

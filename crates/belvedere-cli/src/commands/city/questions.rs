@@ -1,4 +1,4 @@
-//! From flags to the questions of a plan.
+//! Converts flags to the questions of a plan.
 
 use crate::arguments::{AreaChoice, CellFor, CityPlan, MapPosition, Usage};
 use crate::commands::irradiance::radiation;
@@ -91,7 +91,7 @@ pub(super) fn cells(arguments: &CityPlan) -> Result<CellSizes> {
     Ok(cells)
 }
 
-/// Where the survey lies as far as suns are concerned: clocks run as one of the times says where no zone was typed.
+/// Returns the location of the survey for suns. Without a typed zone the clock is that of one of the times.
 fn sun_place(arguments: &CityPlan) -> Result<SunPlace> {
     let place = arguments.sun.place(&arguments.north)?;
     let of_times = || arguments.times.iter().find_map(|time| zone_of_instant(time));
@@ -138,7 +138,7 @@ fn of_sun_and_sky(arguments: &CityPlan) -> Result<Vec<ask::Question>> {
     Ok(questions)
 }
 
-/// What was typed as questions. Azimuths count from the north, and the sun is that, at the middle of the survey.
+/// Converts the typed questions. Azimuths count from the north, and the sun stands, at the middle of the survey.
 pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandContext) -> Result<Vec<TileQuestion>> {
     let frame = plan.frame()?;
     let whereabouts = plan.whereabouts(&frame);

@@ -1,4 +1,4 @@
-//! From flags and weather files to where radiation comes from.
+//! Converts flags and weather files to the source of radiation.
 
 use crate::arguments::{ClearSkyChoice, RadiationModel, Usage};
 use crate::run::CommandContext;
@@ -36,7 +36,7 @@ pub(in crate::commands) fn check_linke(choice: Option<ClearSkyChoice>, model: &R
     Ok(())
 }
 
-/// Where radiation comes from; weather is read.
+/// Returns the source of radiation; reads weather.
 pub(in crate::commands) fn of(
     (weather, choice): (Option<&Path>, Option<ClearSkyChoice>),
     model: &RadiationModel,

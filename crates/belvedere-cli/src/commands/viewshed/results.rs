@@ -23,22 +23,22 @@ const SEEN_COLOR: [u8; 3] = [255, 176, 0];
 const HIDDEN_COLOR: [u8; 3] = [38, 52, 96];
 /// Terrain over which the cloud lies, which has cells of its own.
 const CLOUD_COLOR: [u8; 3] = [120, 120, 120];
-/// Most pixels of a map of terrain.
+/// Maximum number of pixels of a map of terrain.
 const MAX_PIXELS: f64 = 4e6;
 
-/// What is seen of cells, and where they lie.
+/// Viewshed of cells, and their position.
 pub(super) struct SeenCells<'a> {
     pub(super) seen: &'a Viewshed,
-    /// How sure that is.
+    /// Certainty of the answers.
     pub(super) sure: &'a [Measure],
     pub(super) eyes: &'a [[f64; 3]],
     pub(super) frame: &'a Frame,
     pub(super) on: CellSurface<'a>,
-    /// Whether it is the eye that is seen from the cells.
+    /// True for a reverse viewshed: the cells see the eye.
     pub(super) is_reverse: bool,
 }
 
-/// What the cells lie on.
+/// Surface below the cells.
 #[derive(Clone, Copy)]
 pub(super) enum CellSurface<'a> {
     /// The ground below a cloud.
@@ -125,18 +125,18 @@ impl SeenCells<'_> {
     }
 }
 
-/// What a map of a viewshed shows.
+/// Content of a map of a viewshed.
 pub(super) struct SeenMap<'a> {
     /// The best answer for each cell.
     pub(super) answers: &'a [Answer],
-    /// How many observers see each.
+    /// Number of observers that see each.
     pub(super) counts: &'a [u32],
-    /// Which answers of the one observer are uncertain, if that is known.
+    /// Flags of the uncertain answers of the one observer, if known.
     pub(super) uncertain: Option<&'a [f32]>,
     /// Local metres.
     pub(super) eyes: &'a [[f64; 3]],
     pub(super) is_of_one: bool,
-    /// Whether it is the eye that is seen from the cells.
+    /// True for a reverse viewshed: the cells see the eye.
     pub(super) is_reverse: bool,
 }
 

@@ -23,12 +23,12 @@ const DOT: f64 = 1.0 / 100.0;
 /// Colour of cells without a window.
 const NO_WINDOW_COLOR: [u8; 3] = [226; 3];
 
-/// What is written.
+/// Results to write.
 pub(super) struct WindowOutput<'a> {
     pub(super) scene: &'a Scene,
     pub(super) found: &'a WindowViewsResults,
     pub(super) measures: &'a [Measure],
-    /// Where and what each window is.
+    /// Position and properties of each window.
     pub(super) columns: Vec<WindowColumn>,
     /// Building of each window; empty where that is not known.
     pub(super) names: Vec<String>,

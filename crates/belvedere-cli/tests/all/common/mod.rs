@@ -26,7 +26,7 @@ const SCENE_CONFIGS: [(&str, &str); 5] = [
     ("keeping.json", r#"{"keep_isolated": true, "keep_duplicates": true}"#),
 ];
 
-/// What a run left behind.
+/// Result of a run.
 #[derive(Debug)]
 pub(crate) struct FinishedRun {
     pub(crate) status: i32,
@@ -46,7 +46,7 @@ impl Workplace {
         self.0.path().join("place")
     }
 
-    /// Where caches lie.
+    /// Returns the folder of caches.
     pub(crate) fn cache(&self) -> PathBuf {
         self.0.path().join("cache")
     }
@@ -192,7 +192,7 @@ pub(crate) fn remarks(summary: &Value) -> Vec<String> {
 pub(crate) const EAST: f64 = 85_000.0;
 pub(crate) const NORTH: f64 = 446_000.0;
 
-/// How far the ground around the house lies above and below height 0, metres: an exact plane has no inside.
+/// Amplitude of the ground around the house above and below height 0, metres: an exact plane has no inside.
 pub(crate) const ROUGHNESS: f32 = 0.08;
 
 /// A gabled house on level ground at height 0, in the Dutch grid, with its outward normals, points half a metre apart.
@@ -251,7 +251,8 @@ pub(crate) fn at(x: f64, y: f64, z: f64) -> [f64; 3] {
     [EAST + x, NORTH + y, z]
 }
 
-/// Whether the line from a place in a direction meets the house, the part of space below all of its walls and roofs.
+/// Returns true if the line from a place in a direction meets the house, the part of space below all of its walls and
+/// roofs.
 pub(crate) fn is_hidden(place: [f64; 3], direction: [f64; 3]) -> bool {
     let sides: [([f64; 3], f64); 6] = [
         ([1.0, 0.0, 0.0], 5.0),

@@ -1,4 +1,4 @@
-//! Where the scanner was, from the scan angles of the points.
+//! Estimates scanner positions from the scan angles of the points.
 
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 use rayon::prelude::*;
@@ -21,7 +21,7 @@ const MIN_POINTS: usize = 200;
 const ROUNDS: usize = 6;
 /// Minimum number of pulses with several returns in a part for the test of whether they agree.
 const MIN_PAIRS: usize = 20;
-/// Least distance between first and last return for a pulse to give its direction, metres.
+/// Minimum distance between first and last return for a pulse to give its direction, metres.
 const MIN_LENGTH: f64 = 3.0;
 
 /// A point with what is needed of it.
@@ -191,8 +191,8 @@ struct ScanLineFit {
     bend_sd: f64,
 }
 
-/// The coefficients of x and of y (at `middle`, a second, a tangent of the scan angle) and the height above the mean
-/// height `ground` of the points, by least squares.
+/// Fits the scanner path to scan angles by least squares: coefficients of x and y (at time `middle`, per second, per
+/// tangent of the scan angle) and the flying height above `ground`, the mean height of the points.
 fn path_and_height(samples: &[AngleSample], middle: f64, ground: f64) -> Option<([Vector3<f64>; 2], f64)> {
     let mut height = f64::INFINITY;
     let mut columns = [Vector3::zeros(); 2];
@@ -220,7 +220,7 @@ fn path_and_height(samples: &[AngleSample], middle: f64, ground: f64) -> Option<
 }
 
 impl ScanLineFit {
-    /// What to make of the fit, where pulses with several returns contradict it by an angle of `contradiction`.
+    /// Judges the fit; pulses with several returns contradict it by an angle of `contradiction`, radians.
     fn verdict(&self, contradiction: f64, params: &ScanAngleParams) -> AngleVerdict {
         let [slowest, fastest] = params.speeds;
         let is_plausible = (slowest..=fastest).contains(&length(self.velocity)) && self.height >= params.min_height;

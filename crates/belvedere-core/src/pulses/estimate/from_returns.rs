@@ -38,7 +38,7 @@ fn parts(pulses: &Pulses, longest: f64) -> Vec<Vec<usize>> {
 /// A part of a flight line on its way to a path.
 struct PartEstimate {
     part: SensorPart,
-    /// What its own pulses say, where that is to be used.
+    /// State from the pulses of this part alone, if they are accepted.
     knot: Option<ScannerState>,
     /// Middle height of its first returns, metres.
     ground: f64,

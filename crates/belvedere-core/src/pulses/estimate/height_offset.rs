@@ -1,4 +1,4 @@
-//! How far the heights of a trajectory lie off those of its cloud.
+//! Estimates the vertical offset between a trajectory and its point cloud.
 
 use nalgebra::Vector3;
 
@@ -9,7 +9,7 @@ use belvedere_data::PointCloud;
 
 /// Rounds of improvement and reweighting; offsets of a tenth of the height settle in four.
 const ROUNDS: usize = 8;
-/// Least distance between first and last return for a pulse to give its direction, metres.
+/// Minimum distance between first and last return for a pulse to give its direction, metres.
 const MIN_LENGTH: f64 = 3.0;
 /// Fewest such pulses.
 const MIN_PAIRS: usize = 100;
@@ -21,8 +21,9 @@ const MIN_DEVIATIONS: f64 = 4.0;
 /// the other.
 const SYSTEMATIC_SHARE: f64 = 0.5;
 
-/// The offset that brings `positions`, (P, 3) local metres for each of `pulses`, NaN where unknown, nearest to the
-/// lines of the pulses with several returns; `None` where too few have returns far enough apart.
+/// Estimates the offset that brings `positions` nearest to the lines of the pulses with several returns. `positions`
+/// has a row for each pulse, (P, 3), local metres, NaN where unknown. `None` if too few pulses have returns far enough
+/// apart.
 ///
 /// # Source
 /// The miss at the last return as in [`crate::pulses::SensorPositions::from_returns`], with Huber's weights and one

@@ -1,4 +1,4 @@
-//! Where the scanner was, from the returns alone: least squares over parts of flight lines.
+//! Estimates scanner positions from returns alone, by least squares over parts of flight lines.
 
 mod from_angles;
 mod from_returns;
@@ -12,5 +12,5 @@ pub(super) use from_returns::paths_from_returns;
 pub(super) use height_offset::height_offset;
 pub(super) use stations::stations_of_tripods;
 
-/// Whether this build can estimate.
+/// True: this build estimates scanner positions.
 pub(super) const IS_BUILT: bool = true;

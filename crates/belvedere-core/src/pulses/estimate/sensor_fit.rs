@@ -12,17 +12,17 @@ const RAYLEIGH_MEDIAN: f64 = 1.177_41;
 /// First and last return of a pulse.
 pub(super) struct ReturnPair {
     pub(super) first: Vector3<f64>,
-    /// From the first to the last.
+    /// Vector from the first to the last.
     pub(super) along: Vector3<f64>,
     /// Seconds after the middle of the part.
     pub(super) since: f64,
 }
 
-/// What the pulses of a part of a flight line say of the scanner.
+/// Fitted state of the scanner over a part of a flight line.
 pub(super) struct SensorFit {
     /// Position half-way in time, local metres, then velocity, metres per second.
     pub(super) state: Vector6<f64>,
-    /// Of the state, by the residuals.
+    /// Covariance of the state, from the residuals.
     pub(super) covariance: Matrix6<f64>,
     /// Between the pulses and the directions to the path, radians.
     pub(super) median_angle: f64,
@@ -31,10 +31,10 @@ pub(super) struct SensorFit {
 /// Position and velocity for which the last returns of `pairs` lie nearest to the lines from the scanner through the
 /// first ones, or `None` where they fix none.
 ///
-/// The first guess minimises how far the lines miss the scanner, which is linear. It lies too near, because a line with
-/// a wrong direction misses a far scanner by more, so the rounds that follow (Gauss and Newton) minimise the distance
-/// at the last return, where the error is. That distance is measured across the way from the scanner, not across the
-/// measured pulse, whose own error would pull the scanner towards the ground.
+/// Fits the scanner state in two stages. The first guess minimises the distance of the lines from the scanner, which is
+/// linear, and lies too near: a line with a wrong direction misses a far scanner by more. Rounds of Gauss-Newton then
+/// minimise the distance at the last return, where the error is. It is measured across the direction from the scanner:
+/// the error of the measured pulse would pull the scanner towards the ground.
 pub(super) fn fit(pairs: &[ReturnPair], vertical_speed_sd: f64) -> Option<SensorFit> {
     let mut start = PathEquations::default();
     for pair in pairs {
@@ -66,7 +66,7 @@ pub(super) fn fit(pairs: &[ReturnPair], vertical_speed_sd: f64) -> Option<Sensor
     is_finite.then_some(SensorFit { state, covariance, median_angle })
 }
 
-/// How much each of `misses` counts: those that stand out less.
+/// Returns the Huber weight of each miss, 0 to 1: outliers count less.
 pub(super) fn trust(misses: &[Miss]) -> Vec<f64> {
     let greatest = HUBER_DEVIATIONS * scale_of(misses);
     let trust = |miss: &Miss| {
@@ -81,9 +81,9 @@ fn scale_of(misses: &[Miss]) -> f64 {
     median(misses.iter().map(|miss| miss.offset.norm()).collect()) / RAYLEIGH_MEDIAN
 }
 
-/// How a pulse misses the way from a scanner.
+/// Residual of a pulse against a scanner position.
 pub(super) struct Miss {
-    /// From the line through the scanner and the first return to the last return, metres.
+    /// Vector from the line through the scanner and the first return to the last return, metres.
     pub(super) offset: Vector3<f64>,
     /// Metres by which the offset changes with a metre of the scanner across the way.
     pub(super) slope: f64,
@@ -101,7 +101,7 @@ impl ReturnPair {
         self.miss_from(&(state.fixed_rows::<3>(0) + state.fixed_rows::<3>(3) * self.since))
     }
 
-    /// How the pulse misses the way from a scanner at `position`.
+    /// Returns the residual of the pulse for a scanner at `position`.
     pub(super) fn miss_from(&self, position: &Vector3<f64>) -> Miss {
         let way = self.first - position;
         let range = way.norm();

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Matrix6, Vector6};
 
 use crate::pulses::line_path::{Knot, LONGEST_BRIDGE_S};
 
-/// What is known of the scanner at a time: position then velocity, and their covariance.
+/// State of the scanner at a time: position and velocity, with their covariance.
 #[derive(Clone, Debug)]
 pub(super) struct ScannerState {
     /// Seconds.
@@ -14,9 +14,9 @@ pub(super) struct ScannerState {
     pub(super) covariance: Matrix6<f64>,
 }
 
-/// The estimates for the parts of a line at increasing `times`, made to agree: each with what the others say of it, as
-/// far as accelerations of the deviation `acceleration_sd` (metres per second squared, white over a second) leave it.
-/// `None` where no estimate is near in time.
+/// Smooths the estimates for the parts of a line at increasing `times`. The scanner may depart from a constant velocity
+/// by white accelerations of the standard deviation `acceleration_sd`, metres per second squared over a second. `None`
+/// where no estimate is near in time.
 ///
 /// # Source
 /// Rauch, Tung & Striebel 1965: the smoother of fixed interval, for a constant velocity disturbed by white
@@ -37,17 +37,17 @@ pub(super) fn smoothed(
         }
         let (start, end) = (result[first].clone(), result[last].clone());
         for i in (0..first).filter(near) {
-            result[i] = nearer(result[i].take(), start.as_ref(), times[i], acceleration_sd);
+            result[i] = more_certain(result[i].take(), start.as_ref(), times[i], acceleration_sd);
         }
         for i in (last + 1..times.len()).filter(near) {
-            result[i] = nearer(result[i].take(), end.as_ref(), times[i], acceleration_sd);
+            result[i] = more_certain(result[i].take(), end.as_ref(), times[i], acceleration_sd);
         }
     }
     result
 }
 
-/// What `from` says of `time`, unless something surer is there.
-fn nearer(
+/// Returns the state with the smaller position uncertainty: `there`, or `from` predicted to `time`.
+fn more_certain(
     there: Option<ScannerState>,
     from: Option<&ScannerState>,
     time: f64,
@@ -97,7 +97,7 @@ fn symmetric(matrix: &Matrix6<f64>) -> Matrix6<f64> {
     (matrix + matrix.transpose()) * 0.5
 }
 
-/// What a state becomes after `seconds` at constant velocity.
+/// Returns the transition matrix of a constant velocity over `seconds`.
 fn transition(seconds: f64) -> Matrix6<f64> {
     let mut matrix = Matrix6::identity();
     matrix.fixed_view_mut::<3, 3>(0, 3).copy_from(&(Matrix3::identity() * seconds));

@@ -7,13 +7,14 @@ use belvedere_data::control::{Control, Stop};
 use belvedere_data::{PointCloud, Result};
 use rayon::prelude::*;
 
-/// How much lower the last return of a pulse lies than the first where it went through a crown rather than past a car
-/// or a fence, metres.
+/// Minimum height between the first and the last return of a pulse through a crown, metres; past a car or a fence it is
+/// less.
 const CROWN_DEPTH: f32 = 2.0;
 /// A first return over a crown is a top where none within this lies higher, metres: half the width of small crowns.
 const TOP_REACH: f32 = 2.0;
-/// How far from the tops of crowns ways must stay, level metres: 0.7, which a pulse proves about itself, and half a
-/// metre for the stem. A line of sight through the stem then has a metre unproven, twice what is tolerated.
+/// Minimum level distance between tops of crowns and ways between returns, metres: 0.7, which a pulse proves around
+/// itself, and half a metre for the stem. A line of sight through the stem then has a metre unproven, twice the
+/// tolerance.
 const STEM_REACH: f32 = 1.2;
 
 impl FreeSegments {
@@ -72,7 +73,7 @@ struct CrownTops {
 }
 
 impl CrownTops {
-    /// Those of `entries`, where pulses entered crowns, local metres.
+    /// Finds the highest of `entries`, the places where pulses entered crowns, local metres.
     fn of(entries: &[[f32; 3]], control: &Control<'_>) -> Result<Self> {
         let flat: Vec<[f32; 3]> = entries.iter().copied().map(level).collect();
         let index = NeighborIndex::new(&flat, control)?;
@@ -91,7 +92,7 @@ impl CrownTops {
         Ok(Self { places, index })
     }
 
-    /// Whether a top lies near the way from `a` to `b`, seen from above.
+    /// Returns true if a top lies near the segment from `a` to `b` in plan.
     fn are_near(&self, a: [f32; 3], b: [f32; 3]) -> bool {
         let (a, b) = (level(a), level(b));
         let along = [b[0] - a[0], b[1] - a[1]];

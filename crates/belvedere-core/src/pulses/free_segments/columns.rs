@@ -7,8 +7,8 @@ use belvedere_data::control::Control;
 use belvedere_data::free_segments::FreeSegmentColumns;
 use rayon::prelude::*;
 
-/// Steps of a slope, metres of shift across a segment's main axis for each metre along it: a segment 60 m long is off
-/// by 3 mm at its far end.
+/// Step of slopes, metres across a segment's main axis for each metre along it: the far end of a 60 m segment is off by
+/// 3 mm.
 const SLOPE_STEP: f64 = 1e-4;
 /// A segment that ends within this distance of the common top, metres, counts as reaching it.
 const REACHES_TOP: f64 = 1e-3;

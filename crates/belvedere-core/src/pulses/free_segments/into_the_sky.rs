@@ -5,8 +5,8 @@ use belvedere_data::control::Control;
 use belvedere_data::sky_region::SkyRegion;
 use belvedere_data::{PointCloud, Result};
 
-/// Distance of these pulses from each other where they end, metres. Every place between them is then within 0.36 m of
-/// one, half of the distance at which a pulse counts as near, and boxes of seen space find one for each.
+/// Spacing of the far ends of these pulses, metres. Every place between them is then within 0.36 m of a pulse, half of
+/// the distance at which a pulse counts as near. Boxes of seen space find one pulse for each place.
 const SPACING: f64 = 0.5;
 
 impl FreeSegments {

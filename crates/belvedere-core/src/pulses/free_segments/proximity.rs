@@ -1,16 +1,15 @@
-//! How near pulses come to places and to lines.
+//! Distances between pulses and points or lines.
 
 use super::tree::{SegmentAxis, SegmentNode};
 use super::{FreeSegment, FreeSegments, GAP_M};
 use belvedere_data::vector::{dot, sub, unit};
 use std::ops::ControlFlow;
 
-/// Pieces of a line shorter than this are not worth a step, metres: more than boxes of the tree are padded by, so that
-/// the free segments of a tripod, which all end at one place, need not all be tested where a line leaves the
-/// surroundings of that place.
+/// Minimum length of a piece of a line, metres, more than the padding of boxes in the tree. All free segments of a
+/// tripod end at one place; a line that leaves its surroundings need not test them all.
 const MIN_PIECE: f64 = 4e-3;
-/// How much nearer than the nearest known segment another one must be for the search to continue, metres: where
-/// segments end at one place all are equally near.
+/// Minimum gain in distance for which the nearest-segment search continues, metres: where segments end at one place,
+/// all are equally near.
 const WORTH_LOOKING: f64 = 5e-3;
 
 /// Share of pulses that are not upright from which on a scanner is taken to stand on the ground: those of aircraft are
@@ -24,13 +23,14 @@ impl FreeSegments {
         self.free_segments.len()
     }
 
-    /// Whether there are no free segments.
+    /// Returns true if there are no free segments.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.free_segments.is_empty()
     }
 
-    /// How many of them rise by 0.3 m or more for each metre of their length, as all pulses of aircraft do.
+    /// Returns the number of segments that rise by 0.3 m or more for each metre of their length, as all pulses of
+    /// aircraft do.
     #[must_use]
     pub fn upright_count(&self) -> usize {
         match &self.trees[..] {
@@ -41,7 +41,7 @@ impl FreeSegments {
         }
     }
 
-    /// Whether they come from a scanner on the ground: many are too flat for an aircraft.
+    /// Returns true if the pulses come from a scanner on the ground: many are too flat for an aircraft.
     #[must_use]
     pub fn are_from_the_ground(&self) -> bool {
         are_flat(self.len() - self.upright_count(), self.len())
@@ -53,14 +53,14 @@ impl FreeSegments {
         self.top
     }
 
-    /// Where segments begin, local metres, in no particular order: just before the first returns. For pulses from above
-    /// these are the lower ends.
+    /// Returns the starts of the segments, local metres, in no particular order: just before the first returns. For
+    /// pulses from above these are the lower ends.
     pub fn lower_ends(&self) -> impl ExactSizeIterator<Item = [f32; 3]> + '_ {
         self.free_segments.iter().map(|free_segment| free_segment.start)
     }
 
-    /// Calls `visit` with the lower and upper end, local metres, of every upright segment that may pass over the level
-    /// rectangle between the corners `low` and `high`, in no particular order.
+    /// Calls `visit` with the lower and upper end of every upright segment that may pass over a level rectangle. Ends
+    /// and the corners `low` and `high` are local metres; the order is arbitrary.
     pub(crate) fn each_upright_over(&self, over: [[f64; 2]; 2], mut visit: impl FnMut([[f64; 3]; 2])) {
         for tree in self.trees.iter().filter(|tree| tree.way == SegmentAxis::UP) {
             let _ = tree.walk(
@@ -77,8 +77,8 @@ impl FreeSegments {
         }
     }
 
-    /// Whether a free segment passes nearer than `distance` metres to `point`, local metres. The distance to the
-    /// segment is computed in f64; a point or distance that is not a number is near nothing.
+    /// Returns true if a free segment passes nearer than `distance` metres to `point`, local metres. The distance is
+    /// computed in f64. The answer is false for a point or distance that is not a number.
     #[must_use]
     pub fn passes_within(&self, point: [f64; 3], distance: f64) -> bool {
         let found = self.visit_near(point, distance, |free_segments| {
@@ -130,9 +130,9 @@ impl FreeSegments {
             .map_or(max, |distance| (distance as f32 - GAP_M).max(0.0))
     }
 
-    /// A piece of the line through `origin` along the unit vector `direction` on which one segment is nearer than
-    /// `distance` metres everywhere: where it begins and ends, metres from the origin, `at` being well within. `None`
-    /// where no segment is that near at `at`, or where it stays that near for less than 4 mm.
+    /// Returns an interval of the line through `origin` along the unit vector `direction` on which one segment is
+    /// nearer than `distance` metres everywhere. The interval, metres from the origin, contains `at`, well inside.
+    /// `None` if no segment is that near at `at`, or if the interval is shorter than 4 mm.
     ///
     /// Of several segments it takes one that stays near over a long piece, not always the one with the longest piece.
     #[must_use]
@@ -154,7 +154,7 @@ impl FreeSegments {
     }
 
     /// Calls `visit` with the segments of every leaf that may come nearer than `reach` metres to `point`, until it
-    /// breaks off; the value that it continues with is the reach for the rest of the search.
+    /// breaks off. The value that it continues with is the reach for the rest of the search.
     fn visit_near<T>(
         &self,
         point: [f64; 3],
@@ -191,8 +191,8 @@ impl FreeSegments {
     }
 }
 
-/// Whether pulses come from a scanner on the ground, for pulses that are not free segments yet: first returns and
-/// positions of the scanner, local metres. Pulses with an unknown scanner do not count.
+/// Returns true if pulses, not yet free segments, come from a scanner on the ground. Each is given by its first return
+/// and scanner position, local metres; pulses with an unknown scanner do not count.
 pub(crate) fn come_from_the_ground(pulses: impl Iterator<Item = ([f32; 3], [f32; 3])>) -> bool {
     let way =
         |(end, scanner): ([f32; 3], [f32; 3])| SegmentAxis::of(unit(sub(scanner.map(f64::from), end.map(f64::from)))?);
@@ -204,12 +204,12 @@ pub(crate) fn come_from_the_ground(pulses: impl Iterator<Item = ([f32; 3], [f32;
     are_flat(flat_count, count)
 }
 
-/// Whether so many of all pulses are flat that no aircraft sent them.
+/// Returns true if the share of flat pulses is too large for an aircraft.
 fn are_flat(flat_count: usize, count: usize) -> bool {
     count > 0 && flat_count as f64 >= MIN_FLAT_SHARE * count as f64
 }
 
-/// Whether the box of a node of upright segments lies over a rectangle at some height.
+/// Returns true if the box of a node of upright segments lies over a rectangle at some height.
 fn may_pass_over(node: &SegmentNode, [low, high]: [[f64; 2]; 2]) -> bool {
     // shares of the way between the planes, with room for what f32 rounds
     let mut shares: [f64; 2] = [-1e-4, 1.0 + 1e-4];

@@ -8,7 +8,7 @@ use std::ops::{ControlFlow, Range};
 const LEAF: usize = 8;
 /// Below this many segments a thread continues alone.
 const PARALLEL: usize = 8192;
-/// Least distance of the two planes of a node, metres: rounding must not tilt what lies between them.
+/// Minimum distance of the two planes of a node, metres: rounding must not tilt the space between them.
 const MIN_SPAN: f32 = 0.01;
 /// Segments by which a way of splitting a node is judged.
 const SAMPLE: usize = 32;
@@ -23,7 +23,7 @@ const UPRIGHT_RISE: f64 = 0.3;
 pub(super) struct SegmentAxis {
     /// 0 east, 1 north, 2 up.
     pub(super) axis: usize,
-    /// Whether against the axis.
+    /// True for segments against the axis.
     pub(super) is_backward: bool,
 }
 
@@ -60,11 +60,11 @@ impl SegmentAxis {
     }
 }
 
-/// Where the segments of a node lie: their range along the axis, and their box at both ends of that range. Between the
-/// two planes lines are straight, so they lie everywhere within the box interpolated between the two.
+/// Bounding volume of the segments of a node: their range along the axis, and their box at both ends of that range.
+/// Segments are straight, so they lie within the box interpolated between the two planes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SegmentNode {
-    /// Least of both axes across, then most, at the lower plane.
+    /// Minimum of both axes across, then maximum, at the lower plane.
     pub(super) below: [f32; 4],
     pub(super) above: [f32; 4],
     /// The two planes: least and most along the axis.
@@ -139,7 +139,7 @@ impl SegmentTree {
         ControlFlow::Continue(())
     }
 
-    /// Whether a segment below `node` may enter the ball.
+    /// Returns true if a segment below `node` may enter the ball.
     #[inline]
     pub(super) fn may_enter(&self, node: &SegmentNode, center: [f32; 3], radius: f32) -> bool {
         // rounding of f32 at coordinates of kilometres is a tenth of a millimetre
@@ -240,7 +240,7 @@ pub(super) fn node_count(count: usize) -> usize {
     if count <= LEAF { 1 } else { 1 + node_count(cut(count)) + node_count(count - cut(count)) }
 }
 
-/// Where a run is cut: into two runs of whole leaves, as equal as can be.
+/// Returns the length of the first of two runs of whole leaves, as equal as possible.
 fn cut(count: usize) -> usize {
     count.div_ceil(LEAF) / 2 * LEAF
 }
@@ -248,15 +248,14 @@ fn cut(count: usize) -> usize {
 #[derive(Clone, Copy)]
 struct TreeBuild<'a> {
     way: SegmentAxis,
-    /// Those of the nodes, where segments are in order already.
+    /// Boxes of the nodes, if the segments are in order already.
     boxes: Option<&'a [[f32; 10]]>,
     stop: &'a Stop<'a>,
     control: &'a Control<'a>,
 }
 
 impl TreeBuild<'_> {
-    /// What `free_segments` are parted by, so that the boxes around both parts are least. Judged by a sample, in their
-    /// order.
+    /// Returns the sort key whose split has the least volume of both boxes, judged by a sample in the given order.
     fn best_key(self, free_segments: &[FreeSegment]) -> SegmentKey {
         let step = free_segments.len().div_ceil(SAMPLE);
         let mut sample: Vec<FreeSegment> = free_segments.iter().step_by(step).copied().collect();

@@ -5,7 +5,7 @@ use super::lanes::ConvexSpace;
 use crate::query::target_tree::TargetNode;
 use belvedere_data::vector::{cross, dot, sub};
 
-/// Where beams come from.
+/// Origin of beams.
 #[derive(Clone, Copy)]
 pub(super) enum Apex {
     /// Local metres.
@@ -14,9 +14,9 @@ pub(super) enum Apex {
     Direction([f64; 3]),
 }
 
-/// A node of balls is opened where it is larger than so many widths of the beam: with less, balls that only a part of
-/// the beam meets are looked at by all of it, with more, parts of the beam open the same nodes again. For targets on
-/// the ground of a town 2 and 3.2 take 5 % longer.
+/// Size of a node, in widths of the beam, above which it is opened. With less, balls that only a part of the beam meets
+/// are tested for all of it. With more, parts of the beam open the same nodes again. For targets on the ground of a
+/// town 2 and 3.2 take 5 % longer.
 const OPENED_SHARE: f32 = 2.5;
 
 /// All lines of sight of a box of targets lie between these planes.
@@ -99,7 +99,7 @@ impl Beam {
         beam
     }
 
-    /// Whether a node is large against the beam there.
+    /// Returns true if a node is large against the beam there.
     #[inline(always)]
     pub(super) fn is_narrower_than(&self, IndexNode { sides: [x, y, z], .. }: &IndexNode) -> bool {
         let size = (x[1] - x[0]).max(y[1] - y[0]).max(z[1] - z[0]);

@@ -14,16 +14,16 @@ pub(super) struct IndexNode {
     pub(super) number: u32,
 }
 
-/// Up to eight nodes.
+/// Block of up to eight nodes.
 #[derive(Clone, Copy)]
 pub(super) struct NodeBlock {
     pub(super) sides: PartSides,
     pub(super) number: [u32; LANES],
-    /// Those that are taken.
+    /// Number of slots that are taken.
     pub(super) count: usize,
 }
 
-/// Up to eight balls.
+/// Block of up to eight balls.
 #[derive(Clone, Copy)]
 pub(super) struct BallBlock {
     /// Centres by axis, and radii: below zero for those that are not taken, which nothing meets.
@@ -35,7 +35,7 @@ pub(super) struct BallBlock {
 /// Things in blocks of eight. Lists that follow each other start with a block of their own.
 pub(super) struct Blocks<B> {
     blocks: Vec<B>,
-    /// How many places of the last block are taken.
+    /// Number of slots taken in the last block.
     last: usize,
 }
 

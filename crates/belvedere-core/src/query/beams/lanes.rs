@@ -42,12 +42,12 @@ pub(super) struct HalfLine {
     pub(super) room: f32,
 }
 
-/// Which of eight things fulfil a condition: one bit each.
+/// Bit mask over eight lanes: one bit for each that fulfils a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct LaneBits(pub(super) u32);
 
 impl LaneBits {
-    /// Those of the first `count` things.
+    /// Keeps the bits of the first `count` lanes.
     #[inline(always)]
     pub(super) fn first(self, count: usize) -> Self {
         if count < LANES { Self(self.0 & !(u32::MAX << count)) } else { self }
@@ -75,14 +75,14 @@ impl Iterator for LaneBits {
 
 /// The tests, for one set of instructions.
 pub(super) trait Kernels {
-    /// Which boxes may reach into the space.
+    /// Flags the boxes that may reach into the space.
     fn meet_boxes(space: &ConvexSpace, sides: &PartSides) -> LaneBits;
-    /// Which balls may reach into the space.
+    /// Flags the balls that may reach into the space.
     fn meet_balls(space: &ConvexSpace, balls: &LaneColumns) -> LaneBits;
-    /// Which balls reach about as far on all sides as the space, of which the first four planes lie around: worth the
-    /// exact question whether they hide all of it.
+    /// Flags the balls that reach about as far on all sides as the space, whose first four planes enclose it. Only
+    /// these are worth the exact test of hiding all of it.
     fn may_cover(space: &ConvexSpace, balls: &LaneColumns) -> LaneBits;
-    /// Which balls may touch a half line.
+    /// Flags the balls that may touch a half line.
     fn near_line(balls: &LaneColumns, line: &HalfLine) -> LaneBits;
     /// Balls by column.
     fn columns(balls: &[Ball; LANES]) -> LaneColumns;
@@ -103,7 +103,7 @@ fn bits(lanes: [bool; LANES]) -> LaneBits {
 }
 
 impl<const FUSED: bool> BeamScalar<FUSED> {
-    /// How far inside a plane places lie, metres.
+    /// Returns the depth of places behind a plane, metres.
     #[inline(always)]
     fn depths(space: &ConvexSpace, plane: usize, [x, y, z]: [&[f32; LANES]; 3]) -> [f32; LANES] {
         let (normal, offset) = (space.normals[plane], space.offsets[plane]);

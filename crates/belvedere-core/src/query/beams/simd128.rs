@@ -3,12 +3,12 @@
 use super::blockers::LANES;
 use super::lanes::{BeamScalar, ConvexSpace, HalfLine, Kernels, LaneBits, LaneColumns, PLANES};
 use crate::blocking::Ball;
-use crate::eight::Eight;
+use crate::f32x8::Eight;
 use crate::ray_index::PartSides;
 
 pub(super) struct BeamSimd128;
 
-/// How far inside a plane places lie, metres.
+/// Returns the depth of places behind a plane, metres.
 #[inline(always)]
 fn depth(space: &ConvexSpace, plane: usize, [x, y, z]: [Eight; 3]) -> Eight {
     let [a, b, c] = space.normals[plane].map(Eight::all);

@@ -16,16 +16,16 @@ use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, Result};
 use std::ops::Range;
 
-/// What tests a beam on machines without AVX2.
+/// Scalar kernels for machines without AVX2.
 #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
 type BeamPlain = BeamScalar<false>;
 
-/// What f32 may err by in the test of a beam, as a share of the largest coordinate: a dozen roundings of 6e-8, fewer
-/// where products are fused. Sides of boxes are rounded twice more; boxes are padded by at least as much
+/// Maximum rounding error of f32 in the test of a beam, as a share of the largest coordinate: a dozen roundings of
+/// 6e-8, fewer where products are fused. Sides of boxes are rounded twice more; boxes are padded by at least as much
 /// ([`RayIndex`]).
 const ROUNDING: f64 = 1e-6;
-/// How much smaller a ball counts where it is to hide a box, as a share of its squared radius and of squared distances:
-/// whatever f64 rounds in the exact test, and then some.
+/// Margins by which a ball that is to hide a box is reduced, as shares of its squared radius and of squared distances.
+/// They exceed the rounding of f64 in the exact test.
 const COVER_MARGINS: [f64; 2] = [1e-9, 1e-14];
 /// Maximum number of targets of a node that represent its shape themselves; more are represented by their box. At least
 /// the number of corners of a box.
@@ -41,7 +41,7 @@ pub(super) struct TreeSweep<'a> {
     targets: &'a TargetTree,
     viewer: Viewer<'a>,
     pub(super) apex: Apex,
-    /// By how much beams are widened, metres: what f32 may misplace anything in the scene by.
+    /// Widening of beams, metres: the maximum error of a position in the scene by f32.
     pub(super) room: f64,
     control: &'a Control<'a>,
 }
@@ -150,8 +150,8 @@ impl<'a> TreeSweep<'a> {
         }
     }
 
-    /// Answers the targets of a leaf one by one: by what blocked the last ones, then by the balls at hand, and only
-    /// where these leave them visible by those of the nodes too.
+    /// Answers the targets of a leaf one by one. Balls that blocked the last targets come first, then the balls at
+    /// hand. Balls of the nodes are tested only for targets that these leave visible.
     #[inline(always)]
     fn finish<K: Kernels>(
         &self,
@@ -211,8 +211,8 @@ impl<'a> TreeSweep<'a> {
         is_any_visible
     }
 
-    /// Points around the targets of a node, moved outward by `room` metres: the targets themselves where they are few,
-    /// whose hull is tighter than their box, otherwise the corners of the box.
+    /// Returns points around the targets of a node, moved outward by `room` metres. A few targets are their own
+    /// outline, since their hull is tighter than their box; otherwise it has the corners of the box.
     #[inline(always)]
     pub(super) fn outline(&self, target: &TargetNode, room: f64) -> Outline {
         let mut outline = Outline { points: [[0.0; 3]; MAX_OUTLINED], count: 8 };
@@ -261,8 +261,8 @@ impl<'a> TreeSweep<'a> {
         false
     }
 
-    /// Opens those of the `given` nodes that the beam may meet: appends the balls that it may meet, and nodes that need
-    /// no opening; true as soon as a ball hides all of the targets.
+    /// Opens those of the `given` nodes that the beam may meet. It appends the balls that the beam may meet, and nodes
+    /// that need no opening. Returns true as soon as a ball hides all of the targets.
     #[inline(always)]
     fn open_large_nodes<K: Kernels>(
         &self,
@@ -355,10 +355,11 @@ impl<'a> TreeSweep<'a> {
         block.columns
     }
 
-    /// Whether a ball blocks every line of sight of the targets, wherever in their box they lie.
+    /// Returns true if a ball blocks every line of sight of the targets, wherever in their box they lie.
     ///
-    /// The shadow of a ball is convex: a box lies in it if its corners do. Targets near its surface meet a ball smaller
-    /// by up to the shell, so the shadow of that smaller ball is used; a target counts as `bias` nearer to the viewer.
+    /// The shadow of a ball is convex: a box lies in it if its corners do. Targets near its surface meet a ball that is
+    /// smaller by up to the shell, so that the shadow of the smaller ball is used. A target counts as `bias` nearer to
+    /// the viewer.
     #[inline(always)]
     fn hides(&self, ball: u32, target: &TargetNode) -> bool {
         let params = self.scene.params();
@@ -445,9 +446,9 @@ fn row_at(first: u32, lane: usize) -> u32 {
 /// The balls against which targets of a leaf are tested.
 #[derive(Clone, Copy)]
 enum By {
-    /// What blocked the last targets.
+    /// Balls that blocked the last targets.
     Recent,
-    /// Those of the list from the block of a number on.
+    /// Balls of the list from a block on.
     BallsFrom(usize),
 }
 
@@ -457,7 +458,7 @@ struct BeamTask {
     given: [[usize; 2]; 2],
 }
 
-/// What the beams of a node of targets and of all above it may meet.
+/// Nodes and balls that the beams of a node of targets and of all above it may meet.
 #[derive(Default)]
 struct Lists {
     nodes: Blocks<NodeBlock>,

@@ -1,8 +1,8 @@
 //! The first backend: the processor itself.
 //!
-//! Each direction is swept through cells of space, 64 lines of sight at a time, which shows for most of them whether
-//! they meet cells that no ball reaches only, or one that a ball fills. Balls near a target, where cells do not decide,
-//! are gathered once for all directions. What is left is open.
+//! Each direction is swept through cells of space, 64 lines of sight at a time. For most lines this shows that they
+//! meet only cells that no ball reaches, or one that a ball fills. Near a target, where cells do not decide, balls are
+//! gathered once for all directions. The rest is open.
 
 mod nearby;
 mod space_layers;

@@ -4,10 +4,10 @@ use crate::blocking::{Ball, Cover};
 use crate::query::ball_tree::BallTree;
 use crate::ray_index::{NodePart, PARTS, Ray};
 
-/// How far to the sides of a target, and how far above it, balls are taken as near, metres: beyond, rays that rise have
-/// left the surface that the target lies on.
+/// Distance to the sides of a target, and above it, up to which balls count as near, metres. Beyond, rising rays have
+/// left the surface of the target.
 pub(super) const NEAR: [f64; 2] = [2.0, 0.6];
-/// By how much the cosine to the outline of a ball is taken too small: more than the error of f32.
+/// Reduction of the cosine to the outline of a ball: more than the error of f32.
 const ROUNDING: f32 = 1e-5;
 /// Covers tested at once.
 const LANES: usize = 8;
@@ -15,8 +15,8 @@ const LANES: usize = 8;
 /// Balls that may block a ray on its way out of the near space of a target.
 #[derive(Default)]
 pub(super) struct Nearby {
-    /// Unit vectors to their centres and the least cosine to those of rays that may meet them, 8 side by side, and the
-    /// greatest rise (sine of elevation) that any of these reaches, in falling order.
+    /// Unit vectors to their centres, and the minimum cosine to those of rays that may meet them, 8 side by side. Also
+    /// the maximum rise (sine of elevation) of any of these; sorted by it, descending.
     covers: Vec<([[f32; LANES]; 4], f32)>,
     rows: Vec<u32>,
     /// Balls that may block, not yet in order: as in covers, their greatest rise, and their row.
@@ -63,8 +63,8 @@ impl Nearby {
         }
     }
 
-    /// Of the balls looked up, takes those that may block a ray from `target` which does not sink below the horizon
-    /// before it leaves the near space.
+    /// Selects, from the balls looked up, those that may block a ray from `target` that does not sink below the horizon
+    /// within the near space.
     pub(super) fn select(&mut self, tree: &BallTree, target: [f64; 3]) {
         self.rows.clear();
         self.covers.clear();
@@ -107,12 +107,12 @@ impl Nearby {
         self.rows.extend(self.taken.iter().map(|(.., row)| row));
     }
 
-    /// Whether none of those selected can block anything.
+    /// Returns true if none of the selected balls can block anything.
     pub(super) fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
 
-    /// Whether a ball near the target blocks `ray`.
+    /// Returns true if a ball near the target blocks `ray`.
     #[inline]
     pub(super) fn blocks(&self, tree: &BallTree, ray: &Ray) -> bool {
         #[expect(clippy::cast_possible_truncation, reason = "the cosine allows for it")]
@@ -127,7 +127,7 @@ impl Nearby {
     }
 }
 
-/// Whether a ball reaches a box.
+/// Returns true if a ball reaches a box.
 fn reaches(ball: Ball, [low, high]: [[f64; 3]; 2]) -> bool {
     let (center, radius) = (ball.center.map(f64::from), f64::from(ball.radius));
     let square: f64 = (0..3).map(|i| (low[i] - center[i]).max(center[i] - high[i]).max(0.0).powi(2)).sum();

@@ -9,10 +9,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Side of a cell, metres: finer ones leave less open but take longer to sweep.
 const CELL: f64 = 0.5;
-/// Most cells: four bits each while they are made.
+/// Maximum number of cells: four bits each while they are made.
 const MAX_CELLS: f64 = (1_u64 << 30) as f64;
-/// By how much balls are taken too large where they reach cells and too small where they fill them, metres: far more
-/// than f64 errs.
+/// Margin by which balls are too large where they reach cells and too small where they fill them, metres: far more than
+/// f64 errs.
 const MARGIN: f64 = 1e-3;
 /// Balls handed to a thread at once.
 const CHUNK: usize = 4096;

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 /// Targets from the highest down.
 struct Descending {
-    /// With their places in the order of the tree.
+    /// Targets with their places in the order of the tree.
     targets: Vec<(TargetCell, u32)>,
 }
 
@@ -23,7 +23,7 @@ impl Descending {
     }
 }
 
-/// What a sweep settles: a bit for each target, 64 a word, in the order of the tree.
+/// Result of a sweep: bit masks over the targets, 64 a word, in the order of the tree.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Swept {
     /// No ball is reached beyond the near space of the target.

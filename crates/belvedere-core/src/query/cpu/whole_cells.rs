@@ -17,12 +17,12 @@ const SLOPE_BITS: u32 = 26;
 const ACROSS_BITS: u32 = HEIGHT_BITS + SLOPE_BITS;
 /// A line closer than this part of a cell (2 to the power of minus this) to a border may belong to the next cell.
 const BORDER_BITS: u32 = 12;
-/// Most cells that a target lies above or below the lowest layer: 2 km where cells are 0.5 m. Lines of others stay
+/// Maximum height of a target above or below the lowest layer, cells: 2 km for cells of 0.5 m. Lines of others stay
 /// open.
 const MAX_HEIGHT: f64 = 4096.0;
-/// Most cells that a target lies from the corner along x or y: 131 km where cells are 0.5 m.
+/// Maximum distance of a target from the corner along x or y, cells: 131 km for cells of 0.5 m.
 const MAX_ACROSS: f64 = 262_144.0;
-/// Most cells that a line of sight moves on in a layer; flatter directions are not swept.
+/// Maximum shift of a line of sight in a layer, cells; flatter directions are not swept.
 const MAX_SLOPE: f64 = 24.0;
 
 /// A target, in cells from the corner of the layers.
@@ -35,7 +35,7 @@ pub(super) struct TargetCell {
 }
 
 impl TargetCell {
-    /// Where a target, local metres, lies; `None` for one too far from the layers.
+    /// Locates a target, local metres; `None` for one too far from the layers.
     #[must_use]
     pub(super) fn new(space: &SpaceLayers, position: [f32; 3]) -> Option<Self> {
         let at: [f64; 3] = std::array::from_fn(|i| (f64::from(position[i]) - space.low[i]) / space.cell);
@@ -74,7 +74,7 @@ impl TargetCell {
 pub(super) struct SweptDirection {
     /// Cells that a line moves on in a layer along x and y, with 26 bits of fraction.
     pub(super) slope: [i32; 2],
-    /// How many layers above its target a line leaves the near space of the target, with 18 bits of fraction.
+    /// Number of layers above its target at which a line leaves the near space, with 18 bits of fraction.
     pub(super) rise: i32,
     /// The slope itself.
     slope_exact: [f64; 2],
@@ -96,16 +96,16 @@ impl SweptDirection {
         })
     }
 
-    /// By how many whole cells, least and most, lines of sight move in `depth` layers along an axis.
+    /// Returns the minimum and maximum shift of lines of sight in `depth` layers along an axis, whole cells.
     pub(super) fn range(&self, axis: usize, depth: usize) -> [i64; 2] {
         let (a, b) = (whole(0.0), whole(depth as f64 * self.slope_exact[axis]));
         [a.min(b) - 1, a.max(b) + 1]
     }
 
-    /// By how many whole cells along x and y lines of sight have moved in each stretch of a layer, into `moves`.
+    /// Writes the shift along x and y of lines of sight in each stretch of a layer, whole cells, into `moves`.
     ///
-    /// Those of a cell lie over two by two cells of the layer, the same ones until they pass a side of a cell to the
-    /// east or north: a stretch runs from one such passage to the next.
+    /// The lines of a cell lie over two by two cells of the layer, the same ones until they pass a side of a cell to
+    /// the east or north. A stretch runs from one such passage to the next.
     pub(super) fn moves_in(&self, layer: usize, moves: &mut Vec<[i64; 2]>) {
         let slope = self.slope_exact;
         let layer = layer as f64;

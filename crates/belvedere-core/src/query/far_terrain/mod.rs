@@ -1,4 +1,4 @@
-//! What stands beyond the cloud and hides the sky above the horizon: a profile for all places, an elevation raster, or
+//! Terrain beyond the cloud that hides the sky above the horizon: a profile for all places, an elevation raster, or
 //! both.
 
 mod relief;
@@ -60,13 +60,13 @@ impl FarTerrain {
         self.relief.as_ref().map(|relief| relief.grid())
     }
 
-    /// Whether nothing is known of what stands beyond the cloud.
+    /// Returns true if no terrain is known beyond the cloud.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.profile.is_none() && self.relief.is_none()
     }
 
-    /// Whether the unit vector `direction` points below the horizon of `place`, local metres.
+    /// Returns true if the unit vector `direction` points below the horizon of `place`, local metres.
     #[must_use]
     pub fn hides(&self, place: [f64; 3], direction: [f64; 3]) -> bool {
         self.profile.as_ref().is_some_and(|profile| profile.hides(direction))
@@ -76,8 +76,8 @@ impl FarTerrain {
             })
     }
 
-    /// Whether the raster says something about `position`, local metres: it lies over it on the map, and no more than
-    /// 10 km above its highest height. The height may be NaN.
+    /// Returns true if the raster covers `position`, local metres, in plan, and it is at most 10 km above the highest
+    /// height. The height may be NaN.
     pub(super) fn holds(&self, position: [f64; 3]) -> bool {
         self.relief.as_ref().is_some_and(|relief| {
             let (low, high) = relief.grid().on_map();
@@ -86,18 +86,19 @@ impl FarTerrain {
         })
     }
 
-    /// Where the raster first rises above a line of sight, metres from the observer on the map.
+    /// Returns the horizontal distance from the observer, metres, at which the raster first rises above a line of
+    /// sight.
     pub(super) fn meets_sight(&self, line: &FarLine<'_>) -> Option<f64> {
         self.relief.as_ref()?.meets_sight(line)
     }
 
-    /// Whether the raster rises above a line of sight.
+    /// Returns true if the raster rises above a line of sight.
     pub(super) fn blocks_sight(&self, line: &FarLine<'_>) -> bool {
         self.relief.as_ref().is_some_and(|relief| relief.blocks_sight(line))
     }
 
-    /// Elevations of the horizon of `place`, local metres, over the earth of `earth`: at `count` azimuths from grid
-    /// north, the first `first` and `step` apart, radians; −π/2 where there is no terrain.
+    /// Returns the elevations of the horizon of `place`, local metres, over the earth of `earth`, radians; −π/2 without
+    /// terrain. The `count` azimuths start at `first`, from grid north, and are `step` apart, radians.
     #[must_use]
     pub fn elevations(&self, place: [f64; 3], [first, step]: [f64; 2], count: usize, earth: &EarthParams) -> Vec<f64> {
         let mut elevations = vec![-FRAC_PI_2; count];
@@ -120,14 +121,16 @@ impl FarTerrain {
     }
 }
 
-/// Where a unit vector points to on the map, a unit vector, and the tangent of its elevation: infinite upright.
+/// Returns the horizontal direction of a unit vector, a unit vector, and the tangent of its elevation: infinite
+/// upright.
 fn on_map([x, y, z]: [f64; 3]) -> ([f64; 2], f64) {
     let across = x.hypot(y);
     if across > 0.0 { ([x / across, y / across], z / across) } else { ([0.0, 1.0], z * f64::INFINITY) }
 }
 
-/// The piece of a line over a box on the map, its low and high corner: from and to, metres from where the line starts,
-/// which is `span` metres long and runs along the unit vector `along`. `None` where the line passes beside it.
+/// Returns the piece of a line over a box in plan, from and to, metres from the start of the line. The box is given by
+/// its low and high corner; the line is `span` metres long along the unit vector `along`. `None` if the line passes
+/// beside it.
 pub(super) fn piece_over([low, high]: [[f64; 2]; 2], start: [f64; 3], along: [f64; 2], span: f64) -> Option<[f64; 2]> {
     let sides = std::array::from_fn(|axis| [low[axis] - start[axis], high[axis] - start[axis]]);
     piece_in_box(sides, along, [0.0, span]).filter(|[from, to]| from < to)

@@ -43,7 +43,7 @@ pub(super) struct LineStarts {
     pub(super) high: [f64; 3],
 }
 
-/// Where terrain stands highest before a place.
+/// Highest point of the terrain before a place.
 #[derive(Clone, Copy)]
 pub(super) struct Top {
     /// Tangent of its elevation.
@@ -68,7 +68,7 @@ struct MapLines {
     low: f64,
     /// Distances from which terrain counts for the first and for all of the places, metres.
     from: [f64; 2],
-    /// What terrain sinks by for each square metre of distance.
+    /// Fall of the terrain for each square metre of squared distance, 1/m.
     fall: f64,
 }
 
@@ -133,7 +133,8 @@ impl TerrainHeights {
         });
     }
 
-    /// Whether terrain rises above the line from a place in a direction on the map with the tangent of its elevation.
+    /// Returns true if terrain rises above the line from a place in a horizontal direction with the tangent of its
+    /// elevation.
     pub(super) fn hides(&self, place: [f64; 3], along: [f64; 2], tangent: f64, earth: &EarthParams) -> bool {
         let lines = self.lines(&LineStarts { low: place, high: place }, along, earth);
         let mut limit = Top { tangent, span: 0.0 };
@@ -147,12 +148,13 @@ impl TerrainHeights {
         hit.is_break()
     }
 
-    /// Whether terrain rises above a line of sight. At its ends themselves it does not.
+    /// Returns true if terrain rises above a line of sight, apart from its ends.
     pub(super) fn blocks_sight(&self, line: &FarLine<'_>) -> bool {
         self.first_patch(line).is_some()
     }
 
-    /// Where terrain first rises above a line of sight, metres from the observer on the map; `None` where it does not.
+    /// Returns the horizontal distance from the observer, metres, at which terrain first rises above a line of sight;
+    /// `None` if it does not.
     pub(super) fn meets_sight(&self, line: &FarLine<'_>) -> Option<f64> {
         let (patch, [from, _], top) = self.first_patch(line)?;
         let lines = self.lines(&LineStarts { low: line.observer, high: line.observer }, line.along, line.earth);
@@ -168,8 +170,8 @@ impl TerrainHeights {
         Some(above)
     }
 
-    /// The first patch in which terrain rises above a line of sight: its column and row, between which distances the
-    /// line is over it, and the distance of its highest place.
+    /// Returns the first patch in which terrain rises above a line of sight: its column and row, the interval of
+    /// distances of the line over it, and the distance of its highest place.
     fn first_patch(&self, line: &FarLine<'_>) -> Option<([usize; 2], [f64; 2], f64)> {
         let FarLine { observer: from, along, span, tangent, earth, .. } = *line;
         let lines = self.lines(&LineStarts { low: from, high: from }, along, earth);
@@ -193,8 +195,8 @@ impl TerrainHeights {
         first
     }
 
-    /// Whether terrain may rise above a line from any of these places. Never false where [`TerrainHeights::hides`] is
-    /// true for one of them.
+    /// Returns true if terrain may rise above a line from any of these places. Never false if [`TerrainHeights::hides`]
+    /// is true for one of them.
     pub(super) fn may_hide(&self, places: &LineStarts, along: [f64; 2], tangent: f64, earth: &EarthParams) -> bool {
         let lines = self.lines(places, along, earth);
         let mut limit = Top { tangent: tangent - rounding(tangent), span: 0.0 };
@@ -207,8 +209,8 @@ impl TerrainHeights {
         hit.is_break()
     }
 
-    /// Whether terrain is known to rise above the lines from all of these places `span` metres away. Never true where
-    /// [`TerrainHeights::hides`] is false for one of them.
+    /// Returns true if terrain is known to rise above the lines from all of these places `span` metres away. Never true
+    /// if [`TerrainHeights::hides`] is false for one of them.
     pub(super) fn hides_all(
         &self,
         places: &LineStarts,
@@ -238,7 +240,7 @@ impl TerrainHeights {
         })
     }
 
-    /// How lines leave `places`.
+    /// Describes the lines that leave `places`.
     fn lines(&self, places: &LineStarts, along: [f64; 2], earth: &EarthParams) -> MapLines {
         let ([west, north], cell) = (self.grid.north_west(), self.grid.cell());
         let middle = [0, 1].map(|i| f64::midpoint(places.low[i], places.high[i]));
@@ -266,13 +268,13 @@ impl TerrainHeights {
         }
     }
 
-    /// From which distance terrain counts at least, metres.
+    /// Returns the minimum distance of terrain that counts, metres.
     fn nearest(&self) -> f64 {
         self.grid.cell()[0].max(self.grid.cell()[1])
     }
 
-    /// Where the line from a place leaves the box of the cloud, metres, and [`TerrainHeights::nearest`] at least;
-    /// `None` for a place outside.
+    /// Returns the distance at which the line from a place leaves the box of the cloud, metres, at least
+    /// [`TerrainHeights::nearest`]; `None` for a place outside.
     fn exit(&self, place: [f64; 2], along: [f64; 2]) -> Option<f64> {
         let [low, high] = self.within;
         let to_side = |axis: usize| match along[axis] {
@@ -298,7 +300,7 @@ impl TerrainHeights {
         top: &mut Top,
         visit: &mut impl FnMut([f32; 4], [usize; 2], [f64; 2], &mut Top) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let spans = lines.over(self.size(), spans);
+        let spans = lines.spans_over(self.size(), spans);
         if spans[0] > spans[1] {
             return ControlFlow::Continue(());
         }
@@ -366,7 +368,7 @@ impl HeightLevel {
 impl MapLines {
     /// The part of `spans` in which any of the lines is over the first `size` patches; empty where the first is above
     /// the second.
-    fn over(&self, size: [usize; 2], mut spans: [f64; 2]) -> [f64; 2] {
+    fn spans_over(&self, size: [usize; 2], mut spans: [f64; 2]) -> [f64; 2] {
         for (axis, count) in size.into_iter().enumerate() {
             let one = -self.start[axis] * self.inverse[axis];
             let other = (count as f64 - self.start[axis]) * self.inverse[axis];
@@ -375,7 +377,7 @@ impl MapLines {
         spans
     }
 
-    /// Whether terrain as high as `highest` somewhere within `spans` may rise above the lines with the tangent
+    /// Returns true if terrain as high as `highest` somewhere within `spans` may rise above the lines with the tangent
     /// `tangent`.
     #[inline]
     fn may_rise(&self, highest: f32, [from, to]: [f64; 2], tangent: f64) -> bool {

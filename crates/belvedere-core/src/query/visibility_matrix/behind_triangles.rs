@@ -6,10 +6,10 @@ use belvedere_data::Result;
 use belvedere_data::control::Control;
 use rayon::prelude::*;
 
-/// By how much boxes are widened, metres: more than f32 and f64 err.
+/// Widening of boxes, metres: more than f32 and f64 err.
 const ROOM: f64 = 0.01;
-/// How far the targets of a packet lie from the first of them along an axis, metres. The sky of 60 000 points of a town
-/// with 3000 triangles (145 directions) took 0.92 s with 4 and 8, 0.77 with 16.
+/// Maximum distance of the targets of a packet from the first of them along an axis, metres. The sky of 60 000 points
+/// of a town with 3000 triangles (145 directions) took 0.92 s with 4 and 8, 0.77 with 16.
 const SPREAD: f64 = 16.0;
 
 /// Unsets the bits of lines of sight that triangles block, in rows of `words` for `targets`, (M, 3), neighbours
@@ -25,7 +25,7 @@ pub(super) fn hide_behind_triangles(
     let blocks = words.par_chunks_mut(width * BLOCK).zip(targets.par_chunks(BLOCK));
     blocks.try_for_each(|(rows, targets)| {
         control.check()?;
-        let around = around(targets);
+        let around = bounding_box(targets);
         let meets = |(_, direction): &(usize, &[f64; 3])| may_meet(around, **direction, triangles.bounds());
         let met: Vec<(usize, [f64; 3])> =
             directions.iter().enumerate().filter(meets).map(|(column, direction)| (column, *direction)).collect();
@@ -58,7 +58,7 @@ struct Packet<'a> {
 }
 
 impl Packet<'_> {
-    /// Whether a target lies near the first of the packet.
+    /// Returns true if a target lies near the first of the packet.
     fn fits(&self, target: [f64; 3]) -> bool {
         self.targets.first().is_none_or(|first| (0..3).all(|axis| (first[axis] - target[axis]).abs() < SPREAD))
     }
@@ -75,14 +75,14 @@ impl Packet<'_> {
 }
 
 /// Lowest and highest corner of a box around targets.
-fn around(targets: &[[f32; 3]]) -> [[f64; 3]; 2] {
+fn bounding_box(targets: &[[f32; 3]]) -> [[f64; 3]; 2] {
     let bound = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {
         std::array::from_fn(|axis| targets.iter().map(|target| f64::from(target[axis])).fold(start, pick))
     };
     [bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY)]
 }
 
-/// Whether a line of sight along `direction` from anywhere in a box may meet another box.
+/// Returns true if a line of sight along `direction` from anywhere in a box may meet another box.
 fn may_meet([low, high]: [[f64; 3]; 2], direction: [f64; 3], [first, last]: [[f64; 3]; 2]) -> bool {
     let (mut from, mut to) = (0.0_f64, f64::INFINITY);
     for axis in 0..3 {

@@ -19,17 +19,17 @@ const BATCH: usize = 512;
 /// Targets that are looked at before the next: as many as keep what is settled of them below 100 MB.
 const MAX_TARGETS: usize = BLOCK << 10;
 
-/// Share of lines of sight near balls below which each such line is tested separately: settling a line takes about a
-/// tenth of the time of testing one (6 and 53 ns on two cores before lines walked in packets, a strip of balls beside a
-/// tile of a village).
+/// Share of lines of sight near balls below which each such line is tested separately. Settling a line takes about a
+/// tenth of the time of testing one: 6 and 53 ns on two cores, before lines were tested in packets, for a strip of
+/// balls beside a tile of a village.
 const WORTH_SETTLING: f64 = 0.1;
 
-/// By how much the box around balls is taken for larger, metres: far more than is rounded.
+/// Widening of the box around balls, metres: far more than the rounding.
 const ROOM: f64 = 0.01;
 
 /// Lines of sight that are still free and run near balls.
 struct Meeting {
-    /// At least as many as there are.
+    /// Upper bound of their number.
     line_count: usize,
     /// Columns of any of them.
     columns: Vec<usize>,
@@ -43,11 +43,11 @@ struct OpenBlock {
     met: Vec<u64>,
 }
 
-/// Which of many directions each of many targets sees, for the obstacles tested so far.
+/// Bit matrix of lines of sight, of many targets in many directions, that are free of the obstacles tested so far.
 ///
-/// A line of sight is free where no obstacle blocks it, so that neither their order nor how they are cut into parts
-/// matters: with the balls of a scene one part after the other, the bits at the end are those of
-/// [`MedialScene::visibility_matrix`]. A part is tested only for lines that are still free.
+/// A line of sight is free if no obstacle blocks it, so that neither their order nor their division into parts matters.
+/// With the balls of a scene in parts, the final bits are those of [`MedialScene::visibility_matrix`]. A part is tested
+/// only for lines that are still free.
 #[derive(Clone)]
 pub struct FreeLines<'a> {
     tree: Arc<TargetTree>,
@@ -90,15 +90,15 @@ impl<'a> FreeLines<'a> {
         (0..self.directions.len()).filter(is_free).collect()
     }
 
-    /// How many targets there are.
+    /// Returns the number of targets.
     #[must_use]
     pub fn target_count(&self) -> usize {
         self.tree.positions().len()
     }
 
-    /// Calls `visit` with the places on the map where lines of sight that are still free start: the number of their
-    /// column among `columns`, which ascend, the lowest and the highest corner of a rectangle, and the height that no
-    /// target there is below, local metres. So many neighbours as `together` says, at least one, share a place.
+    /// Calls `visit` with the rectangles in which lines of sight that are still free start. It gets the index of their
+    /// column among `columns`, which ascend; the lowest and the highest corner, and the minimum height of the targets
+    /// there, local metres. `together` neighbours, at least one, share a rectangle.
     pub fn each_start(&self, columns: &[usize], together: usize, mut visit: impl FnMut(usize, [[f32; 2]; 2], f32)) {
         // the words with any of the columns, these, and how many come before
         let mut queried: Vec<(usize, u64, usize)> = Vec::new();
@@ -191,7 +191,8 @@ impl<'a> FreeLines<'a> {
         Ok(())
     }
 
-    /// Which lines in the directions of `columns` are still free and run through the box around the balls of `scene`.
+    /// Finds the lines in the directions of `columns` that are still free and run through the box around the balls of
+    /// `scene`.
     fn meeting(&self, scene: &MedialScene, columns: &[usize]) -> Meeting {
         let index = scene.tree().index();
         let queried = self.words_of(columns);
@@ -276,7 +277,7 @@ impl<'a> FreeLines<'a> {
         Ok(())
     }
 
-    /// What is still free.
+    /// Converts the lines that are still free into a matrix.
     #[must_use]
     pub fn into_matrix(self) -> VisibilityMatrix {
         #[expect(clippy::cast_possible_truncation, reason = "targets are numbered with 32 bits")]

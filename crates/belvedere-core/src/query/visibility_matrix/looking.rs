@@ -35,7 +35,7 @@ struct Group {
 }
 
 impl Group {
-    /// Those of the headings of a word whose bits are set in `met`; `None` where that is none.
+    /// Selects the headings of a word whose bits are set in `met`; `None` if there are none.
     fn new((word, (numbers, met)): (usize, (&[Option<usize>], &u64))) -> Option<Self> {
         let of_column = |(column, number): (usize, &Option<usize>)| Some((column, (*number)?));
         let is_met = |(column, _): &(usize, usize)| met >> column & 1 == 1;
@@ -44,13 +44,13 @@ impl Group {
     }
 }
 
-/// What all targets look at.
+/// Directions that all targets share, with the balls.
 pub(super) struct Sky<'a> {
     tree: &'a BallTree,
     headings: &'a [MatrixDirection],
-    /// What the backend knows of them.
+    /// Result of the backend for the headings.
     settled: &'a Settled,
-    /// Which of the headings belongs to each column of the matrix.
+    /// Index of the heading of each column of the matrix, if any.
     numbers: Vec<Option<usize>>,
 }
 
@@ -137,13 +137,13 @@ impl<'a> Sky<'a> {
     }
 }
 
-/// What is found in a direction.
+/// State of the search in a direction.
 struct OfDirection<'a> {
     /// A bit for each target that nothing blocks yet.
     open: &'a mut WordBits,
-    /// What blocked each target last.
+    /// Last blocker of each target.
     before: &'a mut [Option<u32>],
-    /// What blocked the targets before.
+    /// Blockers of the previous targets.
     last: [Option<u32>; 2],
 }
 

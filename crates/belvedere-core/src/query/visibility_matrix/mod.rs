@@ -1,4 +1,5 @@
-//! Which of many directions each of many targets sees free: what sun hours, sky views and irradiance are sums over.
+//! Matrix of the directions that each of many targets sees free: the terms of the sums of sun hours, sky views and
+//! irradiance.
 
 mod behind_triangles;
 mod free_lines;
@@ -16,7 +17,7 @@ use belvedere_data::{Error, Result};
 /// direction.
 #[derive(Clone, Debug)]
 pub struct VisibilityMatrix {
-    /// Where the row of each target lies: neighbours together, and one empty row for all that are not finite.
+    /// Row of each target; neighbours are together, and all targets that are not finite share one empty row.
     places: Vec<u32>,
     direction_count: usize,
     /// Words of a row.
@@ -57,7 +58,7 @@ impl VisibilityMatrix {
         self.direction_count
     }
 
-    /// Whether a target sees the sky in a direction; never beyond the rows and columns.
+    /// Returns true if a target sees the sky in a direction; false beyond the rows and columns.
     #[must_use]
     pub fn is_free(&self, target: usize, direction: usize) -> bool {
         let word = self.row(target).get(direction / WORD).copied().unwrap_or(0);
@@ -88,9 +89,9 @@ impl VisibilityMatrix {
 }
 
 impl MedialScene {
-    /// Which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees free of balls and
-    /// triangles: for every pair the same as [`MedialScene::answer`] at infinite range, without a test of pulses.
-    /// A target that is not finite sees nothing. Progress counts targets.
+    /// Computes which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees free of balls
+    /// and triangles. Each pair equals [`MedialScene::answer`] at infinite range, without a test of pulses. A target
+    /// that is not finite sees nothing. Progress counts targets.
     ///
     /// The backend settles most lines of sight ([`super::backend::PreparedBackend::settle`]). What it leaves open is
     /// tested against the ball that blocked the neighbours, and finally against all balls. What the backend prepares

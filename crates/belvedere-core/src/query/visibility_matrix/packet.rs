@@ -7,10 +7,10 @@ use super::super::ball_tree::{BallTree, MARGIN, near_reach};
 use crate::ray_index::{END, Ray, Visit};
 use belvedere_data::vector::{cross, dot, sub, unit};
 
-/// Most lines of a packet.
+/// Maximum number of lines of a packet.
 pub(super) const LANES: usize = 8;
-/// Farthest that the targets of a packet lie apart along an axis, metres. The sky of the points of a town (10 per m²,
-/// 256 directions) took 20.3 s with 0.5, 16.1 with 1, 15.4 with 2 and 16.3 with 4, in one session.
+/// Maximum distance between the targets of a packet along an axis, metres. The sky of the points of a town (10 per m²,
+/// 256 directions) took 20.3 s with 0.5, 16.1 with 1, 15.4 with 2 and 16.3 with 4.
 const SPREAD: f32 = 2.0;
 /// The ball that blocks each line of a packet, in the order in which they were taken.
 pub(super) type Blockers = [Option<u32>; LANES];
@@ -64,7 +64,7 @@ impl<'a> Packet<'a> {
         true
     }
 
-    /// Which balls block the lines; the packet is empty then.
+    /// Returns the ball that blocks each line, and empties the packet.
     pub(super) fn find(&mut self) -> Blockers {
         let mut blockers = [None; LANES];
         if self.count > 0 {
@@ -84,9 +84,9 @@ impl<'a> Packet<'a> {
 /// A packet on its way.
 struct Search<'p, 'a> {
     packet: &'p Packet<'a>,
-    /// Where places count from, local metres.
+    /// Origin of the places, local metres.
     middle: [f32; 3],
-    /// Where each line starts, along the axes of the packet, metres; infinite for slots that are not taken.
+    /// Start of each line along the axes of the packet, metres; infinite for slots that are not taken.
     starts: [[f32; LANES]; 3],
     /// A bit for each line that is not blocked yet.
     left: u32,

@@ -1,4 +1,4 @@
-//! What several tests need: the shared data, simulated scenes, light by hand.
+//! Common parts of several tests: the shared data, simulated scenes, light by hand.
 
 pub(crate) mod simulated;
 

@@ -23,13 +23,13 @@ const SECTORS: usize = 12;
 const MIN_SECTORS: usize = 9;
 /// Share of the densest cell around that the edge of a hole has at least, and the hole at most.
 const EDGE_SHARE: f64 = 0.2;
-/// How uneven the distances to the edge may be: standard deviation over mean.
+/// Maximum coefficient of variation of the distances to the edge (standard deviation over mean).
 const MAX_UNEVEN: f64 = 0.4;
-/// How far the floor about a tripod may lie above and below its middle height, metres: on slopes, and beside kerbs.
+/// Maximum height difference between the floor around a tripod and its median height, metres: slopes and kerbs.
 const MAX_STEP: f64 = 0.5;
 /// Tripods on one floor stand farther apart than that, metres.
 const MIN_APART: f64 = 0.8;
-/// Most cells beside a hole, most dense first, so that no cloud costs more than some tenths of a second.
+/// Maximum number of cells beside a hole, densest first, so that no cloud costs more than some tenths of a second.
 const MAX_EDGES: usize = 20_000;
 
 /// A cell of the map with its floor.
@@ -40,8 +40,9 @@ struct FloorCell {
     height: f32,
 }
 
-/// Middles of round holes in the floors of `points`, local metres, roundest first; one in a thousand of them is the
-/// foot of a tripod in a cloud of another kind. The result does not depend on the order of the points.
+/// Returns the centres of round holes in the floors of `points`, local metres, roundest first. In a cloud that is no
+/// ground scan, one in a thousand of them looks like the foot of a tripod. The result does not depend on the order of
+/// the points.
 pub(super) fn floor_holes(points: &[[f32; 3]]) -> Vec<[f64; 3]> {
     let cells = cells(points);
     let mut counts: Vec<u32> = cells.iter().map(|cell| cell.count).collect();
@@ -108,7 +109,7 @@ fn count_at(cells: &[FloorCell], at: [i32; 2], height: f64, max_offset: f64) -> 
     on_floor.map_or(0.0, |cell| f64::from(cell.count))
 }
 
-/// Whether a neighbour has far fewer points on the same floor.
+/// Returns true if a neighbouring cell has far fewer points on the same floor.
 fn is_edge(cells: &[FloorCell], cell: &FloorCell) -> bool {
     let [x, y] = cell.at;
     let beside = [[x - 1, y], [x + 1, y], [x, y - 1], [x, y + 1]];
@@ -117,7 +118,8 @@ fn is_edge(cells: &[FloorCell], cell: &FloorCell) -> bool {
     beside.iter().any(is_low)
 }
 
-/// How uneven the edge of the hole about this cell is, and the middle of the hole; `None` where it is open, or no hole.
+/// Returns the unevenness of the edge of the hole around this cell, and the centre of the hole. `None` if the hole is
+/// open or there is none.
 fn hole_about(cells: &[FloorCell], foot: [i32; 2], dense: u32) -> Option<(f64, [f64; 3])> {
     let near = || {
         (-REACH..=REACH).flat_map(move |x| {

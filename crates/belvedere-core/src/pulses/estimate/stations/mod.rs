@@ -1,4 +1,4 @@
-//! Where tripods stood, from the points alone.
+//! Locates tripod stations from the points alone.
 
 mod floor_holes;
 mod pulse_grid;
@@ -16,8 +16,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Points of a source id from which on a tripod is looked for.
 const MIN_POINTS: usize = 3000;
-/// Distances from the foot of a tripod up to which its grid is looked for, metres, tried in turn: the more the better,
-/// as long as few points are of another tripod.
+/// Radii around the foot of a tripod within which its grid is searched, metres, tried in turn. A larger one has more
+/// points, but also more points of other tripods.
 const NEAR: [f64; 3] = [6.0, 3.5, 2.2];
 /// Distance below which the scanner's own parts and rounded coordinates disturb the grid, metres.
 const TOO_NEAR: f64 = 0.4;
@@ -40,14 +40,14 @@ const MAX_FAILURES: usize = 12;
 /// Stations on one floor are farther apart than that, metres: the floor about a tripod has other holes, but no other
 /// tripod.
 const APART: f64 = 2.0;
-/// How far the station may be from above the middle of its hole, metres.
+/// Maximum horizontal distance between a station and the centre of its hole, metres.
 const MAX_BESIDE: f64 = 0.6;
 /// Numbers of directions in a cell at which they must not be crowded, and how much they may be. Measured: stations of
 /// simulated tripods have less than 0.05 and 0.5, other places of their clouds and of clouds from the air 0.5 to 50 and
 /// 1 to 50.
 const CROWDING: [(f64, f64); 2] = [(0.3, 0.25), (1.0, 0.7)];
-/// How much directions may be crowded in the larger cells, seen from the height that is tried first, some decimetres
-/// beside the station.
+/// Maximum crowding of directions in the larger cells, at the height that is tried first, some decimetres off the
+/// station.
 const START_CROWDING: f64 = 1.8;
 /// Share of all directions that points near a station fill at least.
 const MIN_FILLED: f64 = 0.15;
@@ -56,8 +56,8 @@ const MAX_SD: f64 = 0.03;
 /// Side of the cells of an image of ranges, in steps of the grid, and most columns of it.
 const IMAGE_STEPS: f64 = 1.5;
 const MAX_COLUMNS: f64 = 4096.0;
-/// How much farther than the nearest point in its cell a point may lie and be seen, metres, and in sides of the cell at
-/// its range: walls are seen at up to 80° from their normal.
+/// Depth behind the nearest point of a cell up to which a point counts as seen, metres. It grows with the side of the
+/// cell at its range: walls are seen at up to 80° from their normal.
 const DEPTH: f64 = 0.05;
 const DEPTH_IN_SIDES: f64 = 6.0;
 /// Share of a group's points that may lie behind others seen from its only station: edges of things.
@@ -159,13 +159,13 @@ fn tripods(points: &[[f32; 3]], control: &Control<'_>) -> Result<(Vec<StationFit
     Ok((found, seen))
 }
 
-/// Whether one station has seen a group of points, but for some behind the edges of others.
+/// Returns true if one station has seen a group of points, apart from some behind the edges of others.
 fn is_whole(seen: &[Option<usize>]) -> bool {
     let hidden_count = seen.iter().filter(|number| number.is_none()).count();
     hidden_count as f64 <= MAX_HIDDEN * seen.len() as f64
 }
 
-/// Whether the directions of all these points form the grid of this station.
+/// Returns true if the directions of all these points form the grid of this station.
 fn is_only(points: &[[f32; 3]], station: &StationFit) -> bool {
     let places: Vec<[f64; 3]> = points.par_iter().map(|p| p.map(f64::from)).collect();
     let [(fine, max_fine), _] = CROWDING;
@@ -211,8 +211,8 @@ fn station_by_grid(near: &[[f64; 3]], hole: [f64; 3]) -> Option<StationFit> {
     is_proven.then_some(fit)
 }
 
-/// About `max` of these points, or a sixth of all where that is more: those in some wedges about the middle of the
-/// hole: within a wedge the grid is whole.
+/// Selects about `max` of these points, or a sixth of all if that is more. They lie in wedges around the centre of the
+/// hole, since the grid is complete within a wedge.
 fn in_wedges(near: &[[f64; 3]], hole: [f64; 3], max: f64) -> Vec<[f64; 3]> {
     let share = (max / near.len() as f64).clamp(MIN_WEDGES / WEDGES, 1.0);
     let is_kept = |p: &&[f64; 3]| {
@@ -272,8 +272,9 @@ mod tests {
     const ROOM: [f64; 3] = [10.0, 6.0, 3.0];
     const STATIONS: [[f64; 3]; 2] = [[2.5, 3.2, 1.5], [7.4, 2.1, 1.7]];
 
-    /// The room as a scanner sees it in steps of `step` degrees down to 65° below the horizon, levelled to a thousandth
-    /// and turned by `turn` radians; ranges have 3 mm of noise, and coordinates are rounded to a millimetre.
+    /// Simulates a scan of the room in steps of `step` degrees, down to 65° below the horizon. The scanner is levelled
+    /// to a thousandth and turned by `turn` radians. Ranges have 3 mm of noise; coordinates are rounded to a
+    /// millimetre.
     fn scanned(eye: [f64; 3], step: f64, turn: f64) -> Vec<[f32; 3]> {
         let steps = |degrees: f64| (0..).map(move |i| f64::from(i) * step).take_while(move |v| *v < degrees);
         let mut points = Vec::new();

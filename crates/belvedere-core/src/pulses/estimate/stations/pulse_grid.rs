@@ -6,9 +6,9 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Directions nearer to the zenith or nadir are left out, radians from the horizon: columns meet there.
 const MAX_ELEVATION: f64 = 1.22;
-/// How far the way from a direction to the next may differ from a step of the grid, in steps.
+/// Maximum deviation between neighbouring directions and a step of the grid, in steps.
 const TOLERANCE: f64 = 0.3;
-/// That tolerance in the last rounds, in steps.
+/// Maximum deviation in the last rounds, in steps.
 const LAST_TOLERANCE: f64 = 0.15;
 /// Rounds in which pairs are found and the station is fitted to them.
 const ROUNDS: usize = 8;
@@ -62,9 +62,9 @@ fn cell_side(directions: &[([f64; 2], usize)], each: f64) -> f64 {
     (each * taken as f64 * coarse * coarse / count).sqrt()
 }
 
-/// How crowded the directions of `points` from `place` are, in cells that hold `each` of them on average: the mean
-/// number of others in the cell of one, by what chance would give. It is 1 where directions fall anywhere, more where
-/// some are preferred, and almost 0 on a grid of pulses that has one in each cell.
+/// Returns the crowding of the directions of `points` from `place`, in cells that hold `each` of them on average: the
+/// mean number of others in a point's cell, over that of chance. It is 1 for random directions, more for preferred
+/// ones, and almost 0 for a grid of pulses with one in each cell.
 pub(super) fn crowding(points: &[[f64; 3]], place: [f64; 3], each: f64) -> f64 {
     let directions = directions(points, place, [0.0; 2]);
     if directions.is_empty() {
@@ -144,7 +144,7 @@ fn pairs(
     Some((pairs, steps))
 }
 
-/// How far a pair is from one step, around and up, in steps.
+/// Returns the deviation of a pair from one grid step, in azimuth and elevation, in steps.
 fn misfit(points: &[[f64; 3]], pair: &GridPair, unknowns: &SVector<f64, UNKNOWNS>) -> [f64; 2] {
     let place = [unknowns[0], unknowns[1], unknowns[2]];
     let [from, to] = pair.rows.map(|row| direction(points[row], place, [unknowns[3], unknowns[4]]));

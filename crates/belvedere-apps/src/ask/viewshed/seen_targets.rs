@@ -1,4 +1,4 @@
-//! What observers see of each kind of targets, in numbers and words.
+//! Results of observers for each kind of targets, in numbers and words.
 
 use super::ViewshedQuestion;
 use crate::ask::places::cells_of;
@@ -19,7 +19,7 @@ use serde::Serialize;
 /// Lines of sight whose ends are looked at, where an eye sees nothing.
 const SAMPLE: usize = 200;
 
-/// What was seen of far terrain.
+/// Results for far terrain.
 pub struct FarSeen {
     /// An answer for each node.
     pub seen: Seen,
@@ -27,7 +27,7 @@ pub struct FarSeen {
     pub terrain: ElevationGrid,
 }
 
-/// How many targets are seen, for reports.
+/// Number of visible targets, for reports.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SeenSection {
     targets: usize,
@@ -37,7 +37,7 @@ pub struct SeenSection {
     #[serde(skip_serializing_if = "Option::is_none")]
     unproven_percent: Option<f64>,
     blocked: usize,
-    /// Of those blocked, what lies inside an obstacle itself; `None` where that was not looked at.
+    /// Number of blocked targets that lie inside an obstacle themselves; `None` if not tested.
     #[serde(skip_serializing_if = "Option::is_none")]
     inside_obstacle: Option<usize>,
     outside_view: usize,
@@ -47,11 +47,11 @@ pub struct SeenSection {
     visible_m2: Option<f64>,
 }
 
-/// What is counted.
+/// Description of the counted targets.
 pub(super) struct Things {
     pub(super) where_to: &'static str,
     pub(super) name: &'static str,
-    /// Of each, square metres, where it has one.
+    /// Area of each, square metres, if it has one.
     pub(super) area: Option<f64>,
 }
 
@@ -63,7 +63,7 @@ impl Things {
 }
 
 impl SeenSection {
-    /// How many targets are seen, of which pulses prove the views or do not; says so in `context`.
+    /// Counts the visible targets, and those whose views pulses prove or do not; reports them in `context`.
     pub(super) fn of(answers: &[Answer], is_tested: bool, things: &Things, context: &mut Context) -> Self {
         let counts = AnswerCounts::of(answers);
         let targets = answers.len() - counts.outside_view - counts.outside_cloud;
@@ -122,13 +122,13 @@ impl Sights<'_> {
             viewshed(blockers, observers, &targets.positions, &params, control)
         })?;
         let things = Things::cells(cell);
-        let counts = self.counted(&seen.answers, &targets.positions, &things, context, control)?;
+        let counts = self.count(&seen.answers, &targets.positions, &things, context, control)?;
         context.report.cells = Some(counts);
         self.remark_on_blind(&seen, &targets.positions, context);
         Ok(seen)
     }
 
-    /// How sure the answers for `targets` are, where that is wanted.
+    /// Computes the certainty of the answers for `targets`, if wanted.
     pub(super) fn sure_of(
         &self,
         seen: &Seen,
@@ -157,7 +157,7 @@ impl Sights<'_> {
         let seen = control
             .stage("testing points", observers.len(), || viewshed(blockers, observers, positions, &params, control))?;
         let things = Things { where_to: "", name: "points", area: None };
-        let section = self.counted(&seen.answers, positions, &things, context, control)?;
+        let section = self.count(&seen.answers, positions, &things, context, control)?;
         let (outside, count) = (section.outside_cloud, seen.answers.len());
         context.add(remark_on_outside(outside, count, "points"));
         context.report.cloud_points = Some(section);
@@ -238,8 +238,8 @@ impl Sights<'_> {
         (format!("all lines of sight end within {farthest:.2} m of it; {give}"), Some(rounded(farthest, 3)))
     }
 
-    /// How many of `targets` are seen, with those that lie inside an obstacle.
-    fn counted(
+    /// Counts the visible `targets`, with those that lie inside an obstacle.
+    fn count(
         &self,
         answers: &[Answer],
         targets: &[[f32; 3]],

@@ -1,4 +1,4 @@
-//! What one file gave, before all files of a cloud get a common origin.
+//! Contents of one file, before all files of a cloud get a common origin.
 
 use std::path::Path;
 
@@ -26,7 +26,7 @@ pub(super) struct FilePart {
     pub(super) attributes: Attributes,
     /// Scanner positions that `attributes.scanner_index` refers to.
     pub(super) scanners: Vec<[f64; 3]>,
-    /// Where pulses of these met nothing up to the sky.
+    /// Regions of these set-ups in which pulses met nothing up to the sky.
     pub(super) skies: Skies,
     pub(super) crs: Crs,
     /// Why the file names no system that is known; `None` where it names one.
@@ -38,11 +38,11 @@ pub(super) struct FilePart {
     /// Number of points of the file where `rows`, or else 0, 1, 2 … are the rows of its points; `None` where these are
     /// not known.
     pub(super) row_count: Option<u64>,
-    /// What its points have beside `attributes`, in words.
+    /// Attributes of its points beside `attributes`, in words.
     pub(super) other_attributes: Vec<String>,
     /// Records of its header that are not understood here, in words.
     pub(super) records: Vec<String>,
-    /// Whether the file keeps its coordinates as f32.
+    /// True if the file keeps its coordinates as f32.
     pub(super) single_precision: bool,
     pub(super) report: FileReport,
 }
@@ -212,7 +212,7 @@ impl FilePart {
     pub(super) fn keep_selected(&mut self, reading: &Reading<'_>) -> Result<()> {
         let Some(selection) = reading.selection(&self.crs) else { return Ok(()) };
         let mut passed_over = PassedOver::default();
-        let kept = selection.kept(&self.coordinates, &self.attributes, &mut passed_over)?;
+        let kept = selection.select(&self.coordinates, &self.attributes, &mut passed_over)?;
         self.keep(&kept);
         passed_over.report(self);
         Ok(())
@@ -231,8 +231,8 @@ impl FilePart {
         self.attributes = self.attributes.select(indices);
     }
 
-    /// Looks over the attributes for what would mislead later stages: drops GPS times that are all zero, makes normals
-    /// unit or zero, widens 8-bit colours to 16 bits, notes times and returns that cannot be right.
+    /// Checks the attributes for values that would mislead later stages. Drops GPS times that are all zero, makes
+    /// normals unit or zero, widens 8-bit colours to 16 bits, and notes impossible times and returns.
     pub(super) fn check_attributes(&mut self) {
         self.check_gps_times();
         let attributes = &mut self.attributes;
@@ -264,7 +264,7 @@ impl FilePart {
         self.report.attributes = self.attributes.columns().into_iter().map(|(name, _)| name).collect();
     }
 
-    /// Whether no point has a colour other than black.
+    /// Returns true if no point has a colour other than black.
     pub(super) fn is_black(&self) -> bool {
         self.attributes.color.iter().flatten().flatten().all(|&value| value == 0)
     }

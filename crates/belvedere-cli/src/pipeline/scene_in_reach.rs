@@ -1,4 +1,4 @@
-//! Of a survey that does not fit into memory, the part that a question about a few places can reach.
+//! Part of a survey, too large for memory, that a question about a few places can reach.
 
 use crate::arguments::{MapPosition, MemoryArgument, Rectangle, SceneInput, Usage};
 use crate::memory;
@@ -6,9 +6,9 @@ use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere_tiles::TooLarge;
 
-/// The scene of a question that reaches `distance` metres from typed places on the map: all of it, or where one model
-/// of all takes more memory than may be used, the points around the places. `None` reaches any distance: one model is
-/// tried, unless the memory was typed.
+/// Returns the scene of a question that reaches `distance` metres from typed places in plan. It is the whole survey, or
+/// the points around the places if one model of all needs more than the permitted memory. `None` is any distance: one
+/// model is tried, unless the memory was typed.
 pub(crate) fn scene_in_reach(
     (scene, memory): (&SceneInput, &MemoryArgument),
     places: &[MapPosition],

@@ -12,7 +12,7 @@ pub(super) struct NamedShape {
     pub(super) name: String,
 }
 
-/// What the corners typed after `flag` are.
+/// Meaning of the corners typed after `flag`.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum TypedAre {
     Line,

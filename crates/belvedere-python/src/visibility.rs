@@ -1,4 +1,4 @@
-//! Who sees what: pairs, and many targets of one eye.
+//! Visibility of pairs, and of many targets of one eye.
 
 use crate::arrays::{to_1d, to_2d};
 use crate::errors::{exception, wrong};
@@ -30,7 +30,7 @@ pub(crate) struct EndKeywords {
 /// Columns of pairs, where their targets are, and remarks.
 type SightsReply<'py> = (Bound<'py, PyDict>, Bound<'py, PyAny>, Vec<Bound<'py, PyDict>>);
 
-/// How lines of sight run over the earth; what is not given is the library's default.
+/// Curvature of the earth on lines of sight; missing keywords have the library's defaults.
 pub(crate) fn earth(curvature: Option<&str>, refraction: Option<f64>) -> PyResult<EarthParams> {
     let usual = EarthParams::default();
     let curvature = match curvature {
@@ -46,7 +46,7 @@ pub(crate) fn earth(curvature: Option<&str>, refraction: Option<f64>) -> PyResul
 }
 
 impl PyScene {
-    /// What to know of the scene, of an eye, local metres, and of targets of which some are outside the cloud.
+    /// Returns remarks on the scene, on an eye, local metres, and on targets of which some are outside the cloud.
     fn remarks_on_viewer<'py>(
         &self,
         py: Python<'py>,
@@ -101,7 +101,7 @@ impl PyScene {
         Ok((to_1d(py, codes).into_any(), remarks))
     }
 
-    /// How much one eye sees of each face and object of a mesh, and remarks.
+    /// Returns the visible area of each face and object of a mesh for one eye, and remarks.
     fn seen_of_mesh<'py>(
         &self,
         py: Python<'py>,
@@ -135,8 +135,8 @@ impl PyScene {
         Ok((rows_of(py, FaceRows::of_seen(&mesh, &seen))?, remarks))
     }
 
-    /// What is known of the line of sight of each pair, where its target is, and remarks. Heights that are NaN follow
-    /// from the ground.
+    /// Returns the result for the line of sight of each pair, the position of its target, and remarks. Heights of NaN
+    /// follow from the ground.
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn lines_of_sight<'py>(
         &self,

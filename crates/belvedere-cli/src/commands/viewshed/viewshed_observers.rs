@@ -1,4 +1,4 @@
-//! Who looks: from flags and files to places.
+//! Observers, from flags and files to places.
 
 use crate::arguments::{MapPosition, Usage, ViewshedArguments};
 use crate::commands::extension;

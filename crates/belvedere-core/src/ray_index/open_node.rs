@@ -40,7 +40,7 @@ impl RayIndex {
 }
 
 impl OpenNode<'_> {
-    /// Those of `parts` that are nodes.
+    /// Selects those of `parts` that are nodes.
     #[inline(always)]
     pub(crate) fn nodes(&self, parts: u32) -> u32 {
         parts & u32::from(self.node.imask)
@@ -57,7 +57,7 @@ impl OpenNode<'_> {
     /// later parts come later.
     #[inline(always)]
     pub(crate) fn rows(&self, parts: u32) -> Range<u32> {
-        let rows = parts & self.taken() & !u32::from(self.node.imask);
+        let rows = parts & self.parts_in_use() & !u32::from(self.node.imask);
         if rows == 0 {
             return 0..0;
         }
@@ -67,7 +67,7 @@ impl OpenNode<'_> {
 
     /// Parts that are nodes or rows.
     #[inline(always)]
-    fn taken(&self) -> u32 {
+    fn parts_in_use(&self) -> u32 {
         /// Set in the byte of each part that is taken.
         const TAKEN: u64 = 0x2020_2020_2020_2020;
         /// Brings the bits of bytes together in the highest byte.
@@ -77,7 +77,7 @@ impl OpenNode<'_> {
     }
 }
 
-/// What a part of a node is.
+/// Returns the kind of a part of a node.
 #[inline(always)]
 pub(super) fn part_of(node: &CwBvhNode, part: usize) -> NodePart {
     if node.is_child_empty(part) {

@@ -1,4 +1,4 @@
-//! What cameras are to cover, and what they must not see: from flags and files to a question.
+//! Targets of cameras and private places, from flags and files to a question.
 
 use crate::arguments::{CameraTargetsArguments, Usage};
 use crate::commands::extension;
@@ -15,7 +15,7 @@ use belvedere::io::{FeatureShape, ReadOptions, RowsAre, is_mesh, property, read_
 use std::path::Path;
 use std::sync::Arc;
 
-/// What a file of targets holds.
+/// Content of a file of targets.
 enum TargetFileKind {
     Areas,
     Places,
@@ -36,7 +36,7 @@ fn kind(path: &Path) -> TargetFileKind {
     }
 }
 
-/// Whether targets are cells.
+/// Returns true if targets are cells.
 pub(super) fn are_cells(flags: &CameraTargetsArguments) -> bool {
     flags.targets.as_deref().is_none_or(|path| matches!(kind(path), TargetFileKind::Areas))
 }
@@ -52,7 +52,7 @@ pub(super) fn check(flags: &CameraTargetsArguments, are_cells: bool) -> Result<(
     Ok(())
 }
 
-/// What is to be covered: places, or what is added to `targets`.
+/// Returns the targets: places, or additions to `targets`.
 pub(super) fn places(
     flags: &CameraTargetsArguments,
     frame: &Frame,

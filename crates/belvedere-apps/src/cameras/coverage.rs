@@ -1,4 +1,4 @@
-//! What cameras cover: lines of sight for what is in their pictures.
+//! Coverage of cameras: lines of sight for the targets in their pictures.
 
 use super::camera::Camera;
 use super::candidates::CameraPose;
@@ -11,24 +11,24 @@ use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// When a target that is in a picture is covered.
+/// Criteria for covering a target that is in a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CoverageParams {
-    /// Least pixels per metre, 0 or more. Default 0.
+    /// Minimum pixels per metre, 0 or more. Default 0.
     pub density: f64,
-    /// How lines of sight run over the earth.
+    /// Curvature of the earth on lines of sight.
     pub earth: EarthParams,
-    /// What to make of lines of sight that nothing blocks but that are not proven: they cover if they count as visible.
-    /// Default: reported, which covers nothing.
+    /// Treatment of unproven lines of sight: they cover if they count as visible. Default: reported, which covers
+    /// nothing.
     pub unproven: UnprovenAs,
-    /// How certain it must be that a target is visible. Default: the answer alone counts.
+    /// Minimum certainty that a target is visible. Default: the answer alone counts.
     pub certainty: Option<Certainty>,
     /// The Fresnel zone that must be free too. Default: none.
     pub zone: Option<FresnelZone>,
 }
 
-/// How much of the first Fresnel zone of a radio link must be free.
+/// Required free part of the first Fresnel zone of a radio link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FresnelZone {
     /// The wave of the link.
@@ -86,20 +86,20 @@ impl Default for CoverageParams {
 pub struct CoverageReport {
     /// All of them.
     pub lines_of_sight: usize,
-    /// Those that nothing blocks.
+    /// Number of lines that nothing blocks.
     pub visible: usize,
-    /// Those that nothing blocks, but that are not proven.
+    /// Number of unproven lines that nothing blocks.
     pub unproven: usize,
-    /// Of the visible, those that are less certain than is wanted; `None` where any are good enough.
+    /// Number of visible lines below the wanted certainty; `None` if none is wanted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub uncertain: Option<usize>,
-    /// Of the visible, those whose Fresnel zone is not free; `None` where no Fresnel zone is tested.
+    /// Number of visible lines whose Fresnel zone is not free; `None` if no Fresnel zone is tested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fresnel_zone_blocked: Option<usize>,
 }
 
-/// Which of `cameras` cover which of `targets`; control counts cameras. Cameras at one place should follow each other:
-/// their lines of sight are tested once.
+/// Computes which of `cameras` cover which of `targets`; control counts cameras. Cameras at one place should follow
+/// each other: their lines of sight are tested once.
 ///
 /// # Errors
 /// Those of [`viewshed`], and [`belvedere_data::Error::InvalidParameter`] for a table of more than 8 GiB and where
@@ -137,8 +137,8 @@ pub fn coverage(
     Ok((CoverageTable::of_bits(targets.len(), bits), report))
 }
 
-/// Which of `cameras` have any of the `private` places in their picture, at whatever distance and density: one that
-/// cannot be proven hidden counts as seen. Control counts cameras.
+/// Flags the `cameras` that have any of the `private` places in their picture, at any distance and density. A place
+/// that cannot be proven hidden counts as seen. Control counts cameras.
 ///
 /// # Errors
 /// Those of [`coverage`].
@@ -251,7 +251,7 @@ impl TargetQuery<'_> {
         Ok((bits, report))
     }
 
-    /// Which of the visible targets are less certain than is wanted.
+    /// Flags the visible targets below the wanted certainty.
     fn uncertain(&self, eye: [f64; 3], positions: &[[f32; 3]], answers: &[Answer]) -> Result<Vec<bool>> {
         let mut is_uncertain = vec![false; positions.len()];
         let Some(certainty) = self.params.certainty else { return Ok(is_uncertain) };
@@ -264,7 +264,7 @@ impl TargetQuery<'_> {
         Ok(is_uncertain)
     }
 
-    /// Whether something reaches into the Fresnel zone that must be free.
+    /// Returns true if an obstacle reaches into the Fresnel zone that must be free.
     fn is_zone_blocked(&self, eye: [f64; 3], target: [f64; 3]) -> bool {
         self.params.zone.is_some_and(|FresnelZone { wave, share }| {
             !(self.scene.fresnel_clearance([eye, target], wave, &self.params.earth, share) >= share)

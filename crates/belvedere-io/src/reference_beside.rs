@@ -23,7 +23,7 @@ impl Source<'_> {
     }
 }
 
-/// What a file `.prj` beside `path` says: `tile.prj` beside `tile.laz`, and beside `tile.copc.laz` too.
+/// Reads a file `.prj` beside `path`: `tile.prj` beside `tile.laz`, and beside `tile.copc.laz` too.
 fn prj_beside(path: &Path) -> Option<SystemBeside> {
     let whole = path.file_stem()?;
     let short = Path::new(whole).file_stem().filter(|short| *short != whole);

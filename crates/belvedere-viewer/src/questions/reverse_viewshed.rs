@@ -1,4 +1,4 @@
-//! Who sees this: the cells from which a person would see the place.
+//! Reverse viewshed: the cells from which a person would see the place.
 
 use super::RequestContext;
 use super::places::{local, rounded};

@@ -1,4 +1,4 @@
-//! What questions about sun and sky share: targets, what blocks, and light through trees.
+//! Parts common to questions about sun and sky: targets, obstacles, and light through trees.
 
 use super::places::test_edge;
 use super::scene::Scene;
@@ -26,15 +26,16 @@ pub(super) struct Light {
 pub struct OnTargets {
     /// The targets.
     pub targets: Arc<Targets>,
-    /// Whether each is near the edge of the cloud; `None` where that is not known.
+    /// True near the edge of the cloud; `None` if that is not known.
     pub near_edge: Vec<Option<bool>>,
-    /// What the answer is, for the title of a map.
+    /// Subject of the answer, for the title of a map.
     pub title: String,
 }
 
 impl Light {
-    /// What light from `directions` meets on its way to places. Pulses prove unless `unproven` makes no difference.
-    pub(super) fn on(
+    /// Resolves targets and obstacles for light from `directions`. Pulses are loaded unless unproven answers count as
+    /// visible.
+    pub(super) fn resolve(
         places: &Places,
         directions: &[[f64; 3]],
         (trees, unproven): (&ThroughTrees, UnprovenAs),

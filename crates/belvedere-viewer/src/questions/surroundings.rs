@@ -24,7 +24,8 @@ pub(super) fn answer(question: &AroundRequest, context: &RequestContext<'_>) -> 
     let place = local(context, question.place)?;
     let eyes = Places::Eyes(vec![Standing { place, height: None }]);
     let isovists = ask::ask(scene, &IsovistsQuestion::default(), &eyes, control)?;
-    let sky = ask::ask(scene, &SkyViewQuestion::default(), &Places::Targets(Arc::new(at(context, place))), control)?;
+    let sky =
+        ask::ask(scene, &SkyViewQuestion::default(), &Places::Targets(Arc::new(target_at(context, place))), control)?;
     let Some(isovist) = isovists.found.isovists.first().and_then(Option::as_ref) else {
         return Err(Refusal::Unanswerable("Nobody can look from this place.".to_owned()));
     };

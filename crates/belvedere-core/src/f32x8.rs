@@ -58,14 +58,14 @@ impl Eight {
         self.with(other, |a, b| f32x4_pmin(a, b))
     }
 
-    /// Where it is at most the other: a bit each.
+    /// Returns a bit mask of the lanes in which it is at most the other.
     #[inline(always)]
     pub(crate) fn at_most(self, other: Self) -> u32 {
         let [low, high] = self.with(other, |a, b| f32x4_le(a, b)).0.map(|mask| u32::from(i32x4_bitmask(mask)));
         low | high << 4
     }
 
-    /// Where it is below the other: a bit each.
+    /// Returns a bit mask of the lanes in which it is below the other.
     #[inline(always)]
     pub(crate) fn below(self, other: Self) -> u32 {
         let [low, high] = self.with(other, |a, b| f32x4_lt(a, b)).0.map(|mask| u32::from(i32x4_bitmask(mask)));

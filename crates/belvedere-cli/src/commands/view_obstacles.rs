@@ -1,4 +1,4 @@
-//! What commands about views have in common: what blocks, and the earth.
+//! Common parts of commands about views: obstacles and the curved earth.
 
 use crate::arguments::{Earth, GivingWay, Usage};
 use crate::pipeline::LoadedScene;
@@ -36,7 +36,7 @@ pub(crate) fn proving_blockers(
     Ok((blockers, unproven))
 }
 
-/// How near pulses must pass and how much may be unseen, where pulses tell visible from unproven.
+/// Adds the proof distance and the maximum unproven length, if pulses separate visible from unproven.
 pub(crate) fn add_proof(scene: &MedialScene, section: &mut Summary) {
     if let Some(proof) = scene.proof() {
         section
