@@ -3,7 +3,9 @@
 use super::observers::Standing;
 use super::places::cells_of;
 use super::scene::Scene;
+use super::shadow::UNPROVEN;
 use super::{Context, Remark};
+use crate::shadow::LIT;
 use crate::targets::{CellLevel, CellParams, Measure, Targets, grid_around};
 use belvedere_core::ground::{Ground, GroundPoints};
 use belvedere_data::control::Control;
@@ -66,7 +68,7 @@ pub fn position_on_map(given: [f64; 2], crs: &Crs, bounds: [[f64; 2]; 2]) -> Res
     Err(Error::InvalidParameter {
         parameter: Parameter::Position,
         value: format!(
-            "{}, {}, but the points reach from {west:.0}, {south:.0} to {east:.0}, {north:.0}",
+            "{}, {} (the points reach from {west:.0}, {south:.0} to {east:.0}, {north:.0})",
             given[0], given[1]
         ),
         expected: way_out,
@@ -173,18 +175,31 @@ fn sentence(place: &PlaceSection, measures: &[Measure], row: usize) -> String {
             text
         }
         _ => {
-            let figure = |measure: &Measure| {
-                let value = value(measure)?;
-                let name = if measure.description.is_empty() { &measure.name } else { measure.description };
-                let subject =
-                    if measure.subject.is_empty() { String::new() } else { format!(" ({})", measure.subject) };
-                Some(format!("{name}{subject} {value:.*}", measure.decimals.min(3)))
-            };
-            let figures: Vec<String> = measures.iter().filter_map(figure).take(MAX_FIGURES).collect();
+            let has_several_suns = measures.iter().filter(|measure| measure.description == LIT).count() > 1;
+            let words = |measure: &Measure| Some(figure(measure, value(measure)?, has_several_suns));
+            let figures = measures.iter().filter_map(words).filter(|text| !text.is_empty());
+            let figures: Vec<String> = figures.take(MAX_FIGURES).collect();
             if figures.is_empty() { "no answer".to_owned() } else { figures.join(", ") }
         }
     };
     format!("at {x:.1}, {y:.1} (height {z:.1}{on}): {found}")
+}
+
+/// A measure in words; empty where it adds nothing.
+fn figure(measure: &Measure, value: f64, has_several_suns: bool) -> String {
+    if measure.name == UNPROVEN {
+        return if value > 0.0 { "unproven".to_owned() } else { String::new() };
+    }
+    if measure.description == LIT {
+        let found = match value {
+            0.0 => "in shadow".to_owned(),
+            1.0 => "lit".to_owned(),
+            share => format!("{:.0} % of the sun", 100.0 * share),
+        };
+        return if has_several_suns { format!("{} {found}", measure.name) } else { found };
+    }
+    let name = if measure.description.is_empty() { &measure.name } else { measure.description };
+    format!("{name} {value:.*}", measure.decimals.min(3))
 }
 
 /// An hour of the day as clocks show it.

@@ -17,7 +17,7 @@ use belvedere::apps::irradiance::{CLEAR_SKY_YEAR, Grouping};
 pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Summary> {
     let outputs = arguments.outputs.of_places();
     arguments.places.check(&outputs)?;
-    let wants_places = !outputs.output.is_empty();
+    let wants_places = !outputs.output.is_empty() || !arguments.places.places.at.is_empty();
     if !wants_places && outputs.measures.is_some() {
         return Err(Usage("--measures needs -o".to_owned()).into());
     }
@@ -49,6 +49,7 @@ pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Su
     if wants_places && cells.answered(ask::Question::Irradiance(question.clone()), None, &mut run)?.is_some() {
         return Ok(run.finish());
     }
+    arguments.places.check_on_map(&arguments.scene.input)?;
     let needs_points = question.roofs.is_some() || arguments.places.needs_points();
     let points = if needs_points { KeepPoints::Keep } else { KeepPoints::LetGo };
     let mut scene = pipeline::scene(&arguments.scene, points, &mut run)?;

@@ -137,3 +137,31 @@ fn what_cannot_be_is_refused_with_advice() {
     assert_eq!(run["period"]["suns"], 0);
     assert!(column(&place, "night.csv", "sun_hours").iter().all(|&hours| hours == 0.0));
 }
+
+#[test]
+fn a_single_place_has_a_sentence_with_the_hours_of_the_table() {
+    let place = place();
+    let question = format!("sun-hours {HOUSE} --date 2026-03-21 --zone Europe/Amsterdam");
+    place.summary(&format!("{question} --targets places.csv -o hours.csv"));
+    let hours = column(&place, "hours.csv", "sun_hours")[1];
+    let [x, y, z] = at(PLACES[1][0], PLACES[1][1], PLACES[1][2]);
+    let run = place.run(&format!("{question} --at {x},{y},{z} -o at.csv"));
+    assert_eq!((run.status, column(&place, "at.csv", "sun_hours")), (0, vec![hours]), "{run:?}");
+    let sentence = run.stdout.lines().find(|line| line.starts_with("at ")).unwrap();
+    assert!(sentence.contains(&format!("{hours:.1} h of sun a day")) && sentence.contains("first "), "{sentence}");
+    // the same place in degrees, without a height: on the ground, and no file is needed
+    let projection = Crs::from_epsg(28_992).unwrap().geographic_projection().unwrap();
+    let [latitude, longitude] = projection.unproject([x, y]).unwrap().map(f64::to_degrees);
+    let found = &place.summary(&format!("{question} --at {latitude:.8},{longitude:.8}"))["at"][0];
+    let position = |axis: usize| found["position"][axis].as_f64().unwrap();
+    // eight digits of a degree are a millimetre; the ground lies half a metre below the place, targets 0.1 m above it
+    assert!((position(0) - x).abs() < 0.01 && (position(1) - y).abs() < 0.01, "{found}");
+    assert!((position(2) - (z - 0.4)).abs() < 0.1 && found["height_from"] == "ground", "{found}");
+    let [x, y, ground] = at(0.0, 0.0, 0.0);
+    let roof = &place.summary(&format!("{question} --at {x},{y}"))["at"][0];
+    assert!(roof["position"][2].as_f64().unwrap() > ground + 2.0 && roof["height_from"] == "cover", "{roof}");
+    // a wrong place is refused before balls are made
+    let wrong = place.run(&format!("--progress json {question} --at {},{y}", x + 9000.0));
+    assert!(wrong.status != 0 && wrong.stderr.contains("the points reach from"), "{wrong:?}");
+    assert!(!wrong.stderr.contains("balls"), "{wrong:?}");
+}
