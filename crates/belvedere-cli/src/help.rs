@@ -117,9 +117,9 @@ const RARE: &[&str] = &[
 ];
 /// The same of commands with many flags.
 const RARE_IN: &[(&str, &[&str])] = &[
-    ("shadow", &["film", "self", "target-height"]),
+    ("shadow", &["certain", "film", "self", "target-height"]),
     ("sun-hours", &["target-height"]),
-    ("irradiance", &["target-height"]),
+    ("irradiance", &["min-cells", "target-height"]),
     ("cameras", &["existing", "pixels", "target-height", "tilt"]),
     ("comfort", &["directions"]),
     ("plan", &["clear-sky", "crs", "directions", "max-distance", "observer-height", "through-trees"]),

@@ -690,6 +690,44 @@ async function main() {
     assert.deepEqual(await grey.evaluate(() => [belvedere.scene.has_color, document.getElementById("color").value, document.querySelector("#color [value=color]")]), [true, "height", null]);
     await grey.close();
   });
+  await step("a cloud on its side without a unit is read as it is chosen", async () => {
+    // level ground of 12 by 12 m with a block of 4 by 4 by 3 m, y up, in centimetres
+    const rows = Array.from({ length: 3600 }, (_, i) => {
+      const [x, z] = [(i % 60) / 5, Math.floor(i / 60) / 5];
+      const isBlock = x >= 4 && x < 8 && z >= 4 && z < 8;
+      return `${100 * x} ${isBlock ? 300 : 0} ${-100 * z}`;
+    });
+    writeFileSync(join(folder, "turned.xyz"), `${rows.join("\n")}\n`);
+    const { url: other } = await serve("turned.xyz");
+    const shown = await open(browser, other);
+    await ready(shown);
+    const height = () => shown.evaluate(() => belvedere.scene.high[2] - belvedere.scene.low[2]);
+    await shown.waitForFunction(() => document.querySelector("#card #up"));
+    assert.match(await text(shown), /Y looks up in this cloud[\s\S]*Read it with y up[\s\S]*Unit, which the files do not name/);
+    assert.ok(Math.abs(await height() - 1180) < 0.1, "as it is read first");
+    await shown.click("#up");
+    await shown.waitForFunction(() => window.belvedere?.reading?.up === "y");
+    await ready(shown);
+    assert.ok(Math.abs(await height() - 300) < 0.1, "y is up");
+    const seen = async (expected) => {
+      await shown.click("#tools [data-tool=seen]");
+      await settled(shown);
+      const there = await shown.evaluate(() => {
+        for (let y = 400; y < 560; y += 3) for (let x = 400; x < 860; x += 3) if (belvedere.placeAt(x, y)) return [x, y];
+        return null;
+      });
+      await shown.mouse.click(...there);
+      await shown.waitForFunction((words) => new RegExp(words).test(document.getElementById("card").innerText), expected);
+    };
+    // points are 20 m apart, so that the ground between them is unknown
+    await seen("No answer[\\s\\S]*Read it with z up[\\s\\S]*Unit, which the files do not name");
+    await shown.selectOption("#unit", "centimetre");
+    await shown.waitForFunction(() => window.belvedere?.reading?.unit === "centimetre");
+    await ready(shown);
+    assert.ok(Math.abs(await height() - 3) < 0.001, "in metres");
+    await seen("is visible[\\s\\S]*belvedere viewshed turned\\.xyz --up y --crs 'LOCAL_CS");
+    await shown.close();
+  });
   await step("a bad file is in words", async () => {
     writeFileSync(join(folder, "bad.laz"), "LASF, but no more");
     const bad = await serve("bad.laz");

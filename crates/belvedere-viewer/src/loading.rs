@@ -1,7 +1,9 @@
 //! Loading of files while the page is open already: reading, building, and their progress.
 
+use crate::reading::ReadingChoice;
 use crate::results::{PointsOf, ResultFile};
 use crate::scene::{PageScene, ShownCloud};
+use belvedere::apps::ask::remarks_on_model;
 use belvedere::cloud::to_local;
 use belvedere::control::{Control, OpenStages, StageEnd, Watcher};
 use belvedere::io::{PlacedRaster, Source, has_point_results, read_geojson, read_point_results, read_tif};
@@ -35,6 +37,10 @@ pub(crate) struct LoadingState {
     /// Remarks on the files and the scene, shown beside every answer.
     pub(crate) remarks: Vec<Value>,
     pub(crate) failure: Option<String>,
+    /// How the cloud is read, where the page may choose otherwise.
+    pub(crate) reading: Option<ReadingChoice>,
+    /// A choice of the page that is not read yet.
+    requested: Option<ReadingChoice>,
     /// True once a page has read it.
     is_failure_read: bool,
 }
@@ -96,6 +102,27 @@ impl Loading {
         self.state().remarks.extend(values);
     }
 
+    /// Says how the cloud is read, and that it can be read in another way: the page offers the choice.
+    pub fn offer_reading(&self, reading: ReadingChoice) {
+        self.state().reading = Some(reading);
+    }
+
+    /// Forgets what there is, for a cloud that is to be read in another way; `false` where that cannot be.
+    pub(crate) fn read_again(&self, choice: ReadingChoice) -> bool {
+        let mut state = self.state();
+        if state.reading.is_none() {
+            return false;
+        }
+        *state = LoadingState { reading: Some(choice), requested: Some(choice), ..LoadingState::default() };
+        true
+    }
+
+    /// What the page chose, once.
+    #[must_use]
+    pub fn take_requested_reading(&self) -> Option<ReadingChoice> {
+        self.state().requested.take()
+    }
+
     /// Takes the model of the cloud shown, or of a ball file: questions are answered from now on.
     pub fn finish(&self, mut model: SceneModel) {
         let shown = self.state().shown.clone();
@@ -103,6 +130,7 @@ impl Loading {
         let _ = model.index(&Control::none());
         let shown =
             shown.unwrap_or_else(|| Arc::new(ShownCloud::new(Arc::new(PointCloud::in_frame(model.frame().clone())))));
+        self.remark(&remarks_on_model(&model));
         let scene = Arc::new(PageScene::new(model, Arc::clone(&shown)));
         let mut state = self.state();
         state.shown = Some(shown);

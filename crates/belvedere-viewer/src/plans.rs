@@ -84,6 +84,13 @@ impl Plans {
         })
     }
 
+    /// Forgets all of them: their scene is another one.
+    pub(crate) fn forget(&self) {
+        let mut kept = self.kept();
+        kept.plans.clear();
+        kept.meshes.clear();
+    }
+
     /// Takes a mesh file; returns its number. Reading ends when nobody waits for it any more.
     pub(crate) fn load(
         &self,

@@ -52,6 +52,7 @@ pub(crate) fn app(guard: Arc<Guard>, session: Session) -> Router {
         .route("/{token}/ask/{question}", post(ask))
         .route("/{token}/plans/{plan}/ask/{question}", post(ask))
         .route("/{token}/plan-meshes/{name}", post(plan_mesh))
+        .route("/{token}/reading", post(ask))
         .fallback(|| async { refused(StatusCode::NOT_FOUND, "there is nothing at this address") })
         .layer(DefaultBodyLimit::max(MAX_BYTES))
         .layer(from_fn_with_state(guard, check))

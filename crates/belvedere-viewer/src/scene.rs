@@ -8,6 +8,7 @@ use belvedere::apps::ask::{self, GridCells, North, SunPlace};
 use belvedere::apps::eyes::fault_of;
 use belvedere::apps::sun::Site;
 use belvedere::control::Control;
+use belvedere::crs::CrsKind;
 use belvedere::ground::{Ground, GroundPoints};
 use belvedere::model::{ClearReport, ClearedArea, SceneModel};
 use belvedere::query::{MedialScene, UnprovenAs};
@@ -86,6 +87,7 @@ impl ShownCloud {
             "origin": frame.origin,
             "metres_per_unit": frame.crs.metres_per_unit_xyz(),
             "crs": frame.crs.describe(),
+            "tells_unit": frame.crs.kind != CrsKind::Unknown,
             "low": bounds.low,
             "high": bounds.high,
             // as if points lay evenly on the map

@@ -1,5 +1,6 @@
 //! The command lines that give the same answers as the page.
 
+use crate::reading::ReadingChoice;
 use belvedere::apps::ask::{HowSure, ThroughTrees};
 
 /// The scene as it is typed on the command line.
@@ -12,6 +13,11 @@ pub struct SceneText {
 }
 
 impl SceneText {
+    /// This where somebody chose how the cloud is read.
+    pub(crate) fn read_as(&self, choice: ReadingChoice) -> Self {
+        Self { input: format!("{}{}", self.input, choice.flags()), ..self.clone() }
+    }
+
     /// A command with this scene.
     pub(crate) fn command(&self, name: &str, flags: &str) -> String {
         format!("belvedere {name} {} {flags}", self.input)

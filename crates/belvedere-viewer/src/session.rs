@@ -4,6 +4,7 @@
 use crate::loading::Loading;
 use crate::plans::Plans;
 use crate::questions::{self, RequestContext};
+use crate::reading::ReadingChoice;
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::SceneText;
 use belvedere::control::Control;
@@ -54,6 +55,7 @@ impl Session {
             "done": stage.map_or(0, |stage| stage.done),
             "failure": now.failure,
             "remarks": now.remarks,
+            "reading": now.reading,
             "mesh_count": now.meshes.len(),
             "results": now.results.iter().map(|file| file.describe()).collect::<Vec<_>>(),
             "shown": now.shown.map(|shown| shown.description.clone()),
@@ -87,15 +89,18 @@ impl Session {
     /// The reply has three parts: the length of the head in 4 bytes, little endian; the head as JSON, padded with
     /// blanks to a multiple of 4 bytes; and a value for each of many places.
     ///
+    /// `reading` has the cloud read in another way: a [`ReadingChoice`] as JSON.
+    ///
     /// # Errors
     /// [`Refusal`], in words for people.
     pub fn ask(&self, path: &str, body: &[u8], control: &Control<'_>) -> Result<Vec<u8>, Refusal> {
         let now = self.loading.now();
         let scene = now.scene.ok_or(Refusal::NotReady)?;
+        let text = self.text.read_as(now.reading.unwrap_or_default());
         let (kind, rest) = path.split_once('/').unwrap_or((path, ""));
         let reply = match kind {
             "ask" => {
-                let context = RequestContext { scene: &scene, text: &self.text, plans: &self.plans, control };
+                let context = RequestContext { scene: &scene, text: &text, plans: &self.plans, control };
                 questions::answer(rest, body, &context)?
             }
             "plans" => {
@@ -112,6 +117,15 @@ impl Session {
             "plan-meshes" => {
                 let number = self.plans.load(rest, body, scene.model().frame(), control)?;
                 QuestionReply::of(json!({ "mesh": number, "name": rest }))
+            }
+            "reading" => {
+                let refused = |error: serde_json::Error| Refusal::Unanswerable(error.to_string());
+                let choice: ReadingChoice = serde_json::from_slice(body).map_err(refused)?;
+                if !self.loading.read_again(choice) {
+                    return Err(NO_SUCH_QUESTION);
+                }
+                self.plans.forget();
+                QuestionReply::of(json!({}))
             }
             _ => return Err(NO_SUCH_QUESTION),
         };

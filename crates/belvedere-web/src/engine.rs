@@ -4,13 +4,13 @@ use belvedere::apps::ask::{remark_on_faces, remark_on_mesh, remarks_on_reading};
 use belvedere::cache::CloudKey;
 use belvedere::control::{Control, StageEnd, Watcher};
 use belvedere::io::{
-    CatalogueTile, ReadOptions, Source, Within, has_point_results, is_mesh, read_catalogue, read_cloud,
+    CatalogueTile, ReadOptions, Source, UpAxis, Within, has_point_results, is_mesh, read_catalogue, read_cloud,
     read_kept_model, read_las_head, read_mesh_in,
 };
 use belvedere::model::{ModelParams, SceneModel};
 use belvedere::shown::ShownPath;
 use belvedere::{Error, PointCloud, Result};
-use belvedere_viewer::{PointsOf, Refusal, SceneText, Session, are_results, quoted};
+use belvedere_viewer::{PointsOf, ReadingChoice, Refusal, SceneText, Session, UpAxisChoice, are_results, quoted};
 use serde::{Deserialize, Serialize};
 use std::io::{Read, Seek};
 use std::path::Path;
@@ -49,7 +49,11 @@ pub struct OpenRequest {
     /// Reference system of files that name none, such as `EPSG:7415`.
     #[serde(default)]
     pub crs: Option<String>,
-    /// Only points between these corners of the map are read: west, south, east, north in the coordinates of the file.
+    /// How files are read that do not say it.
+    #[serde(default)]
+    pub reading: ReadingChoice,
+    /// Only points between these corners of the map are read: west, south, east, north in the coordinates of the file,
+    /// turned where y is up.
     #[serde(default)]
     pub window: Option<[f64; 4]>,
     /// Maximum number of points that the memory has room for.
@@ -83,10 +87,18 @@ impl Engine {
         let session = Session::new(first.name.clone(), text);
         let sources = chosen.clouds.iter().map(|file| source(file, host));
         let mut options = ReadOptions::new();
-        options.crs.clone_from(&request.crs);
-        options.within = request.window.map(|[west, south, east, north]| Within::File {
-            low: [west, south, f64::NEG_INFINITY],
-            high: [east, north, f64::INFINITY],
+        let mut reading = request.reading;
+        reading.unit = reading.unit.filter(|_| request.crs.is_none());
+        options.crs = request.crs.clone().or_else(|| reading.crs());
+        if reading.up == UpAxisChoice::Y {
+            options.up = UpAxis::Y;
+        }
+        session.loading().offer_reading(reading);
+        let far = f64::INFINITY;
+        // of the axes that files have
+        options.within = request.window.map(|[west, south, east, north]| match request.reading.up {
+            UpAxisChoice::Z => Within::File { low: [west, south, -far], high: [east, north, far] },
+            UpAxisChoice::Y => Within::File { low: [west, -far, -north], high: [east, far, -south] },
         });
         let reporting = Reporting(host);
         let control = Control::new(&reporting);
@@ -329,7 +341,8 @@ mod tests {
 
     fn request(max_points: u64) -> OpenRequest {
         let file = OpenedFile { name: "block.xyz".to_owned(), id: 0, size: 0 };
-        OpenRequest { files: vec![file], crs: Some("EPSG:7415".to_owned()), window: None, max_points }
+        let reading = ReadingChoice::default();
+        OpenRequest { files: vec![file], crs: Some("EPSG:7415".to_owned()), reading, window: None, max_points }
     }
 
     fn head(reply: &[u8]) -> Value {
@@ -400,6 +413,41 @@ mod tests {
         assert_eq!((&line(1.0)["answer"], &line(4.0)["answer"]), (&json!("blocked"), &json!("visible")));
         assert!(line(1.0)["command"].as_str().unwrap().contains("block.xyz --crs EPSG:7415"));
         assert_eq!(host.stages.lock().unwrap()[0], "reading");
+    }
+
+    #[test]
+    fn what_the_files_do_not_say_is_chosen() {
+        let mut host = block();
+        // the block on its side, in millimetres: y is up
+        let text = String::from_utf8(host.files.remove(0)).unwrap();
+        let turned = text.lines().skip(1).map(|line| {
+            let v: Vec<f64> = line.split(' ').map(|v| 1000.0 * v.parse::<f64>().unwrap()).collect();
+            format!("{:.0} {:.0} {:.0}\n", v[0] - 1000.0 * WEST, v[2], 1000.0 * SOUTH - v[1])
+        });
+        host.files.push(format!("x y z\n{}", turned.collect::<String>()).into_bytes());
+        let state = |engine: &Engine| -> Value { serde_json::from_slice(&engine.session().state()).unwrap() };
+        let request = OpenRequest { crs: None, ..request(10_000) };
+        let mut engine = Engine::open(&request, &host).unwrap();
+        engine.build(&host).unwrap();
+        let said = state(&engine);
+        assert_eq!((&said["reading"]["up"], &said["shown"]["tells_unit"]), (&json!("z"), &json!(false)));
+        assert!(said["remarks"].as_array().unwrap().iter().any(|remark| remark["key"] == "y-looks-up"), "{said}");
+
+        let reading = serde_json::from_value(json!({ "up": "y", "unit": "millimetre" })).unwrap();
+        let mut engine = Engine::open(&OpenRequest { reading, ..request }, &host).unwrap();
+        engine.build(&host).unwrap();
+        let said = state(&engine);
+        assert_eq!((&said["remarks"], &said["shown"]["tells_unit"]), (&json!([]), &json!(true)));
+        let size =
+            |axis: usize| said["shown"]["high"][axis].as_f64().unwrap() - said["shown"]["low"][axis].as_f64().unwrap();
+        assert!(
+            [11.8, 11.8, 3.0].into_iter().enumerate().all(|(axis, side)| (size(axis) - side).abs() < 0.05),
+            "{said}"
+        );
+        let question = json!({ "observer": [1000, 6000, 1000], "target": [11000, 6000, 1000] }).to_string();
+        let answer = head(&engine.session().ask("ask/line", question.as_bytes(), &Control::none()).unwrap());
+        assert_eq!(answer["answer"], "blocked");
+        assert!(answer["command"].as_str().unwrap().contains("--up y --crs 'LOCAL_CS"), "{answer}");
     }
 
     #[test]

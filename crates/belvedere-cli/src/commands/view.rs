@@ -1,7 +1,7 @@
 //! `belvedere view`.
 
 use super::check_output;
-use crate::arguments::{Global, MapPosition, MethodChoice, SceneInput, Usage, ViewPage};
+use crate::arguments::{CloudInput, Global, MapPosition, MethodChoice, SceneInput, UpChoice, Usage, ViewPage};
 use crate::environment::words;
 use crate::interrupt;
 use crate::memory::available_bytes;
@@ -17,7 +17,8 @@ use belvedere::model::SceneModel;
 use belvedere::{Bounds, Error, Frame, PointCloud};
 use belvedere_tiles::{Plan, merged_within};
 use belvedere_viewer::{
-    ExportParams, Loading, PageServer, PointsOf, SceneText, ViewerParams, are_results, export, quoted,
+    ExportParams, Loading, PageServer, PointsOf, ReadingChoice, SceneText, UpAxisChoice, ViewerParams, are_results,
+    export, quoted,
 };
 use std::borrow::Cow;
 use std::io::Write;
@@ -53,16 +54,40 @@ pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
         note(&format!("the browser cannot be opened ({error}): open the address above"));
     }
     let loading = viewer.loading();
+    // what is typed is not asked for, and a file of balls is in metres with z up
+    let is_open = |input: &CloudInput| input.crs.is_none() && input.up == UpChoice::Z && input.bounds.is_none();
+    if files.balls.is_none() && files.runs.is_empty() && is_open(&arguments.scene.input) {
+        loading.offer_reading(ReadingChoice::default());
+    }
     let mut run = CommandContext::watched(global, loading.clone());
-    match load(&arguments.scene, &files, &loading, &|_, _| Ok(()), &mut run) {
+    show(&arguments.scene, &files, &loading, &mut run, global)?;
+    note("ready; Ctrl-C ends it");
+    while !interrupt::is_requested() {
+        std::thread::sleep(POLL);
+        if let Some(choice) = loading.take_requested_reading() {
+            let mut scene = arguments.scene.clone();
+            scene.input.up = if choice.up == UpAxisChoice::Y { UpChoice::Y } else { UpChoice::Z };
+            scene.input.crs = choice.crs().or(scene.input.crs);
+            show(&scene, &files, &loading, &mut CommandContext::watched(global, loading.clone()), global)?;
+        }
+    }
+    drop(viewer);
+    Ok(Summary::default())
+}
+
+/// Shows what was typed, and offers to read it in another way where its files may not tell how.
+fn show(scene: &SceneInput, files: &Files, loading: &Loading, run: &mut CommandContext, global: &Global) -> Result<()> {
+    match load(scene, files, loading, &|_, _| Ok(()), run) {
         Ok((_, model)) => {
             run.summary.print_remarks(global);
             loading.remark(run.summary.remarks_so_far());
             loading.finish(model);
+            Ok(())
         }
         Err(error) if error.is::<TooManyPoints>() => {
             run.summary.warn("balls-not-built", format!("only the points are shown: {error}")).print_remarks(global);
             loading.fail(format!("Only the points are shown: {error}."));
+            Ok(())
         }
         Err(error) => {
             // the page says it too, if there is one
@@ -73,15 +98,9 @@ pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
             }
             // what was read is on its way
             std::thread::sleep(Duration::from_millis(250));
-            return Err(error);
+            Err(error)
         }
     }
-    note("ready; Ctrl-C ends it");
-    while !interrupt::is_requested() {
-        std::thread::sleep(POLL);
-    }
-    drop(viewer);
-    Ok(Summary::default())
 }
 
 /// A cloud that is shown, but whose balls do not fit into memory.

@@ -13,7 +13,7 @@ const wordsOf = (hash) => new URLSearchParams(hash.slice(1));
 function written() {
   const { tool, time, places } = page;
   // a page that opens files itself has there what it opened
-  const opened = [...wordsOf(location.hash)].filter(([name]) => ["open", "crs", "window"].includes(name));
+  const opened = [...wordsOf(location.hash)].filter(([name]) => ["open", "crs", "window", "up", "unit"].includes(name));
   const words = { ...Object.fromEntries(opened), q: tool.name, d: time.date, t: clockText(time.minutes), z: time.zone };
   if (time.trees !== "opaque") words.trees = time.trees;
   if ($("outlines").getAttribute("aria-pressed") === "true") words.edges = "yes";

@@ -6,12 +6,15 @@ import { firstAnswer } from "./first.js";
 import { report } from "./messages.js";
 import { loadColors, offerColors, paint, scaleHeights, setColor } from "./paint.js";
 import { restore } from "./plan.js";
+import { offerReading } from "./reading.js";
 import { offer } from "./results.js";
 import { $, page } from "./state.js";
 import { startTime } from "./time.js";
 import { cloud, draw, drawNext, renderer, showAll } from "./view.js";
 import { count, stage, t } from "./words.js";
 
+// of heights, by the metres in one; feet differ in the sixth digit
+const UNITS = { 1: "m", 0.01: "cm", 0.001: "mm" };
 async function load(shown) {
   const { scene } = page;
   showAll();
@@ -39,7 +42,7 @@ function begin(state) {
   const shown = state.shown;
   const [, , up] = shown.metres_per_unit;
   page.scene = {
-    ...shown, title: state.title, unit: up === 1 ? "m" : "ft", latitude_deg: null,
+    ...shown, title: state.title, unit: UNITS[up] ?? "ft", latitude_deg: null,
     heights: [shown.low, shown.high].map((corner) => (corner[2] + shown.origin[2]) / up),
   };
   if (!shown.point_count && state.scene) Object.assign(page.scene, { low: state.scene.low, high: state.scene.high, spacing: 0.3 });
@@ -73,12 +76,13 @@ export async function watch() {
       Object.assign(page.scene, { ...state.scene, low: page.scene.low, high: page.scene.high });
       page.ready = true;
       page.remarks = state.remarks;
+      page.reading = state.reading;
       startTime();
       if (!state.shown.point_count) toggleBalls();
       $("trees").hidden = !state.scene.has_vegetation;
       $("outlines").hidden = api.exported || !state.scene.roof_count;
       const first = () => recall() || firstAnswer(state.results);
-      (api.exported ? Promise.resolve() : restore().catch(report)).then(first).catch(report);
+      (api.exported ? Promise.resolve() : restore().catch(report)).then(first).then(offerReading).catch(report);
       if (page.pending) page.ask();
       offer(state.results).catch(report);
     }

@@ -8,6 +8,7 @@ import { measurePanel } from "./measure.js";
 import { hint, lost, report } from "./messages.js";
 import { finish, isChange, outline, panel, planInUse } from "./plan.js";
 import { setColor } from "./paint.js";
+import { listenToReading, readingChoices } from "./reading.js";
 import { csv, diagram, geojson, picture, save } from "./save.js";
 import { $, canvas, page, toolOf, TOOLS } from "./state.js";
 import { changed } from "./change.js";
@@ -228,7 +229,7 @@ export async function ask(quick = false) {
   } catch (error) {
     if (error.name === "AbortError") return;
     if (error instanceof api.Lost) return lost(error);
-    card(`<p class="verdict">${t`No answer`}</p><p class="note">${escape(error.message)}</p>`);
+    card(`<p class="verdict">${t`No answer`}</p><p class="note">${escape(error.message)}</p>${readingChoices()}`, listenToReading);
   } finally {
     clearTimeout(busy);
     if (asking === mine) asking = null;
@@ -261,9 +262,10 @@ function showAnswer(tool, answer, places) {
   const sure = offersSure(tool) && !answer.before ? `<button id="sure" aria-pressed="${page.isSure}">${t`Show how sure each answer is`}</button>` : "";
   const compare = tool.between && !api.exported && !answer.isPlanned ? `<button id="compare" aria-pressed="${Boolean(page.compared)}">${page.compared ? t`Compare no longer` : t`Compare this time with another`}</button>` : "";
   const more = sure || compare ? `<div class="row">${sure}${compare}</div>` : "";
-  card(`${html}${more}${time ? `<p class="note" id="oftime">${escape(time)}</p>` : ""}${remarks({ remarks: together(answer.remarks, page.remarks) })}${where}<h3>${t`The same on the command line`}</h3><pre id="command">${words(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">${t`Copy command`}</button>${buttons}</div>`
+  card(`${html}${more}${time ? `<p class="note" id="oftime">${escape(time)}</p>` : ""}${remarks({ remarks: together(answer.remarks, page.remarks) })}${readingChoices()}${where}<h3>${t`The same on the command line`}</h3><pre id="command">${words(shown.command ?? answer.command)}</pre><div class="row"><button data-save="copy">${t`Copy command`}</button>${buttons}</div>`
     + `<p class="note" id="took">${api.exported ? t`Stored in this file.` : t`Answered in ${Math.round(answer.took)} ms.`}</p>`, (box) => {
     shown.after?.(box);
+    listenToReading(box);
     const comparing = box.querySelector("#compare");
     if (comparing) comparing.onclick = () => {
       const [, { time, zone }] = tool.ask(places, timeNow());

@@ -1,6 +1,6 @@
 // The first screen of a page that opens files itself.
 import { extentOf, isCatalogue, meeting } from "./catalogue.js";
-import { report } from "./messages.js";
+import { hint, report } from "./messages.js";
 import { $, page } from "./state.js";
 import { count, fixed, LANGUAGES, language, setLanguage, t } from "./words.js";
 import { open, tilesOf } from "./engines/worker.js";
@@ -80,7 +80,8 @@ function begin(files, whenOpen) {
   $("start").hidden = true;
   $("progress").hidden = false;
   page.failure = null;
-  const options = { max_points: maxPoints(), ...(crs ? { crs } : {}), ...(corners.length ? { window: corners } : {}) };
+  const reading = { up: $("up-chosen").value || "z", unit: $("unit-chosen").value || null };
+  const options = { max_points: maxPoints(), reading, ...(crs ? { crs } : {}), ...(corners.length ? { window: corners } : {}) };
   if (files.length === 1 && files[0].url && isCatalogue(files[0].url)) return beginCatalogue(files[0].url, options, whenOpen);
   const openPart = (window) => {
     open(files, { ...options, window }, () => {});
@@ -167,7 +168,7 @@ export function startScreen(whenOpen) {
   }
   $("address").onsubmit = (event) => {
     event.preventDefault();
-    const words = { open: "address-typed", crs: "crs-typed", window: "window-typed" };
+    const words = { open: "address-typed", crs: "crs-typed", window: "window-typed", up: "up-chosen", unit: "unit-chosen" };
     const typed = Object.entries(words).map(([name, id]) => [name, $(id).value.trim()]).filter(([, value]) => value);
     // a link to all of it
     history.replaceState(null, "", `#${new URLSearchParams(typed)}`);
@@ -190,6 +191,13 @@ export function startScreen(whenOpen) {
   const words = fromFragment();
   $("crs-typed").value = words.get("crs") ?? "";
   $("window-typed").value = words.get("window") ?? "";
+  if (words.get("up") === "y") $("up-chosen").value = "y";
+  $("unit-chosen").value = words.get("unit") ?? "";
+  const isChosen = $("up-chosen").value || $("unit-chosen").value;
+  if (isChosen && !words.get("open")) {
+    $("address").parentElement.open = true;
+    hint(t`Choose the files again: they are read as chosen below.`);
+  }
   if (words.get("open")) begin([ofAddress(words.get("open"))], whenOpen);
 }
 // The program's parts are kept for use without a network, and the page may share memory between threads.

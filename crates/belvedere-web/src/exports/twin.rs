@@ -3,6 +3,7 @@
 use super::{HostFile, ask, build, give, open, scene_file, take};
 use crate::engine::{Engine, Host, OpenRequest, OpenedFile};
 use belvedere::control::Control;
+use belvedere_viewer::ReadingChoice;
 use serde_json::json;
 use std::cell::RefCell;
 use std::io::{Cursor, Read, Seek, SeekFrom};
@@ -119,7 +120,13 @@ fn files_read_through_the_border_are_those_read_without_it() {
     let file = || OpenedFile { name: "floor.xyz".to_owned(), id: 0, size: floor().len() as u64 };
     *FILES.lock().unwrap() = vec![floor(), Vec::new()];
     let host = InMemory(vec![floor()]);
-    let request = OpenRequest { files: vec![file()], crs: None, window: None, max_points: 10_000 };
+    let request = OpenRequest {
+        files: vec![file()],
+        crs: None,
+        reading: ReadingChoice::default(),
+        window: None,
+        max_points: 10_000,
+    };
     let mut twin = Engine::open(&request, &host).unwrap();
     let wanted = json!({ "files": [{ "name": "floor.xyz", "id": 0, "size": floor().len() }], "max_points": 10_000 });
     let state = |bytes: &[u8]| serde_json::from_slice::<serde_json::Value>(bytes).unwrap();

@@ -25,5 +25,10 @@ export const http = {
   part: async (path) => (await get(path)).arrayBuffer(),
   result: async (number) => split(await (await get(`results/${number}`)).arrayBuffer()),
   ask: async (path, values, signal) => split(await (await get(path, post("application/json", JSON.stringify(values), signal))).arrayBuffer()),
+  readAgain: async (choice) => {
+    await get("reading", post("application/json", JSON.stringify(choice)));
+    // places and views are those of the cloud as it was read
+    location.replace(location.pathname);
+  },
   loadMesh: async (file) => split(await (await get(`plan-meshes/${encodeURIComponent(file.name)}`, post("application/octet-stream", file))).arrayBuffer()),
 };

@@ -70,12 +70,13 @@ function heard({ data }) {
 
 // Opens files that were chosen or dropped, or addresses: `{ name, file }` or `{ name, url }` each. Files with more
 // points than fit are not read: `choose` gets their number and their corners.
-let whenTooMany = null;
+let whenTooMany = null, opened = null;
 export function open(files, options, choose) {
   worker?.terminate();
   state = { ...EMPTY };
   lost = null;
   whenTooMany = choose;
+  opened = { files, ...options };
   worker = new Worker("engine-worker.js");
   worker.onmessage = heard;
   worker.onerror = (event) => lose(event.message ?? "the worker ended");
@@ -100,5 +101,12 @@ export const inBrowser = {
   part: async (path) => (path === "balls" || path.startsWith("meshes/") ? send(path, "") : partOf(path).promise.then((bytes) => { parts.delete(path); return bytes; })),
   result: async (number) => split(await send(`results/${number}`, "")),
   ask: async (path, values, signal) => split(await send(path, JSON.stringify(values), signal)),
+  // files of this computer are forgotten with the page, and are chosen again
+  readAgain: async (choice) => {
+    const { files: [{ url }], crs, window: corners } = opened;
+    const words = { open: url, crs, window: corners?.join(","), ...choice };
+    location.hash = new URLSearchParams(Object.entries(words).filter(([, value]) => value));
+    location.reload();
+  },
   loadMesh: async (file) => split(await send(`plan-meshes/${file.name}`, new Uint8Array(await file.arrayBuffer()))),
 };
