@@ -104,8 +104,8 @@ macro_rules! attributes {
         }
 
         impl Attributes {
-            /// Selects the attributes of the points at `indices`, in that order. Columns that are too short for an index
-            /// are dropped.
+            /// Selects the attributes of the points at `indices`, in that order. Columns that are too short for an
+            /// index are dropped.
             #[must_use]
             pub fn select(&self, indices: &[u32]) -> Self {
                 Self {

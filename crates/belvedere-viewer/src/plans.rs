@@ -86,7 +86,7 @@ impl Plans {
 
     /// Forgets all of them: their scene is another one.
     pub(crate) fn forget(&self) {
-        let mut kept = self.kept();
+        let mut kept = self.lock_kept();
         kept.plans.clear();
         kept.meshes.clear();
     }

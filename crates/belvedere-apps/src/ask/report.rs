@@ -57,7 +57,7 @@ pub struct Report {
     /// Counts of places by outcome.
     #[serde(flatten)]
     pub places: PlacesReport,
-    /// Single places that were asked about.
+    /// Single places of the question.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub at: Vec<PlaceSection>,
     /// Observers.

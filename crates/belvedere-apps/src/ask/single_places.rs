@@ -21,7 +21,7 @@ const MAX_FIGURES: usize = 5;
 /// How far beside a cloud a place may lie, metres: as far as targets are taken.
 const MARGIN: f64 = 1.0;
 
-/// A place that was asked about.
+/// A single place of a question.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PlaceSection {
     /// Position in the coordinates of the file; the height is NaN where none is known.

@@ -12,8 +12,8 @@ pub(super) struct ClosedRoomParams {
     min_smooth: f64,
     /// Maximum ratio of two ranges that are alike, above 1. Default 1.15.
     max_ratio: f64,
-    /// Maximum share of all directions of a gap that the surface around it bounds, 0 to 1. Default 0.02: a floor below a
-    /// tripod.
+    /// Maximum share of all directions of a gap that the surface around it bounds, 0 to 1. Default 0.02: a floor below
+    /// a tripod.
     max_gap_share: f64,
     /// Maximum width of a gap that counts as closed at any length, metres. Default 0.5: scans have no points where a
     /// ceiling meets a wall.

@@ -54,7 +54,7 @@ pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
         note(&format!("the browser cannot be opened ({error}): open the address above"));
     }
     let loading = viewer.loading();
-    // what is typed is not asked for, and a file of balls is in metres with z up
+    // what is typed is not offered, and a file of balls is in metres with z up
     let is_open = |input: &CloudInput| input.crs.is_none() && input.up == UpChoice::Z && input.bounds.is_none();
     if files.balls.is_none() && files.runs.is_empty() && is_open(&arguments.scene.input) {
         loading.offer_reading(ReadingChoice::default());

@@ -1,5 +1,5 @@
-//! Detects areas of class-2 points that are offset by 0.7 m or more from other points of class 2: at the same places, or
-//! in the next strip.
+//! Detects areas of class-2 points that are offset by 0.7 m or more from other points of class 2: at the same places,
+//! or in the next strip.
 //!
 //! A step alone is no evidence: quays, terraces and pits have one. No terrain lies at two heights in the same places
 //! over an area, or steps where one strip ends and the next begins. Areas are squares of a few cells, so that a wall,

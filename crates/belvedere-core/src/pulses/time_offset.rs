@@ -16,8 +16,8 @@ struct TimeOffsetParams {
     min_length: f64,
     /// Minimum number of such pulses. Default 100.
     min_pairs: usize,
-    /// Maximum number of such pulses that are tested. Default 2000: their median angle is accurate to some hundredths of
-    /// a degree.
+    /// Maximum number of such pulses that are tested. Default 2000: their median angle is accurate to some hundredths
+    /// of a degree.
     max_pairs: usize,
     /// Maximum offset, seconds. Default 30: UTC is 13 to 18 s behind GPS time since 1999, and clocks were set by hand.
     max_offset: f64,
@@ -145,8 +145,8 @@ pub(super) fn time_offset(
     })
 }
 
-/// Returns the median angle between pulses and the directions to a path that is `shift` seconds later, radians. `None` if
-/// the path is known for less than the share `min_known` of them.
+/// Returns the median angle between pulses and the directions to a path that is `shift` seconds later, radians. `None`
+/// if the path is known for less than the share `min_known` of them.
 fn median_angle(pairs: &[&PulsePair], trajectory: &Trajectory, shift: f64, min_known: f64) -> Option<f64> {
     let angle = |pair: &&PulsePair| {
         let from_scanner = sub(pair.first, trajectory.position_at(pair.time + shift)?);

@@ -28,7 +28,8 @@ struct RoomParams {
     min_wall_share: f64,
     /// Maximum height as a share of the shorter side, if nothing but its extents shows the height. Default 0.8.
     max_height: f32,
-    /// Minimum height as a share of the longer side. Default 0.04: a ceiling over a field is a town seen from far above.
+    /// Minimum height as a share of the longer side. Default 0.04: a ceiling over a field is a town seen from far
+    /// above.
     min_height: f32,
     /// Minimum and maximum height of a room, metres. Default 2.1 to 9: building rules require 2.1 m and more, and
     /// stairwells and halls have up to three storeys.

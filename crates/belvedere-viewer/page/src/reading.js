@@ -1,4 +1,4 @@
-// How a cloud is read that does not say it: the axis that is up and the unit, which are offered where they are in doubt.
+// The up axis and the unit of a cloud that does not name them: both are offered where they are in doubt.
 import * as api from "./api.js";
 import { report } from "./messages.js";
 import { card, remarks } from "./questions.js";
