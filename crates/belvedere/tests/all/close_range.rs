@@ -14,7 +14,7 @@ use belvedere_scenes::{
 };
 
 /// Side of the town, metres.
-const EXTENT: f64 = 70.0;
+const EXTENT: f64 = 100.0;
 const SEED: u64 = 5;
 
 /// The model of a scan whose stations are known, or whose trajectory is; and the cloud.
@@ -101,7 +101,7 @@ fn stations_of_points_are_found_by_their_ids_and_missing_ones_are_reported() {
 #[test]
 fn streets_scanned_from_tripods_are_seen_as_they_are() {
     let scene = town(&Preset::Town.params(EXTENT, SEED));
-    let params = TerrestrialParams { seed: SEED, stations: Stations::Chosen(8), ..TerrestrialParams::default() };
+    let params = TerrestrialParams { seed: SEED, stations: Stations::Chosen(12), ..TerrestrialParams::default() };
     // a sixteenth of the pulses of such a scanner
     let scan = scan_terrestrial(&scene, &TerrestrialParams { angular_step: 4.0 * params.angular_step, ..params });
     let (cloud, model) = built(&scan);
