@@ -21,6 +21,11 @@ impl SunPlaceArguments {
         self.place(&NorthArguments { grid_north: false })
     }
 
+    /// The latitude that was typed, radians.
+    pub(crate) fn latitude(&self) -> Option<f64> {
+        self.location.map(|location| location.0[0].to_radians())
+    }
+
     /// By how much air lifts the sun.
     pub(crate) fn refraction(&self) -> Result<Refraction> {
         match (self.elevation, &self.air) {

@@ -12,6 +12,7 @@ use belvedere::apps::ask::{self, Answers, Ask, Context, OnTargets, Places, Prepa
 use belvedere::apps::rows::{RowBlock, fold_rows};
 use belvedere::apps::sun_hours::SunSums;
 use belvedere::apps::targets::Targets;
+use belvedere::apps::tree_light::Season;
 use belvedere::io::{MatrixHead, read_matrix_head, read_matrix_rows, write_matrix_rows};
 use belvedere::query::{VisibilityMatrix, scene_fingerprint};
 use std::path::Path;
@@ -89,14 +90,14 @@ fn with_matrix(
         origin: targets.frame.origin,
         targets: targets.positions.clone(),
         directions: plan.directions().to_vec(),
-        scene: fingerprint(scene),
+        scene: fingerprint(scene, leaves_of(&prepared)?),
     };
-    let mut sums = SunSums::default();
+    let (mut sums, factor) = (SunSums::default(), leaves_of(&prepared)?.unwrap_or_default());
     run.stage("testing sun", targets.len(), |control| {
         write_matrix_rows(file, &head, |sink| {
             fold_rows(prepared.obstacles().into(), &targets.positions, plan.directions(), control, |block| {
                 // a matrix has a yes or no for each line, also of those through crowns
-                let block = RowBlock { matrix: block.free_lines()?, crowns: None, ..block };
+                let block = RowBlock { matrix: block.free_lines(factor)?, crowns: None, ..block };
                 (0..block.matrix.target_count()).try_for_each(|row| sink(block.matrix.row(row)))?;
                 sums.add(plan, &block, targets.normals.as_deref(), None)
             })
@@ -115,7 +116,7 @@ fn from_matrix(
 ) -> Result<Answers<OnTargets>> {
     let mut context = Context::default();
     let prepared = question.prepare(scene, places, Some(&head.directions), &mut context, &run.control())?;
-    check_kept(head, prepared.targets(), fingerprint(scene))?;
+    check_kept(head, prepared.targets(), fingerprint(scene, leaves_of(&prepared)?))?;
     let sums = run.stage("reading matrix", prepared.targets().len(), |control| {
         let mut sums = SunSums::default();
         let mut first = 0;
@@ -149,17 +150,36 @@ fn add_rows(
     sums.add(&prepared.plan, &block, prepared.targets().normals.as_deref(), None)
 }
 
-/// The number by which a matrix knows the balls that it was made of.
-fn fingerprint(scene: &Scene) -> u64 {
+/// The number by which a matrix knows the balls that it was made of, and the leaves of crowns that were measured.
+fn fingerprint(scene: &Scene, leaves: Option<f64>) -> u64 {
     let model = scene.model();
-    scene_fingerprint(model.balls(), model.added(), model.far_terrain(), scene.rule())
+    let of_balls = scene_fingerprint(model.balls(), model.added(), model.far_terrain(), scene.rule());
+    // a factor of 0 does not occur
+    of_balls ^ leaves.map_or(0, f64::to_bits)
+}
+
+/// By what the depth of crowns that were measured is multiplied on all days; `None` where they are solid.
+///
+/// # Errors
+/// A usage error for days of several seasons: bits of a matrix are those of one.
+fn leaves_of(prepared: &PreparedSun) -> Result<Option<f64>> {
+    let Some(crowns) = prepared.obstacles().trees.map(|trees| trees.crowns) else { return Ok(None) };
+    let mut factors = prepared.plan.dates().map(|date| crowns.factor(Some(Season::on(date, &prepared.site))));
+    let first = factors.next();
+    match first.is_some_and(|first| factors.all(|other| other == first)) {
+        true => Ok(first),
+        false => {
+            let what = "--save-matrix and --load-matrix need days of one season, since crowns change with leaves; give --leaves, or --through-trees none";
+            Err(Usage(what.to_owned()).into())
+        }
+    }
 }
 
 /// Refuses bits that were kept for other places or balls.
 fn check_kept(kept: &MatrixHead, targets: &Targets, scene: u64) -> Result<()> {
     if kept.scene != scene {
         bail!(
-            "--load-matrix: the matrix is for other balls, or for another --add, --terrain, --horizon or --shell; make it again with --save-matrix"
+            "--load-matrix: the matrix is for other balls, other leaves, or for another --add, --terrain, --horizon or --shell; make it again with --save-matrix"
         );
     }
     let same = |a: &[f32; 3], b: &[f32; 3]| a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits());
