@@ -201,13 +201,13 @@ impl LineLight {
     }
 
     /// Returns true if the line counts as free for a yes or no: half or more of the light passes the measured crowns,
-    /// and nothing else is there.
+    /// whose depth is multiplied by `factor`, and nothing else is there.
     #[must_use]
-    pub fn is_free(self) -> bool {
+    pub fn is_free(self, factor: f64) -> bool {
         match self {
             Self::Free => true,
             Self::Blocked | Self::Crown => false,
-            Self::Depth(depth) => depth <= HALF_DEPTH,
+            Self::Depth(depth) => factor * depth <= HALF_DEPTH,
         }
     }
 }
@@ -244,17 +244,17 @@ impl RowBlock<'_> {
         (0..self.matrix.direction_count()).map(|column| self.line(row, column).share(factor)).collect()
     }
 
-    /// The bits of [`LineLight::is_free`] of all lines of the block.
+    /// The bits of [`LineLight::is_free`] of all lines of the block, where crowns have this [`CrownLight::factor`].
     ///
     /// # Errors
     /// Those of [`VisibilityMatrix::from_words`].
-    pub fn free_lines(&self) -> Result<VisibilityMatrix> {
+    pub fn free_lines(&self, factor: f64) -> Result<VisibilityMatrix> {
         if !matches!(self.crowns, Some(CrownRows::Measured { .. })) {
             return Ok(self.matrix.clone());
         }
         let (targets, directions) = (self.matrix.target_count(), self.matrix.direction_count());
         let of_target = |row: usize| {
-            let bit = |column: usize| u64::from(column < directions && self.line(row, column).is_free());
+            let bit = |column: usize| u64::from(column < directions && self.line(row, column).is_free(factor));
             (0..directions.div_ceil(64))
                 .map(|word| (0..64).fold(0, |bits, place| bits | bit(64 * word + place) << place))
                 .collect::<Vec<u64>>()

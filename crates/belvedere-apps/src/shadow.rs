@@ -159,8 +159,11 @@ pub fn lit_probabilities(
     let normals = targets.normals.as_deref();
     check_normals(normals, targets.len())?;
     let viewer = Viewer::Direction(sun.to_sun);
-    let mut found = match trees.and_then(|trees| Some((&*trees.opaque, trees.medium.as_deref()?))) {
-        Some(crowns) => scene.lit_probabilities(crowns, viewer, &targets.positions, control)?,
+    let mut found = match trees.and_then(|trees| Some((trees, trees.medium.as_deref()?))) {
+        Some((trees, medium)) => {
+            let crowns = (&*trees.opaque, medium, trees.crowns.factor(sun.season));
+            scene.lit_probabilities(crowns, viewer, &targets.positions, control)?
+        }
         None => scene.visible_probabilities(viewer, &targets.positions, control)?,
     };
     for (row, probability) in found.iter_mut().enumerate().filter(|(_, probability)| !probability.is_nan()) {

@@ -187,13 +187,18 @@ impl Outlines {
         (0..self.directions.len()).filter(is_at_outline).map(weight).sum::<f64>() / (2.0 * self.spacing)
     }
 
-    /// The class of each target of a block, whose first columns are these directions, by which of the targets are
-    /// inside obstacles. A target that is turned away from a direction by its normal does not see it.
+    /// The class of each target of a block, whose first columns are these directions and whose crowns have a
+    /// [`factor`](crate::tree_light::CrownLight::factor), by which of the targets are inside obstacles. A target that is turned away from a direction by its normal does not see it.
     ///
     /// # Errors
     /// Those of [`RowBlock::free_lines`].
-    pub fn classes(&self, block: &RowBlock<'_>, are_inside: &[bool], normals: Option<&[[f32; 3]]>) -> Result<Vec<u8>> {
-        let free = block.free_lines()?;
+    pub fn classes(
+        &self,
+        (block, factor): (&RowBlock<'_>, f64),
+        are_inside: &[bool],
+        normals: Option<&[[f32; 3]]>,
+    ) -> Result<Vec<u8>> {
+        let free = block.free_lines(factor)?;
         let normals = normals_of(normals, &block.rows);
         let class = |row: usize| {
             let normal = normals.and_then(|normals| normals.get(row)).map(|normal| normal.map(f64::from));

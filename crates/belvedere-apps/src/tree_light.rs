@@ -2,12 +2,11 @@
 //!
 //! Where pulses measured crowns, these are a medium: the share that gets along a line follows from its optical depth,
 //! and the balls that are no vegetation block beside it. Otherwise crowns are balls. Two matrices tell what all balls
-//! leave
-//! free and what those leave free that are not vegetation; what is free in the second only gets a constant share.
+//! leave free and what those leave free that are not vegetation; what is free in the second only gets a constant share.
 
 use crate::sun::{Date, Site};
 use belvedere_core::medium::Medium;
-use belvedere_core::model::SceneModel;
+use belvedere_core::model::{FlightDays, SceneModel};
 use belvedere_core::query::{BlockRule, MedialScene};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
@@ -95,7 +94,8 @@ impl Transmissivity {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Leaves {
-    /// Foliage of the date, by [`Foliage::on_day`]; in leaf for a question without a date. Default.
+    /// Foliage of the date, by [`Foliage::on_day`]. Without a date measured crowns are as they were then, and others in
+    /// leaf. Default.
     #[default]
     ByDate,
     /// In leaf, whatever the date.
@@ -105,13 +105,13 @@ pub enum Leaves {
 }
 
 impl Leaves {
-    /// The leaves of a season; `None` where a question has no date.
+    /// The leaves in a season; `None` where neither says what they are.
     #[must_use]
-    pub fn foliage(self, season: Option<Season>) -> Foliage {
-        match (self, season) {
-            (Self::Off, _) => Foliage::Bare,
-            (Self::ByDate, Some(Season { day_of_year, latitude })) => Foliage::on_day(day_of_year, latitude),
-            (Self::On, _) | (Self::ByDate, None) => Foliage::InLeaf,
+    pub fn foliage(self, season: Option<Season>) -> Option<Foliage> {
+        match self {
+            Self::Off => Some(Foliage::Bare),
+            Self::On => Some(Foliage::InLeaf),
+            Self::ByDate => season.map(|Season { day_of_year, latitude }| Foliage::on_day(day_of_year, latitude)),
         }
     }
 }
@@ -146,16 +146,31 @@ pub enum CrownLight {
     },
     /// Extinction that pulses measured in each voxel ([`belvedere_core::medium`]).
     Measured {
-        /// Choice of the foliage, for a survey flown in leaf; `None` for the foliage of the survey on all dates.
-        leaves: Option<Leaves>,
+        /// Choice of the foliage.
+        leaves: Leaves,
+        /// Density of crowns when they were measured ([`measured_density`]); `None` if it is not known: crowns stay as
+        /// they were, whatever the date.
+        density: Option<f64>,
+        /// Kind of the shadows behind them.
+        shadows: CrownShadows,
     },
 }
 
+/// What shadows behind crowns that were measured are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CrownShadows {
+    /// A yes or no: lit where half or more of the light arrives.
+    Answers,
+    /// The share of the light that arrives.
+    Shares,
+}
+
 impl CrownLight {
-    /// Returns true if shadows are shares of light. Unchanged measured crowns give a yes or no.
+    /// Returns true if shadows are shares of light rather than a yes or no.
     #[must_use]
     pub fn gives_shares(&self) -> bool {
-        *self != Self::Measured { leaves: None }
+        !matches!(self, Self::Measured { shadows: CrownShadows::Answers, .. })
     }
 
     /// Returns the share of the light that passes crowns in a season, or the factor of their optical depth if it was
@@ -163,23 +178,48 @@ impl CrownLight {
     #[must_use]
     pub fn factor(&self, season: Option<Season>) -> f64 {
         match self {
-            Self::Share { transmissivity, leaves } => transmissivity.of(leaves.foliage(season)),
-            Self::Measured { leaves: None } => 1.0,
-            Self::Measured { leaves: Some(leaves) } => match leaves.foliage(season) {
-                Foliage::InLeaf => 1.0,
-                Foliage::Bare => bare_depth(),
+            Self::Share { transmissivity, leaves } => {
+                transmissivity.of(leaves.foliage(season).unwrap_or(Foliage::InLeaf))
+            }
+            Self::Measured { leaves, density, .. } => match (leaves.foliage(season), density) {
+                (Some(foliage), Some(density)) => crown_density(foliage) / density,
+                _ => 1.0,
             },
         }
     }
 }
 
-/// Optical depth of a bare crown as a share of that in leaf: that of the shares of light in
-/// [`Transmissivity::default`],
-/// 0.2.
+impl CrownLight {
+    /// The factors of seasons, without those of which neither a date nor a choice says what leaves are.
+    pub fn factors_asked(self, seasons: impl IntoIterator<Item = Option<Season>>) -> impl Iterator<Item = f64> {
+        let (Self::Share { leaves, .. } | Self::Measured { leaves, .. }) = self;
+        let is_asked = move |season: &Option<Season>| leaves.foliage(*season).is_some();
+        seasons.into_iter().filter(is_asked).map(move |season| self.factor(season))
+    }
+}
+
+/// Extinction of crowns of deciduous trees, and with it their optical depth, as a share of that in leaf: 1 in leaf, and
+/// bare that of the shares of light in [`Transmissivity::default`], 0.2.
 #[must_use]
-pub fn bare_depth() -> f64 {
+pub fn crown_density(foliage: Foliage) -> f64 {
     let Transmissivity { in_leaf, bare } = Transmissivity::default();
-    bare.ln() / in_leaf.ln()
+    match foliage {
+        Foliage::InLeaf => 1.0,
+        Foliage::Bare => bare.ln() / in_leaf.ln(),
+    }
+}
+
+/// How dense crowns were on the days on which they were measured at a latitude, radians: the mean [`crown_density`] of
+/// the points; `None` where no day is known.
+#[must_use]
+pub fn measured_density(days: &FlightDays, latitude: f64) -> Option<f64> {
+    let dated = days.iter().filter_map(|(date, points)| Some((Date::parse(date).ok()?.day_of_year(), points as f64)));
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (day, points) in dated {
+        sum += points * crown_density(Foliage::on_day(day, latitude));
+        count += points;
+    }
+    (count > 0.0).then(|| sum / count)
 }
 
 /// A scene without its vegetation, and what share of the light its vegetation lets through.

@@ -23,11 +23,12 @@ impl Through {
     /// Converts the keywords for the layer of questions.
     pub(crate) fn chosen(&self) -> PyResult<ThroughTrees> {
         let refused = |what: &str, value: &str, advice: &str| Err(wrong(what, &format!("'{value}'"), advice));
-        let by_season = matches!(&self.share, Some(LightShare::Name(name)) if name == "seasons");
+        let follows_leaves = matches!(&self.share, Some(LightShare::Name(name)) if name != "none");
         let leaves = match self.leaves.as_deref() {
             None => Leaves::ByDate,
-            Some(leaves) if !by_season => {
-                return refused("leaves", leaves, "give it with through_trees='seasons' only");
+            Some(leaves) if !follows_leaves => {
+                let advice = "give it with through_trees='measured', 'seasons' or 'pulses' only";
+                return refused("leaves", leaves, advice);
             }
             Some("auto") => Leaves::ByDate,
             Some("on") => Leaves::On,
@@ -38,10 +39,10 @@ impl Through {
             None => Ok(ThroughTrees::default()),
             Some(LightShare::Number(share)) => Ok(ThroughTrees::Share(*share)),
             Some(LightShare::Name(name)) => match name.as_str() {
-                "measured" => Ok(ThroughTrees::Measured),
+                "measured" => Ok(ThroughTrees::Measured(leaves)),
                 "none" => Ok(ThroughTrees::Opaque),
                 "seasons" => Ok(ThroughTrees::Seasons(leaves)),
-                "pulses" => Ok(ThroughTrees::Pulses),
+                "pulses" => Ok(ThroughTrees::Pulses(leaves)),
                 _ => refused(
                     "through_trees",
                     name,

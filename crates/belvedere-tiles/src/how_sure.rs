@@ -10,6 +10,7 @@ use crate::proof::{self, Line, sampled_lengths};
 use crate::question::{LightQuestion, PreparedQuestion};
 use belvedere::apps::eyes::skip_unfit_eyes;
 use belvedere::apps::rows::ObstacleParts;
+use belvedere::apps::shadow::ShadowSun;
 use belvedere::apps::viewshed::{Observer, add_known};
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
@@ -35,10 +36,12 @@ pub(crate) struct PartialEvidence<'a> {
 }
 
 enum Viewers {
-    /// The unit vector to it.
-    Sun([f64; 3]),
+    Sun(ShadowSun),
     /// Those inside an obstacle have an eye that is not finite, unless they are looked at.
-    Observers { observers: Vec<Observer>, is_reverse: bool },
+    Observers {
+        observers: Vec<Observer>,
+        is_reverse: bool,
+    },
 }
 
 impl Viewers {
@@ -56,7 +59,7 @@ impl Viewers {
             return None;
         }
         match self {
-            Self::Sun(to_sun) => Some(Line { target, towards: *to_sun, range: f64::INFINITY }),
+            Self::Sun(sun) => Some(Line { target, towards: sun.to_sun, range: f64::INFINITY }),
             Self::Observers { observers, .. } => {
                 let Observer { eye, limits } = observers.get(number)?;
                 let way = sub(*eye, target);
@@ -75,7 +78,7 @@ impl<'a> PartialEvidence<'a> {
     /// [`Error::InvalidParameter`] for others than those of a sun and of observers.
     pub(crate) fn new(prepared: &PreparedQuestion, targets: &'a [[f32; 3]]) -> Result<Self> {
         let viewers = match prepared {
-            PreparedQuestion::Light(LightQuestion::Shadow(sun)) => Viewers::Sun(sun.to_sun),
+            PreparedQuestion::Light(LightQuestion::Shadow(sun)) => Viewers::Sun(*sun),
             PreparedQuestion::Viewshed { observers, is_reverse } => {
                 Viewers::Observers { observers: observers.clone(), is_reverse: *is_reverse }
             }
@@ -99,10 +102,11 @@ impl<'a> PartialEvidence<'a> {
         lines: &AreaLines<'_>,
         control: &Control<'_>,
     ) -> Result<()> {
-        if let (Viewers::Sun(to_sun), Some(medium)) = (&self.viewers, parts.medium()) {
+        if let (Viewers::Sun(sun), Some(medium)) = (&self.viewers, parts.medium()) {
+            let factor = parts.crowns().map_or(1.0, |crowns| crowns.factor(sun.season));
             self.solid = vec![BlockedLines::NONE; self.targets.len()];
             let depth = |target: &[f32; 3]| match target.iter().all(|v| v.is_finite()) {
-                true => medium.optical_depth(target.map(f64::from), *to_sun, f64::INFINITY),
+                true => factor * medium.optical_depth(target.map(f64::from), sun.to_sun, f64::INFINITY),
                 false => 0.0,
             };
             self.depths = self.targets.par_iter().with_min_len(CHUNK).map(depth).collect();
@@ -121,10 +125,10 @@ impl<'a> PartialEvidence<'a> {
             observers.iter_mut().zip(eyes).for_each(|(observer, eye)| observer.eye = eye);
         }
         let Self { viewers, targets, blocked, .. } = self;
-        if let (Some(solid), Viewers::Sun(to_sun)) = (solid, &*viewers) {
+        if let (Some(solid), Viewers::Sun(sun)) = (solid, &*viewers) {
             let rows = self.solid.par_iter_mut().zip(targets.par_iter()).with_min_len(CHUNK);
             rows.filter(|(_, target)| target.iter().all(|v| v.is_finite())).for_each(|(blocked, target)| {
-                *blocked = solid.blocked_lines(*blocked, target.map(f64::from), *to_sun, f64::INFINITY);
+                *blocked = solid.blocked_lines(*blocked, target.map(f64::from), sun.to_sun, f64::INFINITY);
             });
         }
         for (number, blocked) in blocked.iter_mut().enumerate() {

@@ -10,7 +10,7 @@ use crate::stage::Stage;
 use crate::survey::SurveyBlock;
 use crate::window;
 use belvedere::apps::ask::scene::Whereabouts;
-use belvedere::apps::ask::{Context, GridCells, Remark, remark_on_terrain};
+use belvedere::apps::ask::{Context, GridCells, Remark, density_at, remark_on_leaves, remark_on_terrain};
 use belvedere::apps::targets::{CellLevel, CellParams, grid_around, set_on_ground};
 use belvedere::apps::tree_light::CrownLight;
 use belvedere::apps::viewshed::cell_for;
@@ -30,7 +30,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Version of the layout of plans and records.
-pub(crate) const LAYOUT: u32 = 12;
+pub(crate) const LAYOUT: u32 = 13;
 /// Points around a place that its ground is taken from, metres, beside the usual ones.
 const GROUND_AROUND: f64 = 32.0;
 /// A plan: input files, tiles and what is known of the whole survey. It is the same for the same files and parameters.
@@ -350,7 +350,7 @@ impl Plan {
             && self.blocks_in(&core.widened(reach)).next().is_some()
     }
 
-    /// This with other questions, and with remarks on their radiation.
+    /// This with other questions, and with remarks on their radiation and on leaves.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for two questions whose results would lie in one folder and for parameters outside
@@ -358,9 +358,12 @@ impl Plan {
     pub fn with_questions(self, questions: Vec<TileQuestion>, control: &Control<'_>) -> Result<Self> {
         check_names(&questions)?;
         let mut context = Context::default();
+        let mut factors = Vec::new();
         for question in &questions {
-            question.prepare(self.trees, &mut context, control)?;
+            let prepared = question.prepare(self.trees, &mut context, control)?;
+            factors.extend(self.trees.map(|crowns| prepared.factors_asked(crowns)).unwrap_or_default());
         }
+        context.add(self.trees.and_then(|crowns| remark_on_leaves(crowns, factors)));
         questions.iter().try_for_each(|question| question.check_pulses(self.can_prove()))?;
         let proves = self.proves || self.can_prove() && questions.iter().any(TileQuestion::needs_proof);
         let remarks = self.remarks.into_iter().chain(context.into_answers().remarks).collect();
@@ -398,7 +401,9 @@ impl Plan {
     /// # Errors
     /// [`Error::MissingAttribute`] for a survey whose pulses do not say what vegetation is.
     pub fn with_light_through_trees(self, trees: CrownLight) -> Result<Self> {
-        if !self.knows_crowns() {
+        let is_known =
+            if matches!(trees, CrownLight::Measured { .. }) { self.knows_crowns() } else { self.statistics.carves };
+        if !is_known {
             return Err(Error::MissingAttribute {
                 attribute: "pulses that carve",
                 needed_for: "knowing which balls are vegetation",
@@ -411,7 +416,16 @@ impl Plan {
     /// Whether tiles know crowns as a medium.
     #[must_use]
     pub fn knows_crowns(&self) -> bool {
-        self.statistics.carves
+        self.statistics.know_crowns()
+    }
+
+    /// How dense crowns were on the days of the survey, at a latitude, radians, or else where its reference system puts
+    /// it; `None` where the days or the place are not known.
+    ///
+    /// # Errors
+    /// Those of [`Plan::frame`].
+    pub fn crown_density(&self, latitude: Option<f64>) -> Result<Option<f64>> {
+        Ok(density_at(&self.statistics.flight_days, latitude, &self.whereabouts(&self.frame()?)))
     }
 
     /// The meshes of what is planned, and far terrain.

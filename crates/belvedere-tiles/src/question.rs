@@ -133,6 +133,26 @@ pub(crate) enum LightQuestion {
     Irradiance { seasons: Vec<SeasonRadiation>, directions: Vec<[f64; 3]>, intervals: Intervals },
 }
 
+impl PreparedQuestion {
+    /// Factors of crowns in the seasons that it asks for ([`CrownLight::factors_asked`]).
+    pub(crate) fn factors_asked(&self, crowns: CrownLight) -> Vec<f64> {
+        let on = |plan: &SunPlan, site: &Site| {
+            crowns.factors_asked(plan.dates().map(|date| Some(Season::on(date, site)))).collect()
+        };
+        match self {
+            Self::Light(LightQuestion::Shadow(sun)) => crowns.factors_asked([sun.season]).collect(),
+            Self::Light(LightQuestion::Sky(..)) => crowns.factors_asked([None]).collect(),
+            Self::Light(LightQuestion::SunHours { plan, site, .. } | LightQuestion::SunRule { plan, site }) => {
+                on(plan, site)
+            }
+            Self::Light(LightQuestion::Irradiance { seasons, .. }) => {
+                seasons.iter().map(|season| season.factor).collect()
+            }
+            Self::Viewshed { .. } | Self::Probability { .. } => Vec::new(),
+        }
+    }
+}
+
 impl LightQuestion {
     /// Where it comes from, unit vectors.
     pub(crate) fn directions(&self) -> &[[f64; 3]] {

@@ -49,10 +49,10 @@ impl SceneText {
 pub(crate) fn in_words(trees: ThroughTrees) -> String {
     match trees {
         ThroughTrees::Opaque => String::new(),
-        ThroughTrees::Measured => " --through-trees measured".to_owned(),
+        ThroughTrees::Measured(_) => " --through-trees measured".to_owned(),
         ThroughTrees::Seasons(_) => " --through-trees seasons".to_owned(),
         ThroughTrees::Share(share) => format!(" --through-trees {share}"),
-        ThroughTrees::Pulses => " --through-trees pulses".to_owned(),
+        ThroughTrees::Pulses(_) => " --through-trees pulses".to_owned(),
     }
 }
 

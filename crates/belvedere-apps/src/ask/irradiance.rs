@@ -5,6 +5,7 @@ use super::scene::Whereabouts;
 use super::sections::{LinesSection, MeasuresSection, PlacesReport, RadiationSection, RoofsSection};
 use super::sun::SunPlace;
 use super::sun_and_sky::{Light, OnTargets};
+use super::trees::remark_on_leaves;
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::irradiance::{
     ClearSky, IrradianceParams, PeriodReport, RadiationSource, RoofIrradiation, RoofsReport, SeasonRadiation,
@@ -304,9 +305,10 @@ impl Ask for IrradianceQuestion {
         let intervals = Intervals::wanted(self.interval);
         let station = self.radiation.weather().map(|weather| [weather.latitude, weather.longitude]);
         let site = self.place.site(scene, context, station)?;
-        let trees = self.trees.of(scene, context, control)?;
+        let trees = self.trees.of((scene, Some(site.latitude)), context, control)?;
         let crowns = trees.as_ref().map(|trees| trees.crowns);
         let seasons = self.gather(&site, crowns, context, control)?;
+        context.add(crowns.and_then(|crowns| remark_on_leaves(crowns, seasons.iter().map(|season| season.factor))));
         let planes = self.roofs.as_ref().map(|roofs| roofs.find(scene, context, control)).transpose()?;
         let blockers = scene.blockers(UnprovenAs::Visible, control)?;
         let mut measures = Vec::new();
@@ -319,8 +321,8 @@ impl Ask for IrradianceQuestion {
             _ => {
                 let directions: Vec<[f64; 3]> =
                     seasons.iter().flat_map(|season| season.radiation.directions()).collect();
-                let light =
-                    Light::resolve(places, &directions, (&self.trees, UnprovenAs::Visible), scene, context, control)?;
+                let trees = (&self.trees, Some(site.latitude), UnprovenAs::Visible);
+                let light = Light::resolve(places, &directions, trees, scene, context, control)?;
                 let looks = light.targets.len() * look_count(&light.obstacles(), &seasons);
                 let energies = control.stage("testing sun and sky", looks, || {
                     season_irradiation(light.obstacles(), &light.targets, &seasons, intervals, control)

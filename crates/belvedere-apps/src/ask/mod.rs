@@ -90,7 +90,7 @@ pub use sun_position::{SunPositionQuestion, SunStands};
 pub use survey::remarks_on_survey;
 pub use survey_plan::{PlannedStation, SurveyPlanQuestion, SurveyPlanResults};
 pub use terrain_heights::remark_on_terrain;
-pub use trees::ThroughTrees;
+pub use trees::{ThroughTrees, density_at, remark_on_leaves};
 pub use viewer::{
     remark_on_axis, remark_on_cleared, remark_on_doubt, remark_on_eye, remark_on_faces, remark_on_inside,
     remark_on_mesh, remark_on_outside, remark_on_roofs, remark_on_targets_beside, remark_on_targets_inside,

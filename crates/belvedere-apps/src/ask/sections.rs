@@ -4,9 +4,10 @@ use super::scene::KnownGround;
 use crate::edge::EdgeReport;
 use crate::sun::{Date, DayParams, Site, SiteFrom, SunSchedule, Zone};
 use crate::targets::{Measure, MeasureStatistics, Targets};
-use crate::tree_light::{CrownLight, Transmissivity, bare_depth};
+use crate::tree_light::{CrownLight, Transmissivity};
 use belvedere_core::ground::GroundPoints;
 use belvedere_core::medium::ExtinctionVoxels;
+use belvedere_core::model::FlightDays;
 use belvedere_core::query::{Answer, AnswerCounts, MedialScene, UnprovenAs};
 use belvedere_data::report::{percent, rounded};
 use serde::ser::SerializeMap;
@@ -271,13 +272,20 @@ pub struct TreesSection {
     /// Mean extinction in them, per metre.
     #[serde(skip_serializing_if = "Option::is_none")]
     mean_extinction: Option<f64>,
-    /// Factor of their optical depth without leaves.
+    /// First and last day on which they were measured.
     #[serde(skip_serializing_if = "Option::is_none")]
-    depth_without_leaves: Option<f64>,
+    crowns_measured: Option<[String; 2]>,
+    /// How dense they were then, as a share of what they are in leaf.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    density_when_measured: Option<f64>,
 }
 
 impl TreesSection {
-    pub(super) fn of(crowns: &CrownLight, vegetation: &[bool], medium: Option<&ExtinctionVoxels>) -> Self {
+    pub(super) fn of(
+        crowns: &CrownLight,
+        vegetation: &[bool],
+        (medium, days): (Option<&ExtinctionVoxels>, &FlightDays),
+    ) -> Self {
         let digits = |share: f64| rounded(share, 4);
         let section = Self { vegetation_balls: vegetation.iter().filter(|&&is| is).count(), ..Self::default() };
         match (crowns, medium) {
@@ -290,12 +298,17 @@ impl TreesSection {
                     ..section
                 }
             }
-            (CrownLight::Measured { leaves }, Some(ExtinctionVoxels { extinction, .. })) => {
+            (CrownLight::Measured { density, .. }, Some(ExtinctionVoxels { extinction, .. })) => {
                 let sum: f64 = extinction.iter().map(|&v| f64::from(v)).sum();
                 Self {
                     crown_voxels: Some(extinction.len()),
                     mean_extinction: Some(digits(sum / extinction.len().max(1) as f64)),
-                    depth_without_leaves: leaves.map(|_| digits(bare_depth())),
+                    crowns_measured: days
+                        .iter()
+                        .next()
+                        .zip(days.iter().last())
+                        .map(|(a, b)| [a.0, b.0].map(str::to_owned)),
+                    density_when_measured: density.map(digits),
                     ..section
                 }
             }

@@ -4,6 +4,7 @@ use super::how_sure::HowSure;
 use super::sections::{MeasuresSection, PlacesReport};
 use super::sun::{MAX_LISTED_SUNS, NamedSun, SunPlace, Suns};
 use super::sun_and_sky::{Light, OnTargets};
+use super::trees::remark_on_leaves;
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::shadow::{
     Edges, LIT, ShadowSun, half_or_more, lit_probabilities, scene_shadow, sun_directions, unproven_light,
@@ -125,7 +126,10 @@ impl Ask for ShadowQuestion {
         if self.unproven.is_some_and(|unproven| unproven != UnprovenAs::Visible) {
             scene.check_proof()?;
         }
-        let light = Light::resolve(places, &directions, (&self.trees, unproven), scene, context, control)?;
+        let seasons = kinds.iter().map(|sun| sun.season);
+        let trees = (&self.trees, seasons.clone().flatten().next().map(|season| season.latitude), unproven);
+        let light = Light::resolve(places, &directions, trees, scene, context, control)?;
+        context.add(light.crowns().and_then(|crowns| remark_on_leaves(crowns, crowns.factors_asked(seasons))));
         let mut lit = control.stage("testing sun", light.steps(), || {
             scene_shadow(light.obstacles(), &light.targets, &kinds, self.edges, control)
         })?;

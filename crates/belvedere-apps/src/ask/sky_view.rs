@@ -4,6 +4,7 @@ use super::how_sure::{check_interval, check_interval_scene};
 use super::scene::Whereabouts;
 use super::sections::{MeasuresSection, PlacesReport};
 use super::sun_and_sky::{Light, OnTargets};
+use super::trees::remark_on_leaves;
 use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
 use crate::sky_view::{SKY_DIRECTIONS, SkyDirections, scene_sky_view};
 use crate::sum_errors::Intervals;
@@ -74,8 +75,9 @@ impl Ask for SkyViewQuestion {
     ) -> Result<Answers<OnTargets>> {
         check_interval_scene(self.interval, scene, control)?;
         let sky = self.sky.directions()?;
-        let light =
-            Light::resolve(places, &sky.directions, (&self.trees, UnprovenAs::Visible), scene, context, control)?;
+        let trees = (&self.trees, None, UnprovenAs::Visible);
+        let light = Light::resolve(places, &sky.directions, trees, scene, context, control)?;
+        context.add(light.crowns().and_then(|crowns| remark_on_leaves(crowns, crowns.factors_asked([None]))));
         let seen = control.stage("testing sky", light.steps(), || {
             scene_sky_view(light.obstacles(), &light.targets, &sky, Intervals::wanted(self.interval), control)
         })?;

@@ -7,7 +7,7 @@ use super::trees::ThroughTrees;
 use super::{Context, Places};
 use crate::rows::Obstacles;
 use crate::targets::Targets;
-use crate::tree_light::TreeLight;
+use crate::tree_light::{CrownLight, TreeLight};
 use belvedere_core::query::{MedialScene, UnprovenAs};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
@@ -33,12 +33,12 @@ pub struct OnTargets {
 }
 
 impl Light {
-    /// Resolves targets and obstacles for light from `directions`. Pulses are loaded unless unproven answers count as
-    /// visible.
+    /// Resolves targets and obstacles for light from `directions`, through trees at a latitude, radians, if a question
+    /// has one. Pulses are loaded unless unproven answers count as visible.
     pub(super) fn resolve(
         places: &Places,
         directions: &[[f64; 3]],
-        (trees, unproven): (&ThroughTrees, UnprovenAs),
+        (trees, latitude, unproven): (&ThroughTrees, Option<f64>, UnprovenAs),
         scene: &Scene,
         context: &mut Context,
         control: &Control<'_>,
@@ -47,8 +47,13 @@ impl Light {
         let near_edge = test_edge(scene, &targets, directions, context, control)?;
         let blockers = scene.blockers(unproven, control)?;
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, Some(directions.len())));
-        let trees = trees.of(scene, context, control)?;
+        let trees = trees.of((scene, latitude), context, control)?;
         Ok(Self { targets, near_edge, blockers, trees })
+    }
+
+    /// What crowns let through; `None` where they are opaque.
+    pub(super) fn crowns(&self) -> Option<CrownLight> {
+        self.trees.as_ref().map(|trees| trees.crowns)
     }
 
     pub(super) fn obstacles(&self) -> Obstacles<'_> {

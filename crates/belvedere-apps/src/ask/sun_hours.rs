@@ -5,11 +5,13 @@ use super::scene::Whereabouts;
 use super::sections::{MeasuresSection, NamedValues, PeriodSection, PlacesReport};
 use super::sun::{Days, SunPlace, sun_days_above};
 use super::sun_and_sky::{Light, OnTargets};
+use super::trees::remark_on_leaves;
 use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
 use crate::sum_errors::Intervals;
 use crate::sun::{Binning, DayParams, Period, Site, SunSchedule, Zone};
 use crate::sun_hours::{SunPlan, SunRule, scene_sun_hours};
 use crate::targets::{Measure, ResultKind};
+use crate::tree_light::Season;
 use belvedere_core::query::UnprovenAs;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
@@ -140,8 +142,10 @@ impl Ask for SunHoursQuestion {
         let site = self.place.site(scene, context, None)?;
         let (plan, zone) = self.plan(&site)?;
         context.report.period = Some(section(&plan, &zone, &self.days.params(&self.place)));
-        let light =
-            Light::resolve(places, plan.directions(), (&self.trees, UnprovenAs::Visible), scene, context, control)?;
+        let trees = (&self.trees, Some(site.latitude), UnprovenAs::Visible);
+        let light = Light::resolve(places, plan.directions(), trees, scene, context, control)?;
+        let seasons = plan.dates().map(|date| Some(Season::on(date, &site)));
+        context.add(light.crowns().and_then(|crowns| remark_on_leaves(crowns, crowns.factors_asked(seasons))));
         let targets = &light.targets;
         let sums = control.stage("testing sun", light.steps(), || {
             let intervals = Intervals::wanted(has_interval);

@@ -1,10 +1,13 @@
 //! What gets through trees, as a user chooses it.
 
-use super::Context;
-use super::scene::Scene;
+use super::scene::{Scene, Whereabouts};
 use super::sections::TreesSection;
-use crate::tree_light::{CrownLight, Leaves, Transmissivity, TreeLight};
+use super::sun::SunPlace;
+use super::{Context, Remark};
+use crate::tree_light::{CrownLight, CrownShadows, Leaves, Transmissivity, TreeLight, measured_density};
+use belvedere_core::model::FlightDays;
 use belvedere_data::control::Control;
+use belvedere_data::report::rounded;
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 
@@ -12,16 +15,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ThroughTrees {
-    /// What pulses measured, where they did; none where they did not.
-    Measured,
-    /// What pulses measured; refused where they did not.
-    Pulses,
-    /// None: crowns are solid balls. Default: a survey of the winter, whose day is not known, would let the sun of the
-    /// summer through.
+    /// What pulses measured, where they did, with the leaves of the day asked for; none where they did not.
+    Measured(Leaves),
+    /// As measured; refused where nothing was.
+    Pulses(Leaves),
+    /// None: crowns are solid balls. Default.
     #[default]
     Opaque,
-    /// What pulses measured in leaf, and a fifth of that optical depth without leaves; 0.03 and 0.5 of the light
-    /// ([`Transmissivity::default`]) where nothing was measured.
+    /// As measured, and shadows are shares of light; 0.03 and 0.5 of the light ([`Transmissivity::default`]) where
+    /// nothing was measured. Crowns that were measured on an unknown day count as measured in leaf.
     Seasons(Leaves),
     /// This share, 0 to 1, through any crown.
     Share(f64),
@@ -35,46 +37,89 @@ impl ThroughTrees {
         matches!(self, Self::Seasons(_) | Self::Share(_))
     }
 
-    /// What crowns let through, where pulses measured that or not; `None` where trees are opaque.
+    /// What crowns let through, where pulses measured that or not; `None` where trees are opaque. `density` is how dense
+    /// crowns were then ([`density_at`]), where that is known.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a share out of range, and for pulses that measured nothing.
-    pub fn crowns(&self, are_measured: bool) -> Result<Option<CrownLight>> {
+    pub fn crowns(&self, are_measured: bool, density: Option<f64>) -> Result<Option<CrownLight>> {
         let share = |transmissivity, leaves| CrownLight::Share { transmissivity, leaves };
+        let measured =
+            |leaves: &Leaves, density, shadows| Some(CrownLight::Measured { leaves: *leaves, density, shadows });
         Ok(match (self, are_measured) {
-            (Self::Opaque, _) | (Self::Measured, false) => None,
-            (Self::Measured | Self::Pulses, true) => Some(CrownLight::Measured { leaves: None }),
-            (Self::Pulses, false) => {
+            (Self::Opaque, _) | (Self::Measured(_), false) => None,
+            (Self::Measured(leaves) | Self::Pulses(leaves), true) => measured(leaves, density, CrownShadows::Answers),
+            (Self::Pulses(_), false) => {
                 return refused(
                     "pulses",
                     "another choice: the pulses in vegetation are unknown; use a cloud with return numbers, GPS times and preferably classes, and balls made with --trees measured, or a ball file of such a scene",
                 );
             }
-            (Self::Seasons(leaves), true) => Some(CrownLight::Measured { leaves: Some(*leaves) }),
+            (Self::Seasons(leaves), true) => measured(leaves, density.or(Some(1.0)), CrownShadows::Shares),
             (Self::Seasons(leaves), false) => Some(share(Transmissivity::default(), *leaves)),
             (Self::Share(constant), _) => Some(share(Transmissivity::constant(*constant)?, Leaves::ByDate)),
         })
     }
 
-    /// The light through the trees of a scene; `None` where they are opaque.
+    /// The light through the trees of a scene, at a latitude, radians, where a question has one; `None` where they are
+    /// opaque.
     ///
     /// # Errors
     /// Those of [`ThroughTrees::crowns`], [`Error::InvalidParameter`] for a scene that knows no vegetation, and those
     /// of building what blocks beside it.
-    pub(super) fn of(&self, scene: &Scene, context: &mut Context, control: &Control<'_>) -> Result<Option<TreeLight>> {
+    pub(super) fn of(
+        &self,
+        (scene, latitude): (&Scene, Option<f64>),
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Option<TreeLight>> {
         let model = scene.model();
         let measured = model.medium();
-        let Some(crowns) = self.crowns(measured.is_some())? else { return Ok(None) };
+        let days = model.flight_days();
+        let density = density_at(&days, latitude, &scene.whereabouts());
+        let Some(crowns) = self.crowns(measured.is_some(), density)? else { return Ok(None) };
         if !model.vegetation().contains(&true) {
             return refused(
                 "given",
                 "left out: no ball is known as vegetation; use a cloud with classes 3 to 5, or with return numbers and GPS times, or a ball file from such a cloud",
             );
         }
-        context.report.trees = Some(TreesSection::of(&crowns, model.vegetation(), model.parts().medium.as_ref()));
+        context.report.trees =
+            Some(TreesSection::of(&crowns, model.vegetation(), (model.parts().medium.as_ref(), &days)));
         let medium = measured.filter(|_| matches!(crowns, CrownLight::Measured { .. }));
         Ok(Some(TreeLight { opaque: scene.without_vegetation(control)?, crowns, medium }))
     }
+}
+
+/// How dense crowns were on the days of a survey ([`measured_density`]), at a latitude, radians, or else where its
+/// reference system puts it; `None` where the days or the place are not known.
+#[must_use]
+pub fn density_at(days: &FlightDays, latitude: Option<f64>, whereabouts: &Whereabouts<'_>) -> Option<f64> {
+    let by_system = || {
+        let (site, _) = SunPlace::default().site_of(whereabouts.frame, &whereabouts.bounds, None).ok()?;
+        Some(site.latitude)
+    };
+    measured_density(days, latitude.or_else(by_system)?)
+}
+
+/// What to know of the leaves of crowns that were measured, where a question asks for them in these seasons
+/// ([`CrownLight::factors_asked`]).
+pub fn remark_on_leaves(crowns: CrownLight, factors: impl IntoIterator<Item = f64>) -> Option<Remark> {
+    let CrownLight::Measured { density, .. } = crowns else { return None };
+    let mut factors = factors.into_iter();
+    if density.is_none() {
+        let text = "the days on which crowns were measured are not known: they hold back as much light as they did \
+                    then, whatever the season";
+        return factors.next().map(|_| Remark::note("leaves-not-known", text));
+    }
+    let other = factors.max_by(|a, b| a.ln().abs().total_cmp(&b.ln().abs())).filter(|factor| *factor != 1.0)?;
+    let factor = rounded(other, 2);
+    let [happened, shadows] = if other > 1.0 { ["come out", "dark"] } else { ["fallen", "light"] };
+    let text = format!(
+        "crowns are taken to be {factor} times as dense as they were measured, since leaves have {happened}; evergreen \
+         trees are not told apart, and their shadows are too {shadows}"
+    );
+    Some(Remark::note("leaves-unlike-measured", text).with("factor", factor))
 }
 
 fn refused<T>(value: &str, expected: &'static str) -> Result<T> {

@@ -68,17 +68,18 @@ impl<'a> EnergyOutlines<'a> {
         evenly + radiation.sky.directions.iter().zip(groups).map(of_patch).sum::<f64>()
     }
 
-    /// The class of each target of a block, by which of all targets are inside obstacles.
+    /// The class of each target of a block, whose crowns have a
+    /// [`factor`](crate::tree_light::CrownLight::factor), by which of all targets are inside obstacles.
     ///
     /// # Errors
     /// Those of [`RowBlock::free_lines`].
     pub(super) fn classes(
         &self,
-        block: &RowBlock<'_>,
+        (block, factor): (&RowBlock<'_>, f64),
         are_inside: &[bool],
         normals: Option<&[[f32; 3]]>,
     ) -> Result<Vec<u8>> {
-        let free = block.free_lines()?;
+        let free = block.free_lines(factor)?;
         let normals = normals_of(normals, &block.rows);
         let class = |row: usize| {
             let normal = normals.and_then(|normals| normals.get(row)).map_or([0.0, 0.0, 1.0], |n| n.map(f64::from));

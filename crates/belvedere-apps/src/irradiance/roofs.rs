@@ -174,7 +174,7 @@ fn of_planes(
         fold_blocks(obstacles.into(), &places, &directions, places.len().max(1), &Control::new(&quiet), |block| {
             let own = of_season(&block, planes, &strings, season)?;
             if let Some(outlines) = &outlines {
-                let (mut first, free) = (0, block.free_lines()?);
+                let (mut first, free) = (0, block.free_lines(season.factor)?);
                 for ((plane, strings), moved) in planes.iter().zip(&strings).zip(&mut moved) {
                     let cells = first..first + strings.len();
                     first = cells.end;

@@ -177,7 +177,7 @@ pub fn season_irradiation<'a>(
         fold_rows(obstacles, &targets.positions, &season.radiation.directions(), control, |block| {
             if let Some((are_inside, outlines)) = &outlines {
                 let of_block = classes.get_mut(block.rows.clone()).unwrap_or_default();
-                let own = outlines.classes(&block, are_inside, normals)?;
+                let own = outlines.classes((&block, season.factor), are_inside, normals)?;
                 of_block.iter_mut().zip(own).for_each(|(class, own)| *class = own.max(*class));
             }
             let normals = normals_of(normals, &block.rows);

@@ -57,8 +57,8 @@ impl SkyView {
 }
 
 /// Computes the visible part of `sky` for each of `targets` among `obstacles`; NaN for a target without a position.
-/// Trees that let light through are in leaf, unless they are said to be bare. Progress counts targets, once or twice
-/// each.
+/// Trees that let light through are as measured, or in leaf if they were not, unless leaves are given. Progress counts
+/// targets, once or twice each.
 ///
 /// # Errors
 /// Those of [`fold_rows`] and [`sky_view`].
@@ -75,13 +75,14 @@ pub fn scene_sky_view<'a>(
     let mut seen = SkyView::default();
     let are_inside = intervals.are_inside(obstacles, targets, control)?;
     let outlines = are_inside.map(|are_inside| (are_inside, Outlines::new(&sky.directions, &sky.solid_angles)));
+    let factor = obstacles.crowns().map_or(0.0, |crowns| crowns.factor(None));
     fold_rows(obstacles, &targets.positions, &sky.directions, control, |block| {
         if let Some((are_inside, outlines)) = &outlines {
-            seen.classes.extend(outlines.classes(&block, are_inside, normals)?);
+            seen.classes.extend(outlines.classes((&block, factor), are_inside, normals)?);
         }
         let normals = normals_of(normals, &block.rows);
         let own = match obstacles.crowns() {
-            Some(crowns) => sky_through_crowns(&block, sky, normals, crowns.factor(None))?,
+            Some(_) => sky_through_crowns(&block, sky, normals, factor)?,
             None => sky_view(&block.matrix, sky, normals)?,
         };
         seen.factors.extend(own.factors);

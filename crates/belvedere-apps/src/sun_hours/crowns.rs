@@ -15,7 +15,7 @@ const WORD: usize = 64;
 /// Returns the sums of [`sun_hours`], where an hour of a sun behind crowns is weighted by the light that these let
 /// through on that day. `factors` has a [`factor`](crate::tree_light::CrownLight::factor) for each day of `schedule`.
 /// Hours, share, the shortest day and the sufficient days are those of the light that arrives. First, last and longest
-/// are of suns that count as free ([`LineLight::is_free`]), since a share of light has no such hour.
+/// are of suns that count as free on their day ([`LineLight::is_free`]), since a share of light has no such hour.
 ///
 /// # Errors
 /// Those of [`sun_hours`], and [`Error::LengthMismatch`] where there is not a factor for
@@ -39,8 +39,9 @@ pub fn sun_hours_through_crowns(
         let expected = block.matrix.target_count();
         return Err(Error::LengthMismatch { what: "normals of targets", expected, found });
     }
-    let direction_count = schedule.directions.len();
-    let width = direction_count.div_ceil(WORD);
+    let by_factor = DaysByFactor::new(schedule, factors);
+    let (direction_count, column_count) = (schedule.directions.len(), by_factor.schedule.directions.len());
+    let width = column_count.div_ceil(WORD);
     let days: Vec<(Vec<DayStretch>, f64)> = schedule.days.iter().map(runs_of).zip(factors.iter().copied()).collect();
     let (sums, words): (Vec<CrownSum>, Vec<Vec<u64>>) = (0..block.matrix.target_count())
         .into_par_iter()
@@ -53,14 +54,18 @@ pub fn sun_hours_through_crowns(
             };
             let lines: Vec<LineLight> = schedule.directions.iter().enumerate().map(line).collect();
             let mut free = vec![0; width];
-            for number in lines.iter().enumerate().filter(|(_, line)| line.is_free()).map(|(number, _)| number) {
-                free[number / WORD] |= 1_u64 << (number % WORD);
+            for (kind, &factor) in by_factor.factors.iter().enumerate() {
+                for (number, _) in lines.iter().enumerate().filter(|(_, line)| line.is_free(factor)) {
+                    let column = kind * direction_count + number;
+                    free[column / WORD] |= 1_u64 << (column % WORD);
+                }
             }
             (CrownSum::over(&days, &lines, params.sufficient_hours - ROUNDING), free)
         })
         .unzip();
-    let free = VisibilityMatrix::from_words(sums.len(), direction_count, words.concat())?;
-    let mut hours = sun_hours(&free, schedule, normals, &SunHoursParams { first_direction: 0, ..*params })?;
+    let free = VisibilityMatrix::from_words(sums.len(), column_count, words.concat())?;
+    let params = SunHoursParams { first_direction: 0, ..*params };
+    let mut hours = sun_hours(&free, &by_factor.schedule, normals, &params)?;
     let (day_count, possible) = (schedule.days.len().max(1) as f64, schedule.possible_hours());
     #[expect(clippy::cast_possible_truncation, reason = "hours of a day and shares of one")]
     let column = |of: &dyn Fn(&CrownSum) -> f64| sums.iter().map(|sum| of(sum) as f32).collect();
@@ -69,6 +74,33 @@ pub fn sun_hours_through_crowns(
     hours.min = column(&|sum| sum.min);
     hours.days = sums.iter().map(|sum| sum.days).collect();
     Ok(hours)
+}
+
+/// Days of a schedule with a copy of the directions for each factor of a day: the same sun may be free on one day and not
+/// on another.
+struct DaysByFactor {
+    /// Different factors.
+    factors: Vec<f64>,
+    /// Days with the directions of their factor.
+    schedule: SunSchedule,
+}
+
+impl DaysByFactor {
+    fn new(schedule: &SunSchedule, factors: &[f64]) -> Self {
+        let mut kinds: Vec<f64> = Vec::new();
+        let mut by_factor = schedule.clone();
+        for (day, &factor) in by_factor.days.iter_mut().zip(factors) {
+            let kind = kinds.iter().position(|own| *own == factor).unwrap_or(kinds.len());
+            if kind == kinds.len() {
+                kinds.push(factor);
+            }
+            #[expect(clippy::cast_possible_truncation, reason = "rows of a schedule, for two factors or so")]
+            let first = (kind * schedule.directions.len()) as u32;
+            day.steps.iter_mut().for_each(|step| step.direction += first);
+        }
+        by_factor.directions = schedule.directions.repeat(kinds.len());
+        Self { factors: kinds, schedule: by_factor }
+    }
 }
 
 /// Sums at one target.

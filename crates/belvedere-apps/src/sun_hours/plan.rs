@@ -3,7 +3,7 @@
 use super::{RULE_IS_MET, SUN_HOURS, SunHours, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
 use crate::rows::{RowBlock, SkyObstacles, check_normals, fold_rows, normals_of};
 use crate::sum_errors::{Intervals, Outlines, SumKind, expected_measures};
-use crate::sun::{Site, SunSchedule};
+use crate::sun::{Date, Site, SunSchedule};
 use crate::targets::{Measure, ResultKind, Targets};
 use crate::tree_light::{CrownLight, Season};
 use belvedere_data::control::Control;
@@ -59,6 +59,12 @@ impl SunPlan {
     #[must_use]
     pub fn rules(&self) -> &[PlannedRule] {
         &self.rules
+    }
+
+    /// All dates, those of the period first.
+    pub fn dates(&self) -> impl Iterator<Item = Date> {
+        let schedules = std::iter::once(&self.period).chain(self.rules.iter().map(|rule| &rule.schedule));
+        schedules.flat_map(|schedule| schedule.days.iter().map(|day| day.date))
     }
 
     /// Directions for which targets are tested, unit vectors, (D, 3): those of the period first.
@@ -184,9 +190,14 @@ pub fn scene_sun_hours<'a>(
     let are_inside = intervals.are_inside(obstacles, targets, control)?;
     let outlines = are_inside
         .map(|are_inside| (are_inside, Outlines::new(&plan.period.directions, &plan.period.hours_of_directions())));
+    // outlines are those of the first day
+    let factor = match (crowns, plan.period.days.first()) {
+        (Some((crowns, site)), Some(day)) => crowns.factor(Some(Season::on(day.date, site))),
+        _ => 0.0,
+    };
     fold_rows(obstacles, &targets.positions, plan.directions(), control, |block| {
         if let Some((are_inside, outlines)) = &outlines {
-            sums.classes.extend(outlines.classes(&block, are_inside, normals)?);
+            sums.classes.extend(outlines.classes((&block, factor), are_inside, normals)?);
         }
         sums.add(plan, &block, normals, crowns)
     })?;

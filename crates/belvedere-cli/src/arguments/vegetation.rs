@@ -10,13 +10,14 @@ pub(crate) struct ThroughTreesArguments {
     /// Light that passes through tree crowns: measured, none, seasons, pulses, or a number from 0 to 1
     ///
     /// measured: as far as laser pulses passed each cubic metre of the crown, and none where that is not known; a place
-    /// behind crowns is lit where half or more passes, and sums count the share. none: crowns are solid. seasons: the
-    /// measured crowns in leaf, with a fifth of the leaves' depth without leaves; 0.03 and 0.5 of the light where
-    /// nothing was measured (Konarska et al. 2014). pulses: as measured, and an error where nothing was. A number: this
-    /// share, through any crown.
+    /// behind crowns is lit where half or more passes, and sums count the share. Leaves are those of the date asked
+    /// for: crowns measured without leaves are five times as dense in leaf. none: crowns are solid. seasons: as
+    /// measured, and shadow is a share of light; 0.03 in leaf and 0.5 without leaves where nothing was measured
+    /// (Konarska et al. 2014). pulses: as measured, and an error where nothing was. A number: this share, through any
+    /// crown.
     #[arg(long, value_name = "SHARE", default_value = "none", allow_negative_numbers = true)]
     pub(crate) through_trees: ThroughTreesChoice,
-    /// Whether trees have leaves, with --through-trees seasons [default: auto with a date, else on]
+    /// Whether trees have leaves [default: auto with a date, else as they were measured]
     ///
     /// auto: from 7 April to 27 October in the north, half a year later in the south, always in the tropics.
     #[arg(long, value_enum, value_name = "LEAVES")]

@@ -51,7 +51,8 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
     };
     let plan = Plan::make(&params, &run.control())?;
     let changes = PlanArguments { add: arguments.add.clone(), clear: arguments.clear.clone() };
-    let plan = planned(plan, &changes, Some(&arguments.far_terrain), Some(&arguments.trees))?;
+    let latitude = arguments.sun.latitude();
+    let plan = planned(plan, &changes, Some(&arguments.far_terrain), Some((&arguments.trees, latitude)))?;
     let questions = questions::questions(arguments, &plan, &mut run)?;
     let plan = plan.with_questions(questions, &run.control()).map_err(|error| match error {
         Error::InvalidParameter { parameter: Parameter::Questions, .. } => Usage(error.to_string()).into(),
@@ -81,12 +82,13 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
     Ok(run.finish())
 }
 
-/// The plan with what will be built, before far terrain, and with light through trees.
+/// The plan with what will be built, before far terrain, and with light through trees at a latitude, radians, where one
+/// was typed.
 pub(super) fn planned(
     plan: Plan,
     changes: &PlanArguments,
     far: Option<&FarTerrainArguments>,
-    trees: Option<&ThroughTreesArguments>,
+    trees: Option<(&ThroughTreesArguments, Option<f64>)>,
 ) -> Result<Plan> {
     let meshes = changes.add.iter().map(|path| SideFile::new(path)).collect::<belvedere::Result<Vec<_>>>()?;
     let plan = plan.with_meshes(meshes)?;
@@ -101,8 +103,8 @@ pub(super) fn planned(
         Some(far) => plan.with_far_terrain(side(&far.terrain)?, side(&far.horizon)?)?,
         None => plan,
     };
-    let Some(trees) = trees else { return Ok(plan) };
-    match trees.choice()?.crowns(plan.knows_crowns())? {
+    let Some((trees, latitude)) = trees else { return Ok(plan) };
+    match trees.choice()?.crowns(plan.knows_crowns(), plan.crown_density(latitude)?)? {
         Some(crowns) => Ok(plan.with_light_through_trees(crowns)?),
         None => Ok(plan),
     }

@@ -123,7 +123,8 @@ impl<'a> TypedCells<'a> {
         let plan = Plan::kept_in(folder.path(), &params, &run.control())?;
         let plan = plan.with_grid_cells(&self.cells)?.fitting(limit)?;
         run.summary.remarks([large.remark_on_tiles(plan.tile_size)]);
-        let plan = city::planned(plan, &self.scene.plan, self.far, self.trees)?;
+        let plan =
+            city::planned(plan, &self.scene.plan, self.far, self.trees.map(|trees| (trees, latitude(question))))?;
         Ok(Some(PlannedSurvey { plan, folder, is_temporary, limit }))
     }
 
@@ -192,6 +193,17 @@ impl<'a> TypedCells<'a> {
         run.summary.add("written", written);
         Ok(())
     }
+}
+
+/// The latitude that was typed with a question, radians.
+fn latitude(question: &Question) -> Option<f64> {
+    let place = match question {
+        Question::Shadow(shadow) => &shadow.place,
+        Question::SunHours(hours) => &hours.place,
+        Question::Irradiance(energy) => &energy.place,
+        _ => return None,
+    };
+    place.location.map(|[latitude, _]| latitude.to_radians())
 }
 
 /// The folder of tiles that nobody keeps, beside the result.

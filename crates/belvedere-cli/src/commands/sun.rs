@@ -21,6 +21,11 @@ impl SunPlaceArguments {
         self.place(&NorthArguments { grid_north: false })
     }
 
+    /// Returns the given latitude, radians.
+    pub(crate) fn latitude(&self) -> Option<f64> {
+        self.location.map(|location| location.0[0].to_radians())
+    }
+
     /// Returns the refraction of the sun by the air.
     pub(crate) fn refraction(&self) -> Result<Refraction> {
         match (self.elevation, &self.air) {

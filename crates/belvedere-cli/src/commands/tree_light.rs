@@ -8,8 +8,9 @@ use belvedere::apps::tree_light::Leaves;
 impl ThroughTreesArguments {
     /// Returns the typed light through trees.
     pub(crate) fn choice(&self) -> Result<ask::ThroughTrees> {
-        if self.leaves.is_some() && self.through_trees != ThroughTreesChoice::Seasons {
-            return Err(Usage("--leaves needs --through-trees seasons".to_owned()).into());
+        let follows_leaves = !matches!(self.through_trees, ThroughTreesChoice::None | ThroughTreesChoice::Share(_));
+        if self.leaves.is_some() && !follows_leaves {
+            return Err(Usage("--leaves needs --through-trees measured, seasons or pulses".to_owned()).into());
         }
         let leaves = match self.leaves {
             None | Some(LeavesChoice::Auto) => Leaves::ByDate,
@@ -17,11 +18,11 @@ impl ThroughTreesArguments {
             Some(LeavesChoice::Off) => Leaves::Off,
         };
         Ok(match self.through_trees {
-            ThroughTreesChoice::Measured => ask::ThroughTrees::Measured,
+            ThroughTreesChoice::Measured => ask::ThroughTrees::Measured(leaves),
             ThroughTreesChoice::None => ask::ThroughTrees::Opaque,
             ThroughTreesChoice::Seasons => ask::ThroughTrees::Seasons(leaves),
             ThroughTreesChoice::Share(share) => ask::ThroughTrees::Share(share),
-            ThroughTreesChoice::Pulses => ask::ThroughTrees::Pulses,
+            ThroughTreesChoice::Pulses => ask::ThroughTrees::Pulses(leaves),
         })
     }
 }

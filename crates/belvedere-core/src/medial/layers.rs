@@ -21,10 +21,12 @@ pub(super) struct Layers {
     side: f32,
     /// Cells along half the side of a block.
     cells_of_half_block: i64,
-    /// Number of the first cell east and north of the local origin.
+    /// How far the local origin lies from the corner of its half block, and above a step of voxels, metres.
+    shift: [f32; 3],
+    /// Number of the first cell east and north of that corner.
     first_cell: Cell,
-    /// Number of the cell of the local origin, east and north, in the reference system.
-    origin: [i64; 2],
+    /// Number of the cell at that corner, east and north, in the reference system.
+    corner: [i64; 2],
     size: [i32; 2],
     /// First voxel of each cell, and the number of voxels.
     first: Vec<u32>,
@@ -38,8 +40,8 @@ pub(super) struct Layers {
 
 impl Layers {
     /// Voxels of `positions`, metres from `origin`, and which of them hold a point whose row is `solid`; `None` for no
-    /// points, or for a place too wide. Cells begin at the origin, and are at least `min_side` metres wide: as little
-    /// more as makes half a block a whole number of them.
+    /// points, or for a place too wide. Cells are those of the reference system, whatever the origin, and at least
+    /// `min_side` metres wide: as little more as makes half a block a whole number of them.
     pub(super) fn new(
         positions: &[[f32; 3]],
         origin: [f64; 3],
@@ -57,12 +59,15 @@ impl Layers {
                 high[axis] = high[axis].max(p[axis]);
             }
         }
-        let first_cell = low.map(|v| cell_from_origin(v, side));
-        low = first_cell.map(|number| number as f32 * side);
-        // multiplied first: exact for an origin at the corner of a block
-        let cells = |v: f64| v * f64::from(half) / (f64::from(BLOCK) / 2.0);
+        let steps = [f64::from(BLOCK) / 2.0, f64::from(BLOCK) / 2.0, f64::from(STEP)];
+        #[expect(clippy::cast_possible_truncation, reason = "at most half a block")]
+        let shift: [f32; 3] = std::array::from_fn(|axis| origin[axis].rem_euclid(steps[axis]) as f32);
         #[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
-        let origin = [0, 1].map(|axis| cells(origin[axis]).floor() as i64);
+        let corner = [0, 1]
+            .map(|axis| (origin[axis] / steps[axis]).floor() as i64)
+            .map(|v| v.saturating_mul(cells_of_half_block));
+        let first_cell = [0, 1].map(|axis| cell_from_corner(low[axis] + shift[axis], side));
+        low = [0, 1].map(|axis| first_cell[axis] as f32 * side - shift[axis]);
         let [width, height] = [0, 1].map(|axis| ((high[axis] - low[axis]) / side).floor() + 2.0);
         if !(width > 0.0 && height > 0.0 && width * height < MAX_CELLS) {
             return None;
@@ -70,10 +75,20 @@ impl Layers {
         #[expect(clippy::cast_possible_truncation, reason = "checked to be small")]
         let size = [width as i32, height as i32];
         let (first, level, cell, solid_voxels) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        let mut layers =
-            Self { side, cells_of_half_block, first_cell, origin, size, first, level, cell, solid: solid_voxels };
+        let mut layers = Self {
+            side,
+            cells_of_half_block,
+            shift,
+            first_cell,
+            corner,
+            size,
+            first,
+            level,
+            cell,
+            solid: solid_voxels,
+        };
         let voxel = |(row, &p): (usize, &[f32; 3])| {
-            Some((u32::try_from(layers.number(layers.cell(p))?).ok()?, level_of(p[2]), !solid(row)))
+            Some((u32::try_from(layers.number(layers.cell(p))?).ok()?, layers.level_of(p[2]), !solid(row)))
         };
         let mut voxels: Vec<(u32, i32, bool)> = positions.iter().enumerate().filter_map(voxel).collect();
         voxels.sort_unstable();
@@ -100,12 +115,12 @@ impl Layers {
 
     /// Height of the upper side of the highest voxel.
     pub(super) fn top(&self) -> f32 {
-        self.level.iter().max().map_or(f32::NEG_INFINITY, |&level| (level + 1) as f32 * STEP)
+        self.level.iter().max().map_or(f32::NEG_INFINITY, |&level| (level + 1) as f32 * STEP - self.shift[2])
     }
 
     /// Height of the lower side of a voxel.
     pub(super) fn bottom(&self, voxel: usize) -> f32 {
-        self.level[voxel] as f32 * STEP
+        self.level[voxel] as f32 * STEP - self.shift[2]
     }
 
     /// Height of the middle of a voxel.
@@ -116,7 +131,7 @@ impl Layers {
     /// The voxel that holds a point, if one does.
     pub(super) fn voxel_of(&self, point: [f32; 3]) -> Option<usize> {
         let column = self.column(self.cell(point));
-        let found = self.level[column.clone()].binary_search(&level_of(point[2])).ok()?;
+        let found = self.level[column.clone()].binary_search(&self.level_of(point[2])).ok()?;
         Some(column.start + found)
     }
 
@@ -156,9 +171,9 @@ impl Layers {
         let mut from = 0.0;
         // where along the line it leaves its cell over the side across one axis
         let leave = |cell: Cell, axis: usize| {
-            // from the origin, so that rounding does not depend on where the points begin
+            // from the corner, so that rounding does not depend on where the points begin
             let number = self.first_cell[axis].saturating_add(cell[axis]);
-            let side = number.saturating_add(i32::from(up[axis] > 0.0)) as f32 * self.side;
+            let side = number.saturating_add(i32::from(up[axis] > 0.0)) as f32 * self.side - self.shift[axis];
             if up[axis] == 0.0 { f32::INFINITY } else { (side - start[axis]) / up[axis] }
         };
         loop {
@@ -195,7 +210,9 @@ impl Layers {
 
     /// Cell of a point, which may lie beyond the raster.
     fn cell(&self, point: [f32; 3]) -> Cell {
-        [0, 1].map(|axis| cell_from_origin(point[axis], self.side).saturating_sub(self.first_cell[axis]))
+        [0, 1].map(|axis| {
+            cell_from_corner(point[axis] + self.shift[axis], self.side).saturating_sub(self.first_cell[axis])
+        })
     }
 
     /// Number east and north of the block that a voxel lies in. Blocks begin `offset` halves of their side west and
@@ -205,8 +222,14 @@ impl Layers {
         [0, 1].map(|axis| {
             let moved = offset[axis] * self.cells_of_half_block;
             let local = i64::from(self.first_cell[axis]) + i64::from(own[axis]) + moved;
-            self.origin[axis].saturating_add(local).div_euclid(2 * self.cells_of_half_block)
+            self.corner[axis].saturating_add(local).div_euclid(2 * self.cells_of_half_block)
         })
+    }
+
+    /// Number upward of the voxel of height `z`.
+    #[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
+    fn level_of(&self, z: f32) -> i32 {
+        ((z + self.shift[2]) / STEP).floor() as i32
     }
 
     fn number(&self, cell: Cell) -> Option<usize> {
@@ -216,19 +239,53 @@ impl Layers {
     }
 }
 
-/// Number of a cell of this side from the origin on.
+/// Number of a cell of this side from a corner on.
 #[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
-fn cell_from_origin(coordinate: f32, side: f32) -> i32 {
+fn cell_from_corner(coordinate: f32, side: f32) -> i32 {
     (coordinate / side).floor() as i32
-}
-
-/// Number upward of the voxel of height `z`.
-#[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
-fn level_of(z: f32) -> i32 {
-    (z / STEP).floor() as i32
 }
 
 /// A cell and the eight about it.
 fn square([x, y]: Cell) -> impl Iterator<Item = Cell> {
     (y - 1..=y + 1).flat_map(move |y| (x - 1..=x + 1).map(move |x| [x, y]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_data::random::uniform;
+
+    /// Points of 40 m, in metres of the reference system, from a local origin.
+    fn from_origin(origin: [f64; 3]) -> Vec<[f32; 3]> {
+        let corner = [155_003.0, 462_990.0, 5.0];
+        let place = |i: u64| {
+            let random = |k: u64| uniform(7, 3 * i + k);
+            // sixty-fourths of a metre, so that no frame rounds them
+            let steps = [2560.0 * random(0), 2560.0 * random(1), 320.0 * random(2)].map(f64::floor);
+            #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
+            std::array::from_fn(|axis| (corner[axis] + steps[axis] / 64.0 - origin[axis]) as f32)
+        };
+        (0..2000).map(place).collect()
+    }
+
+    #[test]
+    fn cells_are_those_of_the_reference_system_whatever_the_origin() {
+        let corner_of_blocks = [154_624.0, 462_848.0, 0.0];
+        for side in [0.5, 0.643, 0.9] {
+            let found = [corner_of_blocks, [155_000.0, 463_000.0, 6.0], [155_017.5, 462_901.25, -3.5]].map(|origin| {
+                let positions = from_origin(origin);
+                let layers = Layers::new(&positions, origin, side, |row| row % 3 != 0).unwrap();
+                let of_point = |p: &[f32; 3]| {
+                    let voxel = layers.voxel_of(*p).unwrap();
+                    let above = f64::from(layers.bottom(voxel)) + origin[2];
+                    // heights of f32 a few metres from zero
+                    #[expect(clippy::cast_possible_truncation, reason = "a few metres")]
+                    let height = (1e4 * above).round() as i64;
+                    (layers.block(voxel, [0, 1]), layers.count_beside(voxel), height)
+                };
+                (layers.len(), positions.iter().map(of_point).collect::<Vec<_>>())
+            });
+            assert!(found[0].0 > 500 && found[1] == found[0] && found[2] == found[0], "{side}");
+        }
+    }
 }

@@ -1,11 +1,12 @@
 //! Builds a scene model from a cloud.
 
 use super::blocked_pulses::blocked_pulses;
+use super::flight_days::FlightDays;
 use super::params::{BallParams, ModelParams};
 use super::prepare::{OrientedSurvey, prepare};
 use super::report::{BallsReport, BuildReport};
 use super::surfaces::close_surfaces;
-use super::{FINDINGS, LOOKS_UP, ModelParts, SceneModel};
+use super::{FINDINGS, FLIGHT_DAYS, LOOKS_UP, ModelParts, SceneModel};
 use crate::medial::{
     CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, Trees, carved_balls, shrink, vegetation_of_classes,
     vegetation_of_transmission,
@@ -67,6 +68,7 @@ fn of_survey(
     };
     match (&settled, &survey.carving) {
         (BallParams::Carved(carved), Some(input)) => {
+            let is_assumed = input.is_assumed;
             let (attributes, free_segments, pulses) = (&input.attributes, &input.free_segments, input.pulses.as_ref());
             let (oriented, measured, index) = (&survey.oriented, &survey.measured[..], &survey.index);
             let statistics = params.statistics.as_deref().map(|statistics| &statistics.whole);
@@ -74,7 +76,9 @@ fn of_survey(
             let found;
             let returns;
             CarvedBalls { balls, transmission, returns, report: found } = carved_balls(&input, carved, control)?;
-            if carved.crowns.is_some_and(|crowns| crowns.trees == Trees::Measured) && !returns.is_empty() {
+            // pulses that are only assumed enter too few crowns: what they do not enter would let all light through
+            let is_measured = carved.crowns.is_some_and(|crowns| crowns.trees == Trees::Measured) && !is_assumed;
+            if is_measured && !returns.is_empty() {
                 medium = Some(survey.medium(&returns, &frame, control)?);
             }
             report.interior_balls = Some(BallsReport::Carved(found));
@@ -117,6 +121,11 @@ fn of_survey(
     }
     if let Some(found) = report.survey.to_text().filter(|_| !report.survey.is_empty()) {
         provenance.insert(FINDINGS.to_owned(), found);
+    }
+    // those of the whole are statistics of a part
+    let days = Some(&survey.flight_days).filter(|days| params.statistics.is_none() && !days.is_empty());
+    if let Some(days) = days.and_then(FlightDays::to_text) {
+        provenance.insert(FLIGHT_DAYS.to_owned(), days);
     }
     // pulses at the edge of a part lack the balls beyond
     let checked = report.pulses.as_mut().filter(|_| params.statistics.is_none());

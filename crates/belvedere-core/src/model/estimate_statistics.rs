@@ -1,5 +1,6 @@
 //! Statistics of a whole survey from samples of it, and how far around a place they matter.
 
+use super::flight_days::FlightDays;
 use super::params::{BallParams, ModelParams, OrientBy};
 use super::prepare::{OrientedSurvey, prepare};
 use super::statistics::{SurveyStatistics, lean};
@@ -67,6 +68,7 @@ impl SurveyStatistics {
             carves: true,
             top: extremes.top,
             relief: extremes.relief,
+            flight_days: FlightDays::of(&along_lines.attributes),
             measures_crowns: true,
             finds_ground: !(extremes.has_ground || extremes.has_vegetation),
             whole: RuleStatistics {

@@ -156,7 +156,7 @@ fn is_dated(attributes: &Attributes) -> bool {
     attributes.gps_time_kind == GpsTimeKind::AdjustedStandard
 }
 
-fn day_in_words(day: i64) -> String {
+pub(super) fn day_in_words(day: i64) -> String {
     let date = date_of_unix_day(day).map(|CalendarDay { year, month, day }| format!("{year:04}-{month:02}-{day:02}"));
     date.unwrap_or_else(|| format!("day {day}"))
 }

@@ -13,6 +13,7 @@ mod clearing;
 mod close_range_normals;
 mod estimate_statistics;
 mod findings;
+mod flight_days;
 mod in_space_order;
 mod params;
 mod pictures;
@@ -28,6 +29,7 @@ pub use clear::{ClearReport, ClearedArea};
 pub use clearing::Clearing;
 pub use estimate_statistics::SurveyExtremes;
 pub use findings::{DatedSurvey, SurveyChange, SurveyFindings};
+pub use flight_days::FlightDays;
 pub use params::{BallParams, ModelParams, OrientBy, StripHeights};
 pub use prepare::OrientedSurvey;
 pub use report::{BallsReport, BlockedPulses, BuildReport, NormalsReport, PulsesReport};
@@ -77,11 +79,20 @@ const LOOKS_UP: [&str; 2] = ["axis_that_looks_up", "y"];
 /// Key of the survey findings in the provenance of a model.
 const FINDINGS: &str = "survey_findings";
 
+/// Where the provenance of a model keeps the days of the flight.
+const FLIGHT_DAYS: &str = "flight_days";
+
 impl SceneModel {
     /// Returns the findings about its survey beside surfaces.
     #[must_use]
     pub fn findings(&self) -> SurveyFindings {
         self.parts.provenance.get(FINDINGS).map(|text| SurveyFindings::from_text(text)).unwrap_or_default()
+    }
+
+    /// Returns the days on which its points were measured; none if they are not known.
+    #[must_use]
+    pub fn flight_days(&self) -> FlightDays {
+        self.parts.provenance.get(FLIGHT_DAYS).map(|text| FlightDays::from_text(text)).unwrap_or_default()
     }
 
     /// Returns true if its cloud, which has no reference system, looks as if y were up and not z

@@ -2,6 +2,7 @@
 
 use super::close_range_normals::CloseRange;
 use super::findings::SurveyFindings;
+use super::flight_days::FlightDays;
 use super::in_space_order::{points_at, space_order};
 use super::params::{Carving, ModelParams, OrientBy, StripHeights};
 use super::report::{BuildReport, NormalsReport, PulsesReport, SmoothingReport};
@@ -50,6 +51,8 @@ pub struct OrientedSurvey {
     pub(super) measured: Vec<[f32; 3]>,
     /// Classes of these points, where they have any.
     pub(super) classification: Option<Vec<u8>>,
+    /// Days on which these points were measured.
+    pub(super) flight_days: FlightDays,
     /// Input of carving, if it is wanted and possible.
     pub(super) carving: Option<CarvingInput>,
 }
@@ -187,6 +190,7 @@ pub(super) fn prepare(
     if !moved.is_empty() {
         move_strips(cloud.to_mut(), &moved);
     }
+    let flight_days = FlightDays::of(&cloud.attributes);
     let wants_scanner = carving != Carving::Unwanted
         || matches!(params.orient, OrientBy::Pulses | OrientBy::ScannerOfEachPoint(_) | OrientBy::Stations(_));
     let scanner = if wants_scanner {
@@ -252,7 +256,7 @@ pub(super) fn prepare(
         input.scanner = scanner.positions;
     }
     let bounds = cloud.bounds().ok_or_else(|| Error::NoPoints { what: "none was read".to_owned() })?;
-    Ok((OrientedSurvey { oriented, index, kept, bounds, measured, classification, carving }, report))
+    Ok((OrientedSurvey { oriented, index, kept, bounds, measured, classification, flight_days, carving }, report))
 }
 
 /// Finds the properties of the survey of a whole cloud. Heights of lines are compared if they are flight lines.

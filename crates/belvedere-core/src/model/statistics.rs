@@ -1,5 +1,6 @@
 //! Statistics estimated once from a whole survey, so that parts of it that are built separately become one model.
 
+use super::flight_days::FlightDays;
 use crate::clean::{CleanParams, IsolatedPoints, IsolationRadius};
 use crate::medial::RuleStatistics;
 use crate::neighbors::FARTHEST_NEIGHBOR;
@@ -42,6 +43,9 @@ pub struct SurveyStatistics {
     /// Offsets of the heights of flight lines.
     #[serde(default)]
     pub strips: Vec<StripOffset>,
+    /// When its points were measured, by a sample of them.
+    #[serde(default)]
+    pub flight_days: FlightDays,
 }
 
 impl SurveyStatistics {
@@ -49,6 +53,12 @@ impl SurveyStatistics {
     #[must_use]
     pub fn are_pulses_assumed(&self) -> bool {
         self.paths.is_empty()
+    }
+
+    /// Returns true if crowns are known as a medium: pulses are known, and carve.
+    #[must_use]
+    pub fn know_crowns(&self) -> bool {
+        self.carves && !self.are_pulses_assumed()
     }
 
     /// Returns the maximum distance of a neighbour, metres.

@@ -255,13 +255,13 @@ impl MedialScene {
     }
 
     /// Computes [`MedialScene::visible_probabilities`] for light through measured crowns: `solid` is this scene without
-    /// its vegetation, `medium` its vegetation.
+    /// its vegetation, `medium` its vegetation, of which optical depths are multiplied by `factor`.
     ///
     /// # Errors
     /// Those of [`MedialScene::visible_probabilities`].
     pub fn lit_probabilities(
         &self,
-        (solid, medium): (&Self, &Medium),
+        (solid, medium, factor): (&Self, &Medium, f64),
         viewer: Viewer<'_>,
         targets: &[[f32; 3]],
         control: &Control<'_>,
@@ -275,7 +275,7 @@ impl MedialScene {
                     continue;
                 };
                 let Ray { origin, direction, ranges: [_, range] } = sight;
-                let depth = medium.optical_depth(origin, direction, range);
+                let depth = factor * medium.optical_depth(origin, direction, range);
                 let Some(of_all) = self.evidence(origin, direction, range) else { continue };
                 let blocked = solid.blocked_lines(BlockedLines::NONE, origin, direction, range);
                 *found = of_all.probability_among_crowns(blocked, depth);

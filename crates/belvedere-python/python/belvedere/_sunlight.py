@@ -83,7 +83,7 @@ class Sunlight:
         through_trees : {'measured', 'none', 'seasons', 'pulses'} or float, optional
             Light that passes through crowns; none if not given.
         leaves : {'auto', 'on', 'off'}, optional
-            Whether trees have leaves, with ``through_trees='seasons'``.
+            Whether trees have leaves; by the date if not given, and as they were measured without one.
         location : array_like, shape (2,), optional
             Latitude and longitude, degrees, where the reference system does not say where the scene lies.
         grid_north : bool, optional

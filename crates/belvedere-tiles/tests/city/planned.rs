@@ -5,10 +5,10 @@ use belvedere::apps::ask::{Days, SkyParts, SunHoursQuestion};
 use belvedere::apps::irradiance::{ClearSky, IrradianceParams};
 use belvedere::apps::shadow::ShadowSun;
 use belvedere::apps::sun::Site;
-use belvedere::apps::tree_light::{CrownLight, Leaves, Transmissivity};
+use belvedere::apps::tree_light::{CrownLight, CrownShadows, Foliage, Leaves, Transmissivity, crown_density};
 use belvedere::control::Control;
 use belvedere::crs::Crs;
-use belvedere::io::{Georeference, read_tif_f32, read_tif_u8, write_tif_f32};
+use belvedere::io::{Georeference, read_balls, read_tif_f32, read_tif_u8, write_tif_f32};
 use belvedere::raster::Raster;
 use belvedere_tiles::{Plan, SideFile, TileQuestion, TileRadiation, UnfinishedRun, merge};
 use std::collections::BTreeMap;
@@ -211,12 +211,33 @@ fn light_through_trees_lies_between_opaque_trees_and_none_whatever_the_tiles() {
 fn light_through_measured_crowns_is_the_same_in_tiles_of_any_size() {
     let place = tempfile::tempdir().unwrap();
     let clouds = write_town(place.path(), 84.0, 1.0);
-    let questions = [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25), interval: false }];
-    let measured = |plan: Plan| plan.with_light_through_trees(CrownLight::Measured { leaves: None }).unwrap();
+    let hours = |date: &str| {
+        let days = Days { dates: vec![date.to_owned()], time_step_min: Some(60.0), ..Days::default() };
+        TileQuestion::SunHours { site: site(), days: SunHoursQuestion { days, ..SunHoursQuestion::default() } }
+    };
+    let questions =
+        [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25), interval: false }, hours("2026-01-10")];
+    let density = |plan: &Plan| plan.crown_density(None).unwrap();
+    let measured = |plan: Plan| {
+        let crowns =
+            CrownLight::Measured { leaves: Leaves::ByDate, density: density(&plan), shadows: CrownShadows::Answers };
+        plan.with_light_through_trees(crowns).unwrap()
+    };
     let folder = |name: &str| place.path().join(name);
     let opaque = done(&clouds, &folder("opaque"), 512.0, &questions, |plan| plan);
     let whole = done(&clouds, &folder("whole"), 512.0, &questions, measured);
     let tiles = done(&clouds, &folder("tiles"), 64.0, &questions, measured);
+    // the simulated survey is of 17 March: without leaves, as in January
+    assert_eq!([&whole, &tiles].map(density), [Some(crown_density(Foliage::Bare)); 2]);
+    let says_leaves = |plan: &Plan, date: &str| {
+        let plan = plan.clone().with_questions(vec![hours(date)], &Control::none()).unwrap();
+        plan.remarks.iter().any(|remark| remark.key == "leaves-unlike-measured")
+    };
+    for plan in [&whole, &tiles] {
+        assert!(says_leaves(plan, "2026-06-10") && !says_leaves(plan, "2026-01-10"));
+    }
+    let [of_whole, of_tiles] = [(&whole, "whole"), (&tiles, "tiles")].map(|(plan, name)| crowns(plan, &folder(name)));
+    assert!(of_whole.len() > 1000 && of_whole == of_tiles, "{} {}", of_whole.len(), of_tiles.len());
     let [solid, found, of_tiles] = [(&opaque, "opaque"), (&whole, "whole"), (&tiles, "tiles")]
         .map(|(plan, name)| codes(plan, &folder(name), &questions[0]));
     assert!(found == of_tiles, "shadows of tiles differ");
@@ -227,6 +248,25 @@ fn light_through_measured_crowns_is_the_same_in_tiles_of_any_size() {
     assert!(found == of_tiles, "views of the sky from tiles differ");
     let more = found.iter().filter(|(cell, v)| **v > solid[*cell]).count();
     assert!(more > 100, "{more} cells see more of the sky through crowns");
+    let [solid, found, of_tiles] = [(&opaque, "opaque"), (&whole, "whole"), (&tiles, "tiles")]
+        .map(|(plan, name)| numbers(plan, &folder(name), &questions[2]));
+    assert!(found == of_tiles, "sun hours of tiles differ");
+    let more = found.iter().filter(|(cell, v)| **v > solid[*cell] + 0.1).count();
+    assert!(more > 100, "{more} cells get more sun through crowns");
+}
+
+/// Voxels of the crowns of all tiles, with the bits of their extinction.
+fn crowns(plan: &Plan, folder: &Path) -> BTreeMap<[i32; 3], u32> {
+    let mut all = BTreeMap::new();
+    for tile in &plan.tiles {
+        let path = folder.join("balls").join(format!("{}.crowns.npz", tile.name()));
+        let Some(medium) = path.exists().then(|| read_balls(&path).unwrap().medium.unwrap()) else { continue };
+        let of_tile = medium.voxels.iter().zip(&medium.extinction);
+        let before = all.len();
+        all.extend(of_tile.map(|(voxel, extinction)| (*voxel, extinction.to_bits())));
+        assert_eq!(all.len(), before + medium.len(), "a voxel belongs to one tile");
+    }
+    all
 }
 
 /// Height of a ridge north of the town, and where its side stands, file coordinates.

@@ -161,7 +161,7 @@ function withProbabilities(answer) {
 // Date, time and zone as questions have them, and what gets through trees.
 function timeNow() {
   const { date, zone, minutes, trees } = page.time;
-  return { date, zone, clock: clockText(minutes), trees: trees === "seasons" ? { seasons: "by_date" } : trees };
+  return { date, zone, clock: clockText(minutes), trees: trees === "opaque" ? trees : { [trees]: "by_date" } };
 }
 // Whether answers are compared with those of another time.
 const isCompared = (tool) => Boolean(tool.between && page.compared && !isChange() && !api.exported);

@@ -1,6 +1,7 @@
 //! Hours of sun against closed forms, and against every sun and every ball tried in turn.
 
 use crate::common::light_share;
+use belvedere::ExtinctionVoxels;
 use belvedere::apps::rows::{CrownRows, RowBlock};
 use belvedere::apps::sun::{
     Binning, Date, DayParams, Period, Refraction, Site, SunSchedule, Zone, sun_days, sun_position_with,
@@ -8,6 +9,7 @@ use belvedere::apps::sun::{
 use belvedere::apps::sun_hours::{RuleDays, SunHours, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
+use belvedere::medium::Medium;
 use belvedere::query::{BlockRule, MedialScene, VisibilityMatrix};
 use belvedere::random::uniform;
 
@@ -209,6 +211,55 @@ fn light_through_crowns_counts_by_the_share_of_its_day() {
     }
     assert_eq!((&found.first, &found.last, &found.longest), (&none.first, &none.last, &none.longest));
     assert!(of(&[0.5; 3]).is_err());
+}
+
+#[test]
+fn a_sun_behind_crowns_may_be_free_before_leaves_and_not_after() {
+    let site = site(52.0);
+    // days on both sides of 7 April, whose suns share directions
+    let dates = ["2026-04-05", "2026-04-08"].map(date).to_vec();
+    let schedule = schedule(&site, dates, &plain(600.0), Binning::Within(2f64.to_radians()));
+    let steps = schedule.days.iter().map(|day| day.steps.len()).sum::<usize>();
+    assert!(schedule.directions.len() < steps, "{} of {steps}", schedule.directions.len());
+    // a layer of leaves from 5 to 8 m: depths of 0.3 overhead, and of half the light at 26 degrees
+    let layer = |i: i32| [i % 200 - 100, i / 200 % 200 - 100, 5 + i / 40_000];
+    let mut voxels: Vec<[i32; 3]> = (0..3 * 40_000).map(layer).collect();
+    voxels.sort_unstable();
+    let extinction = vec![0.1; voxels.len()];
+    let medium = Medium::new(&ExtinctionVoxels { voxels, extinction }, [0.0; 3]);
+    let targets = [[0.5, 0.5, 0.0], [-3.5, 2.5, 1.0], [0.5, 0.5, 20.0]];
+    let open = scene(&[[0.0, 0.0, -100.0]], &[1.0]);
+    let matrix = open.visibility_matrix(&targets, &schedule.directions, &Control::none()).unwrap();
+    let directions = &schedule.directions[..];
+    let crowns = Some(CrownRows::Measured { medium: &medium, targets: &targets, directions });
+    let block = RowBlock { crowns, ..RowBlock::from(matrix) };
+    let factors = [0.2, 1.0];
+    let found = sun_hours_through_crowns(&block, &schedule, None, &SunHoursParams::default(), &factors).unwrap();
+    for (number, target) in targets.iter().enumerate() {
+        let mut sums = Vec::new();
+        let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (day, factor) in schedule.days.iter().zip(factors) {
+            let mut hours = 0.0;
+            for step in &day.steps {
+                let towards = directions[step.direction as usize];
+                let depth = factor * medium.optical_depth(target.map(f64::from), towards, f64::INFINITY);
+                hours += f64::from(step.hours) * (-depth).exp();
+                if depth <= 2f64.ln() {
+                    first = first.min(f64::from(step.start));
+                    last = last.max(f64::from(step.start + step.hours));
+                }
+            }
+            sums.push(hours);
+        }
+        // sums of f32
+        let is_near = |found: f32, expected: f64| (f64::from(found) - expected).abs() < 1e-3;
+        assert!(is_near(found.hours[number], f64::midpoint(sums[0], sums[1])), "{number}");
+        assert!(is_near(found.first[number], first) && is_near(found.last[number], last), "{number}");
+    }
+    // bare crowns let the low sun through, leaves would not
+    let of_leaves = sun_hours_through_crowns(&block, &schedule, None, &SunHoursParams::default(), &[1.0; 2]).unwrap();
+    assert!(found.first[0] < of_leaves.first[0] - 0.5 && found.longest[0] > of_leaves.longest[0] + 1.0);
+    assert_eq!((found.first[2], found.hours[2]), (of_leaves.first[2], of_leaves.hours[2]));
 }
 
 #[test]

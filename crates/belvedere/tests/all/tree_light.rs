@@ -2,13 +2,18 @@
 #![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use crate::common::light_share;
+use belvedere::apps::ask::remark_on_leaves;
 use belvedere::apps::rows::{CrownRows, RowBlock};
 use belvedere::apps::sky_view::{SkyDirections, sky_through_crowns};
-use belvedere::apps::tree_light::{Foliage, Transmissivity};
+use belvedere::apps::tree_light::{
+    CrownLight, CrownShadows, Foliage, Leaves, Season, Transmissivity, measured_density,
+};
 use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, vegetation_of_classes, vegetation_of_transmission, without_vegetation};
+use belvedere::model::FlightDays;
 use belvedere::query::{BlockRule, MedialScene, VisibilityMatrix};
 use belvedere::view::to_sun;
+use belvedere::{Attributes, GpsTimeKind};
 
 const LEAF: u8 = 5;
 const WALL: u8 = 6;
@@ -114,6 +119,57 @@ fn trees_are_in_leaf_from_april_to_october_and_half_a_year_later_in_the_south() 
     assert_eq!(in_leaf(-0.1), 366);
     let usual = Transmissivity::default();
     assert!(usual.of(Foliage::InLeaf) < 0.06 && (0.4..=0.53).contains(&usual.of(Foliage::Bare)));
+}
+
+/// Points measured at noon of days, seconds since 1970.
+fn flown_on(noons: &[f64]) -> FlightDays {
+    // GPS times of files count from 10⁹ s after 6 January 1980, without the 18 leap seconds since
+    let times = noons.iter().map(|noon| noon - 1e9 - 315_964_800.0 + 18.0).collect();
+    let gps_time_kind = GpsTimeKind::AdjustedStandard;
+    FlightDays::of(&Attributes { gps_time: Some(times), gps_time_kind, ..Attributes::default() })
+}
+
+#[test]
+fn crowns_measured_bare_are_denser_in_leaf_by_what_leaves_take_of_the_light() {
+    let (north, south) = (52f64.to_radians(), -35f64.to_radians());
+    // 10 February and 10 July 2020
+    let [winter, summer] = [1_581_336_000.0, 1_594_382_400.0];
+    // what is left of the light in leaf, 0.03, and bare, 0.5, as depths
+    let bare = 0.5f64.ln() / 0.03f64.ln();
+    let density = |noons: &[f64], latitude: f64| measured_density(&flown_on(noons), latitude);
+    assert_eq!((density(&[winter], north), density(&[summer], north)), (Some(bare), Some(1.0)));
+    assert_eq!((density(&[winter], south), density(&[summer], south)), (Some(1.0), Some(bare)));
+    assert_eq!((density(&[winter], 0.1), density(&[], north)), (Some(1.0), None));
+    let both = density(&[winter, winter, winter, summer], north).unwrap();
+    assert!((both - (0.75 * bare + 0.25)).abs() < 1e-12, "{both}");
+    let crowns = |density, leaves| CrownLight::Measured { leaves, density, shadows: CrownShadows::Answers };
+    let on = |day_of_year| Some(Season { day_of_year, latitude: north });
+    let of_winter = crowns(density(&[winter], north), Leaves::ByDate);
+    // as flown in winter and where no date is asked for, and by leaves in summer
+    assert_eq!([on(41), None, on(172)].map(|season| of_winter.factor(season)), [1.0, 1.0, 1.0 / bare]);
+    let of_summer = crowns(density(&[summer], north), Leaves::ByDate);
+    assert_eq!([on(41), None, on(172)].map(|season| of_summer.factor(season)), [bare, 1.0, 1.0]);
+    // what is given holds against the date, and nothing where the day of the flight is unknown
+    assert_eq!(crowns(Some(bare), Leaves::On).factor(on(41)), 1.0 / bare);
+    assert_eq!(crowns(Some(bare), Leaves::Off).factor(on(172)), 1.0);
+    assert_eq!([on(41), on(172)].map(|season| crowns(None, Leaves::ByDate).factor(season)), [1.0, 1.0]);
+}
+
+#[test]
+fn a_remark_says_what_became_of_leaves() {
+    let crowns = |density, leaves| CrownLight::Measured { leaves, density, shadows: CrownShadows::Answers };
+    let in_june = Some(Season { day_of_year: 172, latitude: 0.9 });
+    let key =
+        |crowns: CrownLight, season| remark_on_leaves(crowns, crowns.factors_asked([season])).map(|remark| remark.key);
+    let unlike = Some("leaves-unlike-measured");
+    assert_eq!(key(crowns(Some(0.2), Leaves::ByDate), in_june), unlike);
+    assert_eq!(key(crowns(Some(1.0), Leaves::ByDate), in_june), None);
+    assert_eq!(key(crowns(Some(1.0), Leaves::Off), None), unlike);
+    assert_eq!(key(crowns(None, Leaves::ByDate), in_june), Some("leaves-not-known"));
+    assert_eq!(key(crowns(None, Leaves::ByDate), None), None);
+    let denser = crowns(Some(0.25), Leaves::ByDate);
+    let remark = remark_on_leaves(denser, denser.factors_asked([in_june])).unwrap();
+    assert!(remark.text.contains("4 times as dense") && remark.text.contains("too dark"), "{}", remark.text);
 }
 
 #[test]

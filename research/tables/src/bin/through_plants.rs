@@ -7,7 +7,7 @@
 //!
 //! prints a table of docs/methods/tree-light.md. `pulse` keeps out a tenth of the pulses, `line` whole flight lines,
 //! one after the other. A pulse that was kept out and runs through crowns of the model has a truth: the share of its
-//! returns that lie behind all plants, on the ground or on roofs. Predicted are 0 or 1 by balls, which are opaque; 0.03
+//! returns that lie behind all plants, on the ground, within half a metre above it, or on roofs. Predicted are 0 or 1 by balls, which are opaque; 0.03
 //! where balls of plants stand in the way (`seasons` without a medium); and exp(−τ) of the medium. A pulse that ends in
 //! a plant is followed to the ground.
 #![allow(clippy::print_stdout, reason = "an example talks")]
@@ -34,6 +34,8 @@ const CELL: f64 = 2.0;
 const CLEARANCE: f64 = 0.3;
 /// Least share of a cloud that is left to build from where a line is kept out.
 const MIN_LEFT: f64 = 0.25;
+/// Height above the ground up to which returns count as ground, metres: grass, which is no part of a medium.
+const GRASS: f64 = 0.5;
 /// Optical depth from which on a line runs through plants.
 const MIN_DEPTH: f64 = 1e-6;
 const NAMES: [&str; 3] = ["opaque balls", "0.03 through balls", "medium"];
@@ -166,7 +168,8 @@ impl<'a> Survey<'a> {
     fn line(&self, pulse: usize, scanner: [f32; 3]) -> Option<Line> {
         let returns = self.pulses.returns_of(pulse);
         let place = |row: u32| self.cloud.positions[row as usize].map(f64::from);
-        let is_end = |row: u32| matches!(class(self.cloud, row as usize), 2 | 6 | 9);
+        let is_low = |row: u32| self.ground_at(place(row)).is_some_and(|ground| place(row)[2] < ground + GRASS);
+        let is_end = |row: u32| matches!(class(self.cloud, row as usize), 2 | 6 | 9) || is_low(row);
         let lowest = returns.iter().copied().min_by(|&a, &b| place(a)[2].total_cmp(&place(b)[2]))?;
         let scanner = scanner.map(f64::from);
         let end = place(lowest);
