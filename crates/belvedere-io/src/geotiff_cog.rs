@@ -200,7 +200,7 @@ fn file<'a>(
     let sizes: Vec<usize> = (0..levels.len())
         .map(|number| {
             let tags = directory(number, &vec![0; levels[number].tiles.len()]);
-            2 + 12 * tags.len() + 4 + tags.iter().map(Tag::beside).sum::<usize>()
+            2 + 12 * tags.len() + 4 + tags.iter().map(Tag::bytes_beside).sum::<usize>()
         })
         .collect();
     let mut next = 8 + sizes.iter().sum::<usize>();

@@ -62,7 +62,7 @@ pub(super) const NORMAL: [Role; 3] = [Role::NormalX, Role::NormalY, Role::Normal
 const COLOR: [Role; 3] = [Role::Red, Role::Green, Role::Blue];
 
 /// The role of a column by its name in any of the formats, or `None` where the name says nothing.
-fn role_of(name: &str) -> Option<Role> {
+pub(super) fn role_of(name: &str) -> Option<Role> {
     // Called for every number of a PLY file, hence no allocation.
     let mut buffer = [0_u8; 24];
     let mut length = 0;

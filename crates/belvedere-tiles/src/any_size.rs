@@ -140,7 +140,7 @@ impl SurveyQuestion {
         whereabouts.remark(&mut context);
         let (suns, how_sure) = match &question {
             ask::Question::Shadow(about) => {
-                (about.suns.over(&about.place, &whereabouts, &mut Context::default())?, about.how_sure)
+                (about.suns.resolve(&about.place, &whereabouts, &mut Context::default())?, about.how_sure)
             }
             _ => (Vec::new(), HowSure::default()),
         };

@@ -194,7 +194,7 @@ impl TileQuestion {
         }
         match question {
             ask::Question::Shadow(shadow) => {
-                let suns = shadow.suns.over(&shadow.place, whereabouts, context)?;
+                let suns = shadow.suns.resolve(&shadow.place, whereabouts, context)?;
                 Ok(Self::of_suns(&suns, &shadow.how_sure))
             }
             ask::Question::SunHours(hours) => {
@@ -437,14 +437,13 @@ impl TileQuestion {
                 Ok(PreparedQuestion::Light(LightQuestion::Sky(sky, intervals)))
             }
             Self::SunHours { site, days } => Ok(PreparedQuestion::Light(LightQuestion::SunHours {
-                plan: Box::new(days.plan(site, None)?.0),
+                plan: Box::new(days.plan(site)?.0),
                 site: *site,
                 intervals: Intervals::wanted(days.interval),
             })),
-            Self::SunRule { site, days, .. } => Ok(PreparedQuestion::Light(LightQuestion::SunRule {
-                plan: Box::new(days.plan(site, None)?.0),
-                site: *site,
-            })),
+            Self::SunRule { site, days, .. } => {
+                Ok(PreparedQuestion::Light(LightQuestion::SunRule { plan: Box::new(days.plan(site)?.0), site: *site }))
+            }
             Self::Irradiance { site, radiation, params, interval } => {
                 let seasons = radiation.seasons(&site.validate()?, crowns, params, context, control)?;
                 let directions = seasons.iter().flat_map(|season| season.radiation.directions()).collect();

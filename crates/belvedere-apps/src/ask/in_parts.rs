@@ -35,7 +35,7 @@ pub fn summarise_parts(
         }
         Question::SunHours(about) => {
             let site = about.place.site_at(whereabouts, &mut aside, None)?;
-            let (plan, zone) = about.plan(&site, None)?;
+            let (plan, zone) = about.plan(&site)?;
             let title = about.title(&plan, &zone, whereabouts);
             sun_hours::summarise(&plan, &title, measures, &places, context);
             title

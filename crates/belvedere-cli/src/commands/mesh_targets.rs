@@ -1,6 +1,6 @@
 //! `belvedere query` for targets that are a mesh.
 
-use super::{check_output, extension, sights};
+use super::{check_output, extension, view_obstacles};
 use crate::arguments::{GivingWay, Global, MeshTargets, Query, Usage};
 use crate::pipeline::{self, KeepPoints, LoadedScene, mesh_in};
 use crate::run::CommandContext;

@@ -1,7 +1,7 @@
 //! `belvedere protected-view`.
 
 use super::heights::write_heights;
-use super::landmark::what;
+use super::landmark::landmark_shape;
 use super::{check_output, extension};
 use crate::arguments::{Global, ProtectedViewArguments};
 use crate::pipeline::{self, KeepPoints};

@@ -1,6 +1,6 @@
 //! `belvedere query`.
 
-use super::{check_output, extension, mesh_targets, sights};
+use super::{check_output, extension, mesh_targets, view_obstacles};
 use crate::arguments::{Global, Query, Usage};
 use crate::pipeline::{self, KeepPoints, LoadedScene};
 use crate::run::CommandContext;

@@ -197,7 +197,7 @@ impl TileLists {
         let mut keys: Vec<u64> = listed
             .iter()
             .chain(wide)
-            .map(|&i| u64::from(ascending_bits(S::near(&splats[i as usize]))) << 32 | u64::from(i))
+            .map(|&i| u64::from(ascending_bits(S::nearest_depth(&splats[i as usize]))) << 32 | u64::from(i))
             .collect();
         keys.sort_unstable();
         keys
@@ -256,7 +256,7 @@ impl<'a, S: SplatSurface> Tile<'a, S> {
             #[expect(clippy::cast_possible_truncation, reason = "the low half of a key is a place")]
             let splat = &splats[key as u32 as usize];
             // finding the farthest depth of the whole tile costs as much as a few balls
-            if drawn % 32 == 31 && S::near(splat) > self.farthest_of_all() {
+            if drawn % 32 == 31 && S::nearest_depth(splat) > self.farthest_of_all() {
                 return;
             }
             self.draw_ball(splat, with_items);
@@ -274,7 +274,7 @@ impl<'a, S: SplatSurface> Tile<'a, S> {
             for block_column in x0 / BLOCK..=(x1 - 1) / BLOCK {
                 let block = block_row * BLOCKS + block_column;
                 let corner = [block_column * BLOCK, block_row * BLOCK];
-                if S::near(splat) > self.farthest_of(block)
+                if S::nearest_depth(splat) > self.farthest_of(block)
                     || self.shape.min_depth(&self.pixels, splat, corner) > self.farthest[block]
                 {
                     continue;

@@ -8,7 +8,6 @@
 use super::believed::{Placed, placed};
 use belvedere_data::control::Control;
 use belvedere_data::{PointCloud, Result};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -333,6 +332,9 @@ mod tests {
     use super::*;
     use belvedere_data::Attributes;
     use belvedere_data::random::uniform;
+
+    /// Class of ground in LAS files.
+    const GROUND: u8 = 2;
 
     /// A point of a test: place, class and strip.
     type Return = ([f32; 3], u8, u16);

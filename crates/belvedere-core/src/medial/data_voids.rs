@@ -109,8 +109,9 @@ impl<'a> DataVoids<'a> {
             let rows = start..balls.len().min(start + BALLS_AT_ONCE);
             let empty: Vec<(usize, Cell)> = rows.into_par_iter().flat_map_iter(empty_cells).collect();
             // a void is made of squares of 3 × 3 empty cells
-            let middles =
-                unique(empty.par_iter().map(|&(_, cell)| cell).collect()).into_par_iter().flat_map_iter(about);
+            let middles = unique(empty.par_iter().map(|&(_, cell)| cell).collect())
+                .into_par_iter()
+                .flat_map_iter(cell_and_neighbors);
             let is_new = |middle: &Cell| !floors.contains_key(middle) && self.is_empty_around(*middle);
             let middles = unique(middles.filter(is_new).collect());
             let floor = |middle| (middle, self.floor(middle).filter(|_| !stop.is_set()));
@@ -139,7 +140,7 @@ impl<'a> DataVoids<'a> {
         let is_dense = |&(_, count): &(Cell, u32)| spacing_of(count) <= self.params.max_spacing;
         let mut dense: Vec<Cell> = self.counts.iter().filter(is_dense).map(|(cell, _)| area(cell)).collect();
         dense.dedup();
-        Cells::new(dense.into_iter().flat_map(about).map(|area| (area, ())).collect(), |(), ()| ())
+        Cells::new(dense.into_iter().flat_map(cell_and_neighbors).map(|area| (area, ())).collect(), |(), ()| ())
     }
 
     /// The cells without points whose middle lies below or above the ball of this radius at a point with this outward

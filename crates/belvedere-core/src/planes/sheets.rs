@@ -75,7 +75,7 @@ impl Sheet<'_> {
             return;
         }
         let mut polygon = vec![[t0, z0], [t1, z0], [t1, z1], [t0, z1]];
-        polygon = clip(&polygon, |[t, z]| z - find_lower_roof(line.at(t, 0.0)));
+        polygon = clip(&polygon, |[t, z]| z - below(line.at(t, 0.0)));
         polygon = clip(&polygon, |[t, z]| above(line.at(t, 0.0)) - z);
         for axis in 0..2 {
             polygon = clip(&polygon, |[t, _]| -line.at(t, 0.0)[axis]);

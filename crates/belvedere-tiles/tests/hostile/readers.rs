@@ -9,7 +9,7 @@ use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{
     ReadOptions, RowsAre, Source, SystemBeside, Within, cloud_files, has_point_results, is_ball_file, read_balls,
-    read_cloud, read_geojson, read_horizon, read_las_head, read_matrix, read_mesh, read_observers, read_point_results,
+    read_cloud, read_geojson, read_horizon, read_las_head, read_mesh, read_observers, read_point_results,
     read_stations, read_table, read_text_rows, read_tif, read_trajectory, read_weather,
 };
 use belvedere::model::SceneModel;
@@ -78,7 +78,6 @@ pub(crate) const READERS: &[TriedReader] = &[
     TriedReader { file: "horizon.csv", read: |file, bytes| settle(read_horizon(Source::bytes(file, bytes))) },
     TriedReader { file: "horizon.json", read: |file, bytes| settle(read_horizon(Source::bytes(file, bytes))) },
     TriedReader { file: "weather.csv", read: |file, bytes| settle(read_weather(Source::bytes(file, bytes))) },
-    TriedReader { file: "matrix.npz", read: |file, bytes| settle(read_matrix(Source::bytes(file, bytes))) },
     TriedReader { file: "raster.tif", read: |file, bytes| settle(read_tif(Source::bytes(file, bytes))) },
     TriedReader { file: "tiles.vpc", read: |file, bytes| in_folder(file, bytes, catalogue) },
     TriedReader {

@@ -2,7 +2,7 @@
 
 use super::RequestContext;
 use super::places::{command_at, local, number};
-use super::sun::at;
+use super::sun::target_at;
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::typed;
 use belvedere::apps::ask::{self, IsovistsQuestion, Places, Remark, SkyViewQuestion, Standing};

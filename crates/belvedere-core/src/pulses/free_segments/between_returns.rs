@@ -62,7 +62,7 @@ impl FreeSegments {
         let ways: Vec<_> = (0..pulses.len()).into_par_iter().flat_map_iter(of_pulse).collect();
         stop.check()?;
         let (later, earlier): (Vec<_>, Vec<_>) = ways.into_iter().unzip();
-        Ok(Self::below(&later, &earlier, Some(self.top - params.headroom), params, control)?.0)
+        Ok(Self::build_below(&later, &earlier, Some(self.top - params.headroom), params, control)?.0)
     }
 }
 
