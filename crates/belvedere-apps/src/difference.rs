@@ -6,7 +6,7 @@ use belvedere_data::report::rounded;
 use belvedere_data::{Error, Result};
 use serde::Serialize;
 
-/// Changes up to this share of the largest one count as none: what rounding leaves of equal values.
+/// Maximum change, as a share of the largest one, that counts as none: the rounding of equal values.
 const ROUNDING: f64 = 1e-6;
 
 /// Separator between the description of a raster and its subject.
@@ -102,7 +102,7 @@ impl DifferenceReport {
     }
 }
 
-/// Takes the values of unproven cells away, and returns their number: in rasters of what one observer sees, which
+/// Clears the values of unproven cells, and returns their number: in rasters of the view of one observer, which
 /// `description` names, they are neither visible nor hidden. `unproven`, (M), is above 0 where a value is not proven.
 pub fn clear_unproven(values: &mut [f32], unproven: &[f32], description: Option<&str>) -> usize {
     if description.is_none_or(|text| text.split(SUBJECT).next() != Some(SEEN)) {
@@ -112,8 +112,8 @@ pub fn clear_unproven(values: &mut [f32], unproven: &[f32], description: Option<
     cells.map(|(value, _)| *value = f32::NAN).count()
 }
 
-/// Takes the values of cells on top of what was added away, before and after, and returns their number: they are other
-/// places than before. `added`, (M), is above 0 there.
+/// Clears the values of cells on top of added meshes, before and after, and returns their number: they are other places
+/// than before. `added`, (M), is above 0 there.
 pub fn clear_added(before: &mut [f32], after: &mut [f32], added: &[f32]) -> usize {
     let pairs = before.iter_mut().zip(after).zip(added).filter(|(_, added)| **added > 0.0);
     pairs.map(|((before, after), _)| (*before, *after) = (f32::NAN, f32::NAN)).count()

@@ -1,5 +1,5 @@
-//! Exposure of routes and windows to sun and sky: what studies of thermal comfort, daylight and property value ask of
-//! them.
+//! Exposure of routes and windows to sun and sky: the quantities of studies of thermal comfort, daylight and property
+//! value.
 
 use crate::rows::{check_normals, fold_rows, normals_of};
 use crate::sky_view::{SkyDirections, SkyView, sky_view};
@@ -88,7 +88,7 @@ pub enum ShadeAtEachSun {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exposure {
     /// `sky_view_factor`, `sky_openness`, for targets with normals `sky_component`, then `sun_hours`, `sun_share`,
-    /// `first_light`, `last_light` and `longest`; and what a group has of each.
+    /// `first_light`, `last_light` and `longest`; each with its meaning for a group.
     pub measures: Vec<(Measure, WholeIs)>,
     /// For each group the share of its weight that each direction of the sun does not reach, (groups) rows of (D);
     /// empty unless kept.

@@ -1,10 +1,10 @@
 //! A truth that every airborne cloud carries: pulses that were left out when the model was built.
 //!
-//! The way of a pulse to its first return is free, and what lies just behind its last return is not seen from the
+//! The way of a pulse to its first return is free, and the space just behind its last return is not seen from the
 //! scanner. Behind trees, fences and wires that is less certain than behind ground and buildings: a part of the beam
 //! may pass beside them, too weak for another return. Pulses that a method never saw therefore show how often it blocks
-//! what is free and sees through what is solid. Neighbouring pulses that it did see lie close by: the test says nothing
-//! of space that no pulse reached.
+//! free space and sees through solid space. Neighbouring pulses that it did see lie close by: the test says nothing of
+//! space that no pulse reached.
 
 use belvedere_core::pulses::{Pulses, SensorPositions};
 use belvedere_core::query::{Answer, UnprovenAs};
@@ -56,7 +56,7 @@ pub struct HeldOutPairs {
     pub surfaces: Vec<MetSurface>,
 }
 
-/// A cloud without some of its pulses, and what those pulses know.
+/// A cloud without some of its pulses, and the pairs known from those pulses.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HeldOut {
     /// Points to build from: all but the returns of pulses held out. Points that belong to no pulse are among them.
@@ -111,7 +111,7 @@ impl HeldOutPairs {
         self.surfaces.push(surface);
     }
 
-    /// The pairs of pulses that met what `keeps` keeps.
+    /// The pairs of pulses that met a surface accepted by `keeps`.
     #[must_use]
     pub fn of_surfaces(&self, keeps: impl Fn(MetSurface) -> bool) -> Self {
         let rows = (0..self.surfaces.len()).filter(|&row| keeps(self.surfaces[row]));

@@ -13,7 +13,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 const FIRST_STEP: f64 = PI / 1440.0;
 /// Halvings after steps that double: a sixteenth of the last step is not separated.
 const HALVINGS: usize = 4;
-/// Probabilities of what is nearly certain, and of what nearly cannot be.
+/// Probabilities of nearly certain and of nearly impossible answers.
 const LIKELY: f32 = 0.95;
 const UNLIKELY: f32 = 0.05;
 

@@ -1,4 +1,4 @@
-//! The profile along one line of sight: the ground, what stands on it, and the line.
+//! The profile along one line of sight: the ground, the obstacles on it, and the line.
 
 use belvedere_core::ground::Ground;
 use belvedere_core::query::{Curvature, EarthParams, MedialScene, merged_crossings};

@@ -50,7 +50,7 @@ pub trait ObstacleParts: Sync {
     fn medium(&self) -> Option<&Medium>;
 
     /// Computes which of `directions`, (D, 3) unit vectors, each of `targets`, (M, 3) local metres, sees. If trees let
-    /// a share of the light through, the second matrix has what each would see without them. The bits are those of one
+    /// a share of the light through, the second matrix is that of the scene without them. The bits are those of one
     /// scene of all parts. If crowns were measured, the first matrix is already without trees. Progress counts targets,
     /// once for each matrix.
     ///
@@ -162,7 +162,7 @@ pub struct RowBlock<'a> {
 /// Light through crowns to the targets of a block.
 #[derive(Clone, Debug)]
 pub enum CrownRows<'a> {
-    /// The same share of everything: what each target would see without trees.
+    /// The same share for all crowns: the matrix of the scene without trees.
     Share(VisibilityMatrix),
     /// Extinction measured by pulses.
     Measured {

@@ -1,4 +1,4 @@
-//! Shadow: what of the sun reaches a place, its disc taken as a point or as it is.
+//! Shadow: light of the sun at a place, its disc taken as a point or as it is.
 
 use crate::rows::{RowBlock, SkyObstacles, check_normals, fold_rows, normals_of};
 use crate::targets::Targets;
@@ -32,8 +32,8 @@ pub enum Edges {
     /// The sun is a point: a place is lit or not.
     #[default]
     Hard,
-    /// The sun is a disc of half a degree, of which a place sees a share: edges are as wide as 1/107 of the way to what
-    /// casts them.
+    /// The sun is a disc of half a degree, of which a place sees a share. Edges are as wide as 1/107 of the distance to
+    /// the object that casts them.
     Soft,
 }
 

@@ -31,7 +31,7 @@ pub const CLASSES: usize = 2 + MOVED_CLASSES.len();
 /// The errors that were found.
 const ERRORS: &str = include_str!("sum_errors.csv");
 
-/// Ends of the names of the measures that say how far a sum may be from the truth, and what these are.
+/// Ends of the names of the measures for the interval of a sum, and their meanings.
 pub const INTERVAL_MEASURES: [(&str, &str); 3] =
     [("expected", "expected value"), ("low", "5 % are lower in truth"), ("high", "5 % are higher in truth")];
 

@@ -17,7 +17,7 @@ use std::borrow::Cow;
 /// Distance of places behind last returns, metres: several times the spacing of points of most surveys, and less than
 /// the thickness of buildings.
 const BEHIND_M: f64 = 1.0;
-/// Side of the tiles that are resampled, metres: about a house with what stands around it.
+/// Side of the tiles that are resampled, metres: about a house with its surroundings.
 const TILE_SIDE_M: f32 = 25.0;
 /// Minimum probability of the more likely answer that counts as certain.
 const CERTAIN_FROM: f64 = 0.9;
@@ -68,11 +68,11 @@ pub struct PlacesReliability {
     pub wrong_percent: Option<Interval>,
     /// The answers.
     pub answers: FoundAnswers,
-    /// Wrong answers by what the pulse met; `None` where it met nothing of it.
+    /// Wrong answers by the surface that the pulse met; `None` for surfaces that no pulse met.
     pub wrong_percent_at: WrongBySurface,
 }
 
-/// Wrong answers by what a pulse met.
+/// Wrong answers by the surface that a pulse met.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct WrongBySurface {
     /// Ground or water.
@@ -144,8 +144,8 @@ impl ReliabilityParams {
     }
 }
 
-/// Keeps pulses of `cloud` out, makes the scene of the others with `model`, and compares its answers with what the
-/// pulses kept out know. The result is the same for any number of threads.
+/// Keeps pulses of `cloud` out, makes the scene of the others with `model`, and compares its answers with the truth
+/// known from the pulses kept out. The result is the same for any number of threads.
 ///
 /// Hidden places are those behind ground, water and buildings where points have these classes, and behind all last
 /// returns where not.
@@ -191,7 +191,7 @@ pub fn survey_reliability(
     })
 }
 
-/// The cloud without the pulses kept out, and what these know. Points that cleaning removes are no returns.
+/// The cloud without the pulses kept out, and the truth known from these. Points that cleaning removes are no returns.
 fn keep_out(
     cloud: &PointCloud,
     model: &ModelParams,
@@ -229,7 +229,7 @@ fn pulses_of(cloud: &PointCloud, control: &Control<'_>) -> Result<Pulses> {
     }
 }
 
-/// Lines of sight of which the truth is known, and what the scene says of them.
+/// Lines of sight of which the truth is known, with the answers of the scene.
 struct KnownCases {
     pairs: HeldOutPairs,
     is_visible: bool,

@@ -1,8 +1,9 @@
-//! Light through the crowns of trees: what share of it gets through, as pulses measured it, or the same for all crowns.
+//! Light through the crowns of trees: their transmission as measured by pulses, or the same for all crowns.
 //!
 //! Where pulses measured crowns, these are a medium: the share that gets along a line follows from its optical depth,
-//! and the balls that are no vegetation block beside it. Otherwise crowns are balls. Two matrices tell what all balls
-//! leave free and what those leave free that are not vegetation; what is free in the second only gets a constant share.
+//! and the balls that are no vegetation block beside it. Otherwise crowns are balls. One matrix has the lines that all
+//! balls leave free, a second those that balls other than vegetation leave free; lines free in the second only get a
+//! constant share.
 
 use crate::sun::{Date, Site};
 use belvedere_core::medium::Medium;
@@ -222,7 +223,7 @@ pub fn measured_density(days: &FlightDays, latitude: f64) -> Option<f64> {
     (count > 0.0).then(|| sum / count)
 }
 
-/// A scene without its vegetation, and what share of the light its vegetation lets through.
+/// A scene without its vegetation, and the share of the light that its vegetation lets through.
 pub struct TreeLight {
     /// The balls that are not vegetation.
     pub opaque: Arc<MedialScene>,

@@ -6,12 +6,12 @@
 //!
 //! The rule: a ball blocks a line of sight if a piece of the line more than [`BlockRule::bias`] metres from either end
 //! runs through it. A ball near an end counts with a smaller radius ([`BlockRule::radius_for`]), so that one wrong ball
-//! neither blinds an observer on a surface nor hides what lies on it. Both ends are treated alike: who looks and what
-//! is looked at can change places. An end that a ball holds even so is inside an obstacle ([`BlockRule::holds_end`]),
-//! and all its lines of sight are blocked.
+//! neither blinds an observer on a surface nor hides a target on it. Both ends are treated alike: observer and target
+//! can change places. An end that lies inside a ball even with the smaller radius is inside an obstacle
+//! ([`BlockRule::holds_end`]), and all its lines of sight are blocked.
 //!
-//! A picture plane, or the near limit of a picture, is no end at which anybody looks: what it cuts is taken away
-//! ([`BlockRule::blocks_before_plane`]).
+//! A picture plane, or the near limit of a picture, is not an end of a line of sight: the part of a ball before it is
+//! cut off ([`BlockRule::blocks_before_plane`]).
 //!
 //! # Source
 //! Peters, Ledoux & Biljecki 2015, section 3 (balls that block, and the cone of [`Profile::PaperCone`]). Bias and shell

@@ -1,4 +1,5 @@
-//! Eight numbers at once in WebAssembly, in two halves: what indexes test boxes, points and balls with in a browser.
+//! Eight numbers at once in WebAssembly, in two halves, for the tests of boxes, points and balls by indexes in a
+//! browser.
 
 use core::arch::wasm32::*;
 
@@ -67,7 +68,7 @@ impl Eight {
 
     /// Returns a bit mask of the lanes in which it is below the other.
     #[inline(always)]
-    pub(crate) fn below(self, other: Self) -> u32 {
+    pub(crate) fn less_than(self, other: Self) -> u32 {
         let [low, high] = self.with(other, |a, b| f32x4_lt(a, b)).0.map(|mask| u32::from(i32x4_bitmask(mask)));
         low | high << 4
     }

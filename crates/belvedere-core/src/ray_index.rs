@@ -75,8 +75,8 @@ impl Ray {
 /// Returns two ends of a line in a fixed order: first the one nearer to the local origin, where rounding is smaller
 /// than at a distant viewer. If both are equally far, the order is by x, then y, then z.
 ///
-/// What is rounded depends on the end from which a line is looked at. With one order for all, who looks and what is
-/// looked at can change places, and no answer changes.
+/// Rounding depends on the end from which a line is tested. With one order for all, observer and target can change
+/// places, and no answer changes.
 #[must_use]
 pub fn in_order([a, b]: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
     let key = |end: [f64; 3]| (dot(end, end), end);

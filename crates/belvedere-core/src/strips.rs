@@ -2,7 +2,7 @@
 //!
 //! Lines of one survey lie within a few centimetres of each other. Surveys that were not adjusted, or lines of
 //! different flights, differ by decimetres. Pulses of the lower line then end below the surface of the higher one, and
-//! balls block what was seen.
+//! balls block lines of sight that pulses saw.
 
 use belvedere_data::control::Control;
 use belvedere_data::{PointCloud, Result};
@@ -77,7 +77,7 @@ pub struct StripOffset {
 
 /// A pair differs by chance up to so many standard deviations of its median.
 const MAX_DEVIATIONS: f64 = 4.0;
-/// Deviations of pairs up to which they are believed, metres: beyond, what differs is no height of a line.
+/// Maximum deviation of a pair that counts, metres: a larger one is not a height difference of lines.
 const MAX_DEVIATION: f64 = 0.15;
 /// Weight of each line's own height, in cells, so that lines that meet no other stay and the mean of all does.
 const OWN_WEIGHT: f64 = 1e-3;

@@ -1,4 +1,4 @@
-//! Summary of a cloud in numbers, for people who need to know what a file is good for.
+//! Summary of a cloud in numbers, for people who need to know its uses.
 
 mod facades;
 mod room;

@@ -39,7 +39,7 @@ pub struct Edge {
     pub sd: f64,
     /// Number of sides between a return and a pulse that passed whose middles lie on it.
     pub count: usize,
-    /// Height of what lies below it, the median along the edge, metres below the roof.
+    /// Median depth of the surface below along the edge, metres below the roof.
     pub drop: f64,
 }
 

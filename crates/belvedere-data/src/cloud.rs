@@ -27,8 +27,8 @@ pub struct PointCloud {
     /// Places on the map, local metres, that the survey measured and whose points were cleared since, (C, 2): there is
     /// no hole in the survey.
     pub cleared_places: Vec<[f32; 2]>,
-    /// The files that the points come from, for writers that keep what a cloud does not hold. Empty where points come
-    /// from elsewhere.
+    /// The files of the points, for writers that keep columns and records that a cloud does not hold. Empty where
+    /// points come from elsewhere.
     pub files: CloudFiles,
 }
 
@@ -41,7 +41,7 @@ pub struct CloudFiles {
     pub rows: FileRows,
 }
 
-/// A file that points come from, and what it holds that a cloud has no place for.
+/// A file of points, with its contents that a cloud has no place for.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct CloudFile {
     /// Its path, or its name where it is no file.
@@ -197,7 +197,7 @@ impl PointCloud {
         Self { frame, ..Self::default() }
     }
 
-    /// The same cloud in another reference system: what its coordinates mean changes, not their numbers in metres.
+    /// The same cloud in another reference system: the meaning of its coordinates changes, not their numbers in metres.
     #[must_use]
     pub fn with_crs(mut self, crs: Crs) -> Self {
         self.frame.crs = crs;
@@ -238,8 +238,8 @@ impl PointCloud {
 
     /// This cloud with the local coordinates of another frame, whose reference system it takes over.
     ///
-    /// A cloud that says nothing of its coordinates, neither a system nor a unit, is taken to have those of the frame's
-    /// file. Set-ups of scanners are left out, with what their pulses saw of the sky.
+    /// A cloud without any information on its coordinates, neither a system nor a unit, is taken to have those of the
+    /// frame's file. Set-ups of scanners are left out, with the sky seen by their pulses.
     #[must_use]
     pub fn moved_to(mut self, frame: &Frame) -> Self {
         let is_silent = self.frame.crs == Crs::default();

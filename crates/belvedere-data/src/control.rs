@@ -93,7 +93,7 @@ pub struct OpenStage {
     pub done: usize,
 }
 
-/// The stages that are open, the innermost last: what a watcher that shows one stage at a time keeps.
+/// The stages that are open, the innermost last: the state of a watcher that shows one stage at a time.
 #[derive(Clone, Debug, Default)]
 pub struct OpenStages {
     open: Vec<OpenStage>,

@@ -205,8 +205,8 @@ impl Crs {
         is_known(self) && is_known(other) && !self.same_system(other)
     }
 
-    /// Refuses what is in this system where it contradicts that of the scene it is for; `what` is what the file at
-    /// `path` holds, such as "mesh".
+    /// Refuses a file in this system if it contradicts that of the scene it is for; `what` names the contents of the
+    /// file at `path`, such as "mesh".
     ///
     /// # Errors
     /// [`Error::UnusableCrs`].
@@ -293,7 +293,7 @@ impl Crs {
     }
 }
 
-/// A name without what programs write differently.
+/// A name reduced to the characters that programs write alike.
 fn plain(name: &str) -> String {
     name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
 }
@@ -451,8 +451,8 @@ impl GeographicProjection {
         Ok([x * self.metres_per_unit, y * self.metres_per_unit])
     }
 
-    /// Latitude and longitude in radians of an easting and northing in metres: what [`GeographicProjection::project`]
-    /// takes back to within a micrometre.
+    /// Latitude and longitude in radians of an easting and northing in metres: the inverse of
+    /// [`GeographicProjection::project`] within a micrometre.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for positions that the system cannot take back, and for systems without an inverse.

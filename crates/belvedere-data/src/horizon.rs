@@ -52,7 +52,7 @@ impl HorizonProfile {
         Ok(Self { rows })
     }
 
-    /// The profile of a table of azimuths and elevations, degrees, all around: what a file or a user gives.
+    /// The profile of a table of azimuths and elevations, degrees, all around, from a file or a user.
     ///
     /// # Errors
     /// - Errors of [`HorizonProfile::new`].

@@ -1,4 +1,4 @@
-//! The numbers that a scene consists of: what a ball file holds.
+//! The numbers that a scene consists of: the contents of a ball file.
 
 use crate::balls::MedialBalls;
 use crate::building_outlines::BuildingOutlines;
@@ -18,20 +18,20 @@ pub(crate) fn is_near(position: [f32; 3]) -> bool {
     position.iter().all(|v| v.abs() <= FARTHEST)
 }
 
-/// [`is_near`] of what is kept in double precision.
+/// [`is_near`] for positions in double precision.
 pub(crate) fn is_near_f64(position: [f64; 3]) -> bool {
     position.iter().all(|v| v.abs() <= f64::from(FARTHEST))
 }
 
-/// The plain data of a scene model: what is saved in a ball file and read from it.
+/// The plain data of a scene model: the contents of a ball file.
 ///
 /// The crate `belvedere` makes it from a cloud and answers from it (`SceneModel`).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ModelParts {
     /// Local coordinates of everything here: the frame of the cloud that the model was made from.
     pub frame: Frame,
-    /// The smallest box around the points that the balls were made from, local metres: what a view must hold to show
-    /// the scene. The balls may reach far beyond it.
+    /// The smallest box around the points that the balls were made from, local metres: a view must hold it to show the
+    /// scene. The balls may reach far beyond it.
     pub bounds: Bounds,
     /// The balls that block lines of sight.
     pub balls: MedialBalls,

@@ -1,4 +1,4 @@
-//! The parameters that can lie outside their range: what an error is about, without its words.
+//! The parameters that can lie outside their range: the subjects of errors, without their words.
 
 use std::fmt;
 
@@ -47,7 +47,7 @@ parameters! {
     ViewDirection => "view direction",
     /// Corner and sides of a viewport.
     Viewport => "viewport",
-    /// Pixels that a metre takes, of a viewport or of what a camera must show.
+    /// Pixels of a metre, in a viewport or required of a camera.
     PixelsPerMetre => "pixels per metre",
     /// View, or several from one eye.
     View => "view",
@@ -56,7 +56,7 @@ parameters! {
     // Observers, cameras and landmarks
     /// Place of an observer.
     Observer => "observer",
-    /// Place from which a page shows what is seen.
+    /// Place from which a page shows the visible parts of the scene.
     Viewpoint => "viewpoint",
     /// Azimuths between which an observer sees.
     Azimuth => "azimuth",
@@ -196,7 +196,7 @@ parameters! {
     FenceHeight => "height of the fence",
     /// Solar envelope to be written as a solid.
     Envelope => "envelope",
-    /// Mesh of what is planned.
+    /// Mesh of a planned building.
     AddedMesh => "mesh to add",
     /// Area or class that is removed.
     ClearedArea => "area to clear",

@@ -170,7 +170,8 @@ impl SurfacePatches {
     }
 }
 
-/// Sides of an area that a triangle is cut along at most: what more of them cross stays or goes with its middle.
+/// Maximum number of sides of an area that a triangle is cut along: a triangle that more of them cross stays or goes
+/// with its middle.
 const MAX_SIDES: usize = 1000;
 /// Pieces that are smaller are left out when triangles are cut, m²: a square millimetre.
 const MIN_AREA: f64 = 1e-6;

@@ -57,7 +57,7 @@ impl<'a> Address<'a> {
         Self::at_end_of(text).and_then(|(start, address)| start.is_empty().then_some(address))
     }
 
-    /// The first address of a text, which goes on to its end, and what stands before it.
+    /// The first address of a text, which goes on to its end, and the text before it.
     #[must_use]
     pub fn at_end_of(text: &'a str) -> Option<(&'a str, Self)> {
         let colon = text.find("://")?;

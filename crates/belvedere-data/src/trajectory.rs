@@ -56,7 +56,8 @@ pub struct TrajectoryQuality {
 pub struct ClockOffset {
     /// Clock of the trajectory.
     pub clock: TrajectoryClock,
-    /// Seconds added after the change of clock: 0, ±18 for a trajectory in UTC (or a cloud in UTC), or what pulses say.
+    /// Seconds added after the change of clock: 0, ±18 for a trajectory in UTC (or a cloud in UTC), or as fitted to
+    /// pulses.
     pub leap_seconds: f64,
     /// Cloud times at which the trajectory knows a position.
     pub known_count: usize,

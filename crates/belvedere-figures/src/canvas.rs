@@ -42,8 +42,8 @@ impl Colors<'_> {
     }
 }
 
-/// A picture in the making: what is nearer hides what is farther, in whatever order things are drawn. At equal depths
-/// what was drawn first stays.
+/// A picture in the making: nearer things hide farther ones, in whatever order they are drawn. At equal depths the
+/// first drawn stays.
 #[derive(Clone, Debug)]
 pub struct Canvas {
     view: View,
@@ -62,7 +62,7 @@ struct Mark {
 }
 
 impl Canvas {
-    /// An empty picture of what `view` shows.
+    /// An empty picture of the extent of `view`.
     #[must_use]
     pub fn new(view: &View, background: [u8; 3]) -> Self {
         let [width, height] = view.size_px;

@@ -10,7 +10,7 @@ use skrifa::metrics::BoundingBox;
 use skrifa::outline::{DrawSettings, OutlinePen};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
 
-/// Rows of a line of text at scale 1, pixels: capitals and what hangs below them.
+/// Rows of a line of text at scale 1, pixels: capitals and the descenders below them.
 pub(crate) const HEIGHT: usize = 8;
 
 /// Roboto, see `fonts/LICENSE`.
@@ -140,7 +140,7 @@ pub(crate) fn text_width(text: &str, scale: usize) -> usize {
     width
 }
 
-/// Draws `text` with the upper left corner of its line at (`x`, `y`); what lies outside the picture is cut off.
+/// Draws `text` with the upper left corner of its line at (`x`, `y`); parts outside the picture are cut off.
 pub(crate) fn draw_text(picture: &mut Picture, x: usize, y: usize, text: &str, scale: usize, color: [u8; 3]) {
     let Some(font) = ScaledFont::new(scale) else { return };
     let line = y as f32 + BASELINE * scale as f32;

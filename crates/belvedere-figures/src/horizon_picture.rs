@@ -16,7 +16,7 @@ const GRID: [u8; 3] = [178, 190, 202];
 /// Names of azimuths, eighths of a circle apart from north.
 const COMPASS: [&str; 9] = ["N", "NE", "E", "SE", "S", "SW", "W", "NW", "N"];
 
-/// A diagram of `elevations_deg`, one for each of equal steps clockwise from north: the sky pale, what stands before it
+/// A diagram of `elevations_deg`, one for each of equal steps clockwise from north: the sky pale, obstacles before it
 /// grey. Where `intervals_deg` has the ends of an interval, light grey lies between them, and a line on the elevation.
 /// It reaches from the horizon, or from the lowest elevation above -30 where one is below it, to the next ten degrees
 /// above the highest.

@@ -86,8 +86,8 @@ pub struct MapMark {
 pub enum MapLegend<'a> {
     /// Each colour and its meaning.
     Colors(&'a [([u8; 3], &'a str)]),
-    /// Colours from dark violet to yellow, as [`belvedere_io::ramp`] has them, between two values, with the name of
-    /// what is measured, and further colours with their meanings.
+    /// Colours from dark violet to yellow, as [`belvedere_io::ramp`] has them, between two values, with the name of the
+    /// measure, and further colours with their meanings.
     Ramp(&'a str, [f64; 2], &'a [([u8; 3], &'a str)]),
 }
 
@@ -284,7 +284,7 @@ fn framed(map: &Picture, what: &MapPicture<'_>, pixel: f64) -> Picture {
     sheet
 }
 
-/// The colours of a legend and what stands beside them.
+/// The colours of a legend and the text beside each.
 fn legend_lines(map: &MapPicture<'_>) -> Vec<([u8; 3], String)> {
     let (ticks, classes) = match &map.legend {
         MapLegend::Colors(colors) => (Vec::new(), *colors),

@@ -65,7 +65,8 @@ pub(super) fn write_frames(path: &Path, frames: &[Picture], milliseconds: u16) -
     })
 }
 
-/// Left, top, width and height of what differs between two pictures of one size; a pixel where nothing does.
+/// Left, top, width and height of the smallest rectangle with all differences of two pictures of one size; one pixel
+/// without any.
 fn changed(before: &Picture, after: &Picture) -> [usize; 4] {
     let bytes = 3 * after.width;
     let rows = || before.rgb.chunks_exact(bytes).zip(after.rgb.chunks_exact(bytes));

@@ -1,4 +1,4 @@
-//! Profiles along a line of sight: the ground, what stands on it, and the line.
+//! Profiles along a line of sight: the ground, the obstacles on it, and the line.
 
 use crate::font::{HEIGHT, draw_text, fitted, text_width};
 use crate::picture::{INK, PAPER, Picture};
@@ -29,7 +29,7 @@ pub struct DistanceProfile<'a> {
     pub title: &'a str,
 }
 
-/// The profile as a diagram: ground brown, what blocks grey, the line green to where it is blocked and red behind.
+/// The profile as a diagram: ground brown, obstacles grey, the line green to where it is blocked and red behind.
 /// Heights are exaggerated to fill it; both axes have their scale.
 #[must_use]
 pub fn profile_picture(profile: &DistanceProfile<'_>) -> Picture {

@@ -1,4 +1,4 @@
-//! The device as a backend: what it decides, and what happens when it cannot.
+//! The device as a backend: its decisions, and the fallback to the CPU.
 
 use crate::depth::Painter;
 use crate::device::{Device, DeviceInfo, DeviceKind, devices};
@@ -34,7 +34,7 @@ pub enum Choice {
     Number(usize),
 }
 
-/// A graphics processor as a backend. What it cannot do the CPU does.
+/// A graphics processor as a backend, with the CPU as its fallback.
 #[derive(Clone, Debug)]
 pub struct Gpu {
     shared: Arc<GpuState>,
@@ -53,7 +53,7 @@ pub(crate) struct GpuState {
     pixel_counts: Mutex<[usize; 2]>,
 }
 
-/// A device that is ready, with what it can do.
+/// A device that is ready, with its programs.
 #[derive(Debug)]
 pub(crate) struct Ready {
     pub(crate) device: Arc<Device>,

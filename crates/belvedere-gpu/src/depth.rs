@@ -87,7 +87,7 @@ impl<'v> DevicePicture<'v> {
         Self { view, shows, limits: view.limits(), starts: [0.0; 2], shell: 0.0 }
     }
 
-    /// Bounds of depth. What limits lines of sight is said by the start of `params`, not by the limits of the view.
+    /// Bounds of depth. The start of `params` limits lines of sight, not the limits of the view.
     pub(crate) fn bounds(view: &'v View, params: &BoundsParams) -> Self {
         let near = if view.is_central() { 0.0 } else { -ENDLESS };
         let starts = params.starts(view);
@@ -340,7 +340,7 @@ fn tiles_before([width, height]: [usize; 2]) -> [usize; LEVELS as usize + 1] {
     before
 }
 
-/// Pixels of a unit: a metre, or what is seen 45° off the axis, or at right angles to it.
+/// Pixels of a unit: a metre, or a direction 45° off the axis, or one at right angles to it.
 fn scale_of(view: &View) -> f64 {
     match view.projection {
         Projection::Orthographic { pixels_per_metre } => pixels_per_metre,

@@ -1,4 +1,4 @@
-//! Depth maps and bounds of depth of a backend: what the device draws, joined with what it left to the CPU.
+//! Depth maps and bounds of depth of a backend: the pixels drawn by the device, joined with those left to the CPU.
 
 use crate::backend::{GpuState, Ready};
 use crate::depth::{Candidate, DevicePicture, Drawn, PlacedBalls, place};

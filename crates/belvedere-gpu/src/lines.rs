@@ -150,7 +150,7 @@ impl Liner {
     /// by viewer: bit masks over the targets, 32 a word, of free and of blocked lines.
     ///
     /// # Errors
-    /// [`Error::Cancelled`], and [`Error::Device`] where the device fails: what was handed to `done` before is right.
+    /// [`Error::Cancelled`], and [`Error::Device`] where the device fails: the rows handed to `done` before are right.
     pub(crate) fn decide(
         &self,
         loaded: &Loaded,
@@ -322,7 +322,7 @@ fn viewer_bytes(at: [f64; 3], kind: u32) -> [u8; VIEWER_BYTES] {
     bytes
 }
 
-/// A place as the sum of two in single precision: rounded, and what was rounded.
+/// A place as the sum of two in single precision: rounded, and the remainder.
 fn split(place: [f64; 3]) -> ([f32; 3], [f32; 3]) {
     let rounded = place.map(single);
     (rounded, std::array::from_fn(|axis| single(place[axis] - f64::from(rounded[axis]))))

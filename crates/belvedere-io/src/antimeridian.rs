@@ -36,7 +36,7 @@ struct Chain {
     to: f64,
 }
 
-/// The polygons of what lies on one side of the meridian.
+/// The polygons of the part on one side of the meridian.
 fn side(rings: &[Vec<[f64; 2]>], is_inside: impl Fn(f64) -> bool) -> Vec<DegreeRings> {
     let (mut chains, mut whole): (Vec<Chain>, Vec<Vec<[f64; 2]>>) = (Vec::new(), Vec::new());
     for ring in rings {

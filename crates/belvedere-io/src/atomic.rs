@@ -74,8 +74,8 @@ impl Drop for Temporary {
 /// Writes a file and returns the result of `body`, after everything that it wrote is under `path`.
 ///
 /// The body writes to a temporary file in the same folder, which replaces `path` when the body succeeded. When it
-/// returns an error or panics, the temporary file is removed and what was under `path` stays as it was. A link is
-/// followed, so that its target is replaced; something that is not a plain file (a pipe, a device) is written directly.
+/// returns an error or panics, the temporary file is removed and the file at `path` stays unchanged. A link is
+/// followed, so that its target is replaced; a pipe, a device or another special file is written directly.
 ///
 /// # Errors
 /// [`Error::Io`] when the folder does not exist or writing fails, and whatever `body` returns.

@@ -14,7 +14,7 @@ use belvedere_data::{Error, Mesh, Parameter, Result};
 /// Choice of the levels of detail to read of each city object.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum LevelOfDetail {
-    /// The highest that has surfaces, object by object: what normals are best oriented with.
+    /// The highest that has surfaces, object by object: the best one to orient normals with.
     #[default]
     Highest,
     /// This one, such as `"1"`, `"1.3"` or `"2"`; objects without it are left out.
@@ -22,7 +22,7 @@ pub enum LevelOfDetail {
 }
 
 /// The surfaces of a CityJSON file, or of a sequence of features, as triangles, one object per city object (in the
-/// order of their identifiers), and what was left out.
+/// order of their identifiers), and counts of those left out.
 ///
 /// Solids, multi- and composite surfaces and solids, and instances of geometry templates are read; rings with holes are
 /// triangulated in their plane. The turning sense of the file is kept: counter-clockwise seen from outside. Coordinates
@@ -79,7 +79,7 @@ pub fn read_cityjson<'a>(source: impl Into<Source<'a>>, level_of_detail: &LevelO
     file.builder.finish()
 }
 
-/// A file being read, and what its geometries refer to.
+/// A file being read, and the targets of references in its geometries.
 struct CityFile<'a> {
     path: &'a Path,
     builder: MeshBuilder<'a>,

@@ -1,10 +1,10 @@
 //! Chunks of a COPC file that hold the points of a box, found in the hierarchy of the file.
 //!
 //! COPC is LAZ whose chunks are the nodes of an octree. The hierarchy names for each node where its chunk lies; it
-//! comes in pages, and of a large one only pages of nodes that meet the box are read. What the hierarchy claims is
+//! comes in pages, and of a large one only pages of nodes that meet the box are read. The claims of the hierarchy are
 //! compared with the chunk table before it is used, and the chunks are decompressed by the same reader as those of any
-//! LAZ file. Programs that rewrite a file may leave the records of an older order of its points; then these are passed
-//! over.
+//! LAZ file. Programs that rewrite a file may leave the records of an older order of its points; then these are
+//! ignored.
 //!
 //! # Source
 //! COPC specification 1.0: info record, section 3.1; hierarchy, section 3.2 (Bell, Belcher & Manning 2021).

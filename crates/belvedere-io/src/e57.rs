@@ -179,7 +179,7 @@ impl ScanLayout {
         roles
     }
 
-    /// The column with most bits, and their number: at least a byte, so that what fills up its last byte is no record.
+    /// The column with most bits, and their number: at least a byte, so that padding of its last byte is no record.
     fn widest(&self) -> Option<(usize, u64)> {
         let bits = self.columns.iter().map(|column| bits(&column.kind)).enumerate();
         bits.filter(|&(_, bits)| bits >= 8).max_by_key(|&(_, bits)| bits)

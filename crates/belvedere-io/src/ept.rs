@@ -137,7 +137,7 @@ struct HierarchyWalk {
 }
 
 impl HierarchyWalk {
-    /// Takes the nodes of a page, and gives the names of the pages below it; what is wrong with it otherwise.
+    /// Takes the nodes of a page, and gives the names of the pages below it; a message for a damaged page.
     fn read_page(
         &mut self,
         page: &str,

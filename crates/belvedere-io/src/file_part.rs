@@ -342,8 +342,8 @@ pub(super) fn single_step(coordinate: f64) -> f64 {
     if coordinate == 0.0 { 0.0 } else { (coordinate.abs().log2().floor() - 23.0).exp2() }
 }
 
-/// Scales `normals` to unit length where they are not within a thousandth of it; what has no direction becomes zero
-/// and is counted.
+/// Scales `normals` to unit length where they are not within a thousandth of it; those without a direction become zero
+/// and are counted.
 fn make_unit(normals: &mut [[f32; 3]]) -> usize {
     let mut absent = 0;
     for n in normals {

@@ -22,7 +22,7 @@ pub enum FeatureShape {
     Polygon(Vec<Vec<[f64; 3]>>),
 }
 
-/// A shape with what the file says of it. Features of several shapes give one for each.
+/// A shape with its properties in the file. Features of several shapes give one for each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GeojsonFeature {
     /// Its place.

@@ -31,7 +31,7 @@ pub enum BandValues<'a> {
     F32(&'a [Raster<f32>], f32),
 }
 
-/// The bands of a raster, and what a file says of them.
+/// The bands of a raster, with their names and description in a file.
 #[derive(Clone, Copy, Debug)]
 pub struct Bands<'a> {
     /// The values, at least one band.
@@ -58,8 +58,8 @@ pub struct Georeference {
 /// Writes `raster` as 32-bit floats, compressed without loss.
 ///
 /// Without a `georeference` the file carries no position and no system; `description` is for such rasters, in view
-/// space. With a `nodata` value, what is not finite is written as that value and marked so for GIS programs; without,
-/// infinities and NaN stay.
+/// space. With a `nodata` value, values that are not finite are written as that value and marked so for GIS programs;
+/// without, infinities and NaN stay.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a raster without pixels or with a side of more than `u32` pixels, [`Error::Io`].

@@ -1,5 +1,5 @@
-//! Cloud-optimised GeoTIFF: tiles, coarser levels, and directories before the data, so that programs read what they
-//! show and no more.
+//! Cloud-optimised GeoTIFF: tiles, coarser levels, and directories before the data, so that programs read only the part
+//! they show.
 //!
 //! # Source
 //! TIFF 6.0 (Adobe 1992), OGC GeoTIFF 1.1 (19-008r4), OGC Cloud Optimized GeoTIFF 1.0 (21-026).
@@ -47,7 +47,7 @@ pub fn write_cog<'a>(output: impl Into<Output<'a>>, bands: &Bands<'_>, place: &G
 
 /// A pixel, as it is stored.
 trait PixelType: Copy + PartialEq + Send + Sync {
-    /// Bits of a sample, and what kind of number it is by TIFF.
+    /// Bits of a sample, and the kind of its number in TIFF.
     const KIND: [u16; 2];
     fn put(self, bytes: &mut Vec<u8>);
 }
@@ -173,7 +173,7 @@ impl Tag {
         Self { number, kind: 2, count: bytes.len(), bytes }
     }
 
-    /// Bytes beside the directory: all but what fits into the entry, on even places.
+    /// Bytes beside the directory: those that do not fit into the entry, on even places.
     fn bytes_beside(&self) -> usize {
         if self.bytes.len() > 4 { self.bytes.len().next_multiple_of(2) } else { 0 }
     }

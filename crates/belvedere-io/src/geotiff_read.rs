@@ -29,8 +29,8 @@ pub enum ReadBands {
 /// The values of all bands of a raster, as they are stored.
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::Malformed`] for what is no such raster. More than 256 MB of values are refused, and more
-/// than the file can hold.
+/// [`Error::Io`], and [`Error::Malformed`] for other files. More than 256 MB of values are refused, and more than the
+/// file can hold.
 pub fn read_bands<'a>(source: impl Into<Source<'a>>) -> Result<ReadBands> {
     Ok(named_bands(source.into())?.1)
 }
@@ -129,7 +129,7 @@ pub struct NamedBand {
 /// A raster of numbers of any kind, with its place on the map.
 ///
 /// # Errors
-/// [`Error::Io`], and [`Error::Malformed`] for what is no raster of one band, unless Belvedere wrote it.
+/// [`Error::Io`], and [`Error::Malformed`] for files without a raster of one band, unless Belvedere wrote them.
 pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
     let Input { name, reader, size } = source.into().open()?;
     let mut decoder = decoder(reader, size).map_err(|e| damaged(&name, e))?;
@@ -191,7 +191,7 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
     Ok(PlacedRaster { values, name: name_of_first, place, description, further_bands })
 }
 
-/// The name of a band, by its number from 0, in what GDAL keeps of it; empty where it has none.
+/// The name of a band, by its number from 0, in the metadata of GDAL; empty where it has none.
 fn name_of_band(metadata: &str, band: usize) -> String {
     let item = format!("<Item name=\"DESCRIPTION\" sample=\"{band}\" role=\"description\">");
     let text = metadata.split_once(&item).and_then(|(_, rest)| rest.split_once("</Item>")).map(|(text, _)| text);
@@ -212,10 +212,10 @@ fn decoder(mut reader: SourceReader<'_>, size: u64) -> TiffResult<Decoder<Source
 }
 
 /// Bytes that the longest entry of the first directory claims to have. The decoder reads this directory, and allocates
-/// what it claims, before it takes limits.
+/// the claimed length, before it takes limits.
 ///
 /// # Errors
-/// Those of reading; what is no TIFF file is left to the decoder.
+/// Those of reading; files that are not TIFF are left to the decoder.
 fn longest_value(reader: &mut SourceReader<'_>) -> io::Result<u64> {
     let mut start = [0; 4];
     reader.read_exact(&mut start)?;

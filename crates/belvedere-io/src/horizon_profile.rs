@@ -11,7 +11,7 @@ use serde_json::Value;
 /// the first row.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`] for what holds no profile, and for numbers that [`HorizonProfile::of_degrees`]
+/// [`Error::Io`]; [`Error::Malformed`] for files without a profile, and for numbers that [`HorizonProfile::of_degrees`]
 /// refuses.
 pub fn read_horizon<'a>(source: impl Into<Source<'a>>) -> Result<HorizonProfile> {
     let (name, bytes) = source.into().read_text()?;

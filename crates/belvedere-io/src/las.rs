@@ -321,7 +321,7 @@ fn check_bounds(mut part: FilePart, bounds: [[f64; 2]; 3], scale: [f64; 3]) -> R
     Ok(part)
 }
 
-/// The points of a source, batch by batch, and what is known of all of them.
+/// The points of a source, batch by batch, and the properties known of all of them.
 pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<(FilePart, LasPoints<'a>)> {
     let rows = source.likely_rows.take();
     let (beside, announced) = (source.system_beside(), source.announced.take());
@@ -523,7 +523,7 @@ pub struct LasHead {
     pub has_channels: bool,
     /// Oddities of the file.
     pub notes: Vec<String>,
-    /// Contradictions in it, and with what other files announced.
+    /// Contradictions in it, and with the announcements of other files.
     pub contradictions: Vec<FoundContradiction>,
 }
 

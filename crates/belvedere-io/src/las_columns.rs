@@ -151,7 +151,7 @@ impl LasColumns {
         });
     }
 
-    /// The columns, and what of the records is no column.
+    /// The columns, and the fields of the records without a column.
     pub(super) fn finish(self) -> (Coordinates, Attributes, UnreadFields) {
         let coordinates = Coordinates::Quantised { values: self.positions, scale: self.scale, offset: self.offset };
         (coordinates, self.attributes, self.unread)

@@ -1,5 +1,5 @@
-//! The records of the LAS files that a cloud comes from, copied with columns of results: what a cloud has no place for
-//! stays as it is.
+//! The records of the LAS files that a cloud comes from, copied with columns of results: fields that a cloud has no
+//! place for stay unchanged.
 
 use std::path::Path;
 

@@ -1,6 +1,7 @@
 //! The header of a LAS or LAZ file and its variable-length records, checked against the size of the file.
 //!
-//! The las crate allocates what the header promises; here every length is compared with the size of the file first.
+//! The las crate allocates the length that the header claims; here every length is compared with the size of the file
+//! first.
 
 use std::io::{Read, Seek, SeekFrom};
 use std::ops::Range;
@@ -16,7 +17,7 @@ pub(super) struct LasHeader {
     pub(super) compressed: bool,
     pub(super) record_length: u16,
     pub(super) points_start: u64,
-    /// Byte behind the points: that of what follows them, or of the end of the file.
+    /// Byte behind the points: the first of the next record, or the end of the file.
     pub(super) points_end: u64,
     /// Points the header promises.
     pub(super) points: u64,

@@ -23,7 +23,7 @@ pub struct PointResults {
 /// Returns true if a LAS or LAZ file was written by Belvedere and has columns of results.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`] for what is no such file.
+/// [`Error::Io`]; [`Error::Malformed`] for other files.
 pub fn has_point_results<'a>(source: impl Into<Source<'a>>) -> Result<bool> {
     let file = LasFile::open(source.into().open()?)?;
     Ok(!result_columns(&file.header, &file.format).is_empty())
@@ -32,7 +32,7 @@ pub fn has_point_results<'a>(source: impl Into<Source<'a>>) -> Result<bool> {
 /// Reads the points of a LAS or LAZ file and its columns of results.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`] for what is no such file, is damaged, or has no columns of results.
+/// [`Error::Io`]; [`Error::Malformed`] for files that are of another kind, damaged, or without columns of results.
 pub fn read_point_results<'a>(source: impl Into<Source<'a>>) -> Result<PointResults> {
     let input = source.into().open()?;
     let name = input.name.clone();

@@ -1,4 +1,4 @@
-//! The reference system of a LAS file: its records, compared with each other and with what stands beside the file.
+//! The reference system of a LAS file: its records, compared with each other and with the files beside it.
 
 use super::file_part::{FilePart, Unnamed};
 use super::las_header::LasHeader;
@@ -9,9 +9,9 @@ use belvedere_data::crs::{Crs, CrsKind};
 /// Scales this fine are used for degrees, not for metres.
 const DEGREE_SCALE: f64 = 1.000_001e-6;
 
-/// Takes the system from the records of a file. Of several that agree, well-known text says most; where they do not
-/// agree, the bit of the header decides (LAS 1.4 R15, section 2.4), and the system is doubtful. A file without one has
-/// that of what stands `beside` it.
+/// Takes the system from the records of a file. Of several that agree, well-known text is the most complete; where they
+/// do not agree, the bit of the header decides (LAS 1.4 R15, section 2.4), and the system is doubtful. A file without
+/// one has that of the file `beside` it.
 pub(super) fn find_crs(part: &mut FilePart, header: &LasHeader, beside: Option<SystemBeside>, somewhere: [f64; 2]) {
     const USER: &str = "LASF_Projection";
     let mut unread = false;
@@ -72,7 +72,8 @@ pub(super) fn find_crs(part: &mut FilePart, header: &LasHeader, beside: Option<S
     part.take_system(beside, somewhere);
 }
 
-/// In what a record of a file contradicts another; `None` where it does not. Keys without a code say too little to.
+/// Contradiction of a record of a file with another; `None` without one. Keys without a code say too little to
+/// contradict.
 fn says_otherwise(record: &Crs, other: &Crs, somewhere: [f64; 2]) -> Option<String> {
     let says_nothing = |crs: &Crs| crs.wkt.is_none() && crs.epsg.is_none() && crs.kind == other.kind;
     if says_nothing(record) || (other.wkt.is_none() && other.epsg.is_none() && record.kind == other.kind) {

@@ -1,6 +1,6 @@
 //! LAZ chunks, checked before they are decompressed: the laz crate trusts sizes in the file and would allocate them.
 //!
-//! What is checked, and why, is listed in `docs/upstream.md`.
+//! The checks and their reasons are listed in `docs/upstream.md`.
 
 mod chunks;
 mod gps_times;

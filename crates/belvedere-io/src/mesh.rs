@@ -10,9 +10,9 @@ use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Mesh, Result};
 use std::io::Read;
 
-/// The mesh of a source (`.obj`, `.ply`, or CityJSON as `.city.json`, `.json`, `.cityjson`, `.jsonl`) and what was left
-/// out of it. CityJSON is read at the highest level of detail of each object. A mesh that names no reference system has
-/// that of the file `.prj` beside it, if there is one.
+/// The mesh of a source (`.obj`, `.ply`, or CityJSON as `.city.json`, `.json`, `.cityjson`, `.jsonl`) and counts of the
+/// parts left out. CityJSON is read at the highest level of detail of each object. A mesh that names no reference
+/// system has that of the file `.prj` beside it, if there is one.
 ///
 /// # Errors
 /// [`belvedere_data::Error::UnknownFormat`] for other extensions, [`belvedere_data::Error::MissingFeature`];

@@ -54,7 +54,8 @@ fn list(property: Property) -> Option<Vec<i64>> {
     })
 }
 
-/// The triangles of a PLY file with `vertex` and `face` elements (text or either binary order), and what was left out.
+/// The triangles of a PLY file with `vertex` and `face` elements (text or either binary order), and counts of those
+/// left out.
 ///
 /// Polygons may be concave. Coordinates are taken as metres. The mesh has no objects.
 ///

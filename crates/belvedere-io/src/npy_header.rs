@@ -16,7 +16,7 @@ const MAX_NESTING: usize = 8;
 /// The header of the array that `reader` holds from its present position on; leaves the reader at the numbers.
 ///
 /// # Errors
-/// [`io::ErrorKind::InvalidData`] for what is no array, and those of reading.
+/// [`io::ErrorKind::InvalidData`] for data that are no array, and those of reading.
 pub(crate) fn read_header(reader: &mut impl Read) -> io::Result<NpyHeader> {
     let invalid = |what: &str| io::Error::new(io::ErrorKind::InvalidData, what.to_owned());
     let mut start = [0; 8];

@@ -22,8 +22,8 @@ pub(crate) fn write_archive<W: Write + Seek, E: From<io::Error>>(
     Ok(archive.finish().map_err(io::Error::from)?.flush()?)
 }
 
-/// The file of an archive. After a failure everything else seems to succeed: the writer of the crate tries again when
-/// it is dropped, and prints what fails then.
+/// The file of an archive. After a failure all further writes seem to succeed: the writer of the crate tries again when
+/// it is dropped, and prints the failure then.
 pub(crate) struct ArchiveFile<W> {
     output: W,
     has_failed: bool,

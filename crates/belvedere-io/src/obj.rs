@@ -30,7 +30,7 @@ struct ObjFace {
     corners: Vec<usize>,
 }
 
-/// The triangles of an OBJ file, one object per `o` or `g` line, and what was left out.
+/// The triangles of an OBJ file, one object per `o` or `g` line, and counts of those left out.
 ///
 /// Polygons may be concave. Points, lines, materials and textures are passed over; a material library need not be
 /// there. A backslash at the end of a line continues it. Coordinates are taken as metres.
@@ -82,7 +82,7 @@ impl<'a> ObjFile<'a> {
         Ok(())
     }
 
-    /// Gives what the last line made its number.
+    /// Gives its number to the vertex or face of the last line.
     fn number_last(&mut self, line: usize) {
         if let Some((_, own)) = self.vertices.last_mut().filter(|(_, own)| *own == 0) {
             *own = line;

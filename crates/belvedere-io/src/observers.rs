@@ -11,7 +11,7 @@ use crate::table::read_table;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
 
-/// An observer, or a path of observers, as a file has it. What the file does not say is `None`.
+/// An observer, or a path of observers, as in a file. Values missing from the file are `None`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ObserverRow {
     /// One place, or the corners of a path, metres in the system of the cloud; a height of NaN is not given.
@@ -70,7 +70,8 @@ enum Unit {
     HeightOfFile,
 }
 
-/// Parts of names that speak of how somebody looks. What no [`Meaning`] has of these is named as not used.
+/// Parts of names that mention a direction or limit of a view. Columns with one of them but without a [`Meaning`] are
+/// named as not used.
 const TELLING: [&str; 15] = [
     "hgt", "height", "offset", "radius", "azim", "vert", "angle", "spot", "dist", "heading", "bearing", "tilt",
     "pitch", "fov", "elev",
@@ -79,7 +80,7 @@ const TELLING: [&str; 15] = [
 /// Height above its place that an observer with `SPOT` alone has in ArcGIS, in the unit of the file.
 const OFFSET_OF_SPOT: f64 = 1.0;
 
-/// Observers and paths of a file, and what of it was not used.
+/// Observers and paths of a file, and the names of its columns that were not used.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ObserverRows {
     /// One for each row or shape.
@@ -116,7 +117,7 @@ pub enum RowsAre {
 ///
 /// # Errors
 /// [`Error::UnknownFormat`], [`Error::Malformed`] for missing columns, text in place of numbers and files without
-/// observers, and what [`read_table`] and [`read_geojson`] refuse.
+/// observers, and the errors of [`read_table`] and [`read_geojson`].
 pub fn read_observers<'a>(source: impl Into<Source<'a>>, crs: &Crs, rows_are: RowsAre) -> Result<ObserverRows> {
     let source = source.into();
     let name = source.name().to_owned();

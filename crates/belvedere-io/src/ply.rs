@@ -92,7 +92,7 @@ impl<'a> PlyFile<'a> {
         self.header.comments.iter().map(String::as_str)
     }
 
-    /// Hands every vertex to `take`; what follows the vertices is not looked at.
+    /// Hands every vertex to `take`; data behind the vertices are not read.
     pub(super) fn for_each_vertex<V: PropertyAccess>(&mut self, take: impl FnMut(V) -> Result<()>) -> Result<()> {
         match self.for_each_row(VERTEX, take)? {
             true => Ok(()),

@@ -26,7 +26,7 @@ const MAX_CROSSED_CUBES: f64 = 1e10;
 /// itself.
 const MAX_CORNERS: usize = 20_000;
 
-/// Counts of a mesh file: contents and what was left out.
+/// Counts of a mesh file: contents and parts left out.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MeshReport {
     /// Polygons in the file, triangles included.

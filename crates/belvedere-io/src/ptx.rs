@@ -18,8 +18,8 @@ const MAX_LINE: u64 = 1 << 12;
 /// Lines of a scan's header: two sizes, scanner position and axes, a 4 x 4 matrix.
 const HEADER_LINES: usize = 10;
 
-/// The points of all scans of the source. Grid cells at (0, 0, 0), where nothing came back, are no points; those that
-/// see the sky say what is empty.
+/// The points of all scans of the source. Grid cells at (0, 0, 0), without a return, are no points; those that see the
+/// sky show empty space.
 ///
 /// # Errors
 /// [`Error::Malformed`] for a header that is no scan's, a transformation that is no rotation with a shift, an
@@ -120,7 +120,7 @@ impl PtxHeader {
         fault_of_rotation([x, y, z].map(|[a, b, c, _]| [a, b, c]))
     }
 
-    /// In what the head of the scan with this number contradicts the matrix; `None` for a head that was not filled.
+    /// Contradiction of the head of the scan with this number and the matrix; `None` for a head that was not filled.
     fn contradiction(&self, number: usize) -> Option<FoundContradiction> {
         if self.head == NO_HEAD {
             return None;

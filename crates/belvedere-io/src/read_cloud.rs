@@ -96,7 +96,7 @@ pub fn read_cloud<'a, S: Into<Source<'a>>>(
 
 /// The reference system that all files must share.
 pub(super) struct Systems {
-    /// The first that is known, and what names it.
+    /// The first known system, and the name of its source.
     known: Option<(Crs, String)>,
 }
 
@@ -150,7 +150,7 @@ pub fn cloud_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(cloud_sources(paths)?.0.iter().map(|source| source.name().to_owned()).collect())
 }
 
-/// The same files, each with what a hierarchy or a catalogue says of it; and what contradicts each other in these.
+/// The same files, each with its entry in a hierarchy or a catalogue; and contradictions among these.
 ///
 /// # Errors
 /// Those of [`cloud_files`].
@@ -214,7 +214,7 @@ pub(super) fn files_of<'a>(sources: impl Iterator<Item = Source<'a>>, reading: &
 
 /// Kind of a source.
 enum Opened<'a> {
-    /// A catalogue, with its files that may have points in the box to read, and what contradicts each other in it.
+    /// A catalogue, with its files that may have points in the box to read, and its contradictions.
     Catalogue(Vec<Source<'static>>, Vec<FoundContradiction>),
     Other(Box<Source<'a>>),
 }

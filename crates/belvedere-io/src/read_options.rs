@@ -174,7 +174,7 @@ impl ReadOptions {
         self
     }
 
-    /// Checks what no file is needed for, and gives the reference system of the option.
+    /// Checks the options that need no file, and gives the reference system of the option.
     pub(super) fn forced_crs(&self) -> Result<Option<Crs>> {
         let invalid = |parameter, value, expected| Err(Error::InvalidParameter { parameter, value, expected });
         if let Some(frame) = &self.frame
@@ -373,7 +373,7 @@ impl Selection {
         self.classes.is_some() || self.lines.is_some() || self.times.is_some()
     }
 
-    /// Refuses points that lack what they are chosen by.
+    /// Refuses points without the attributes that they are chosen by.
     fn check(&self, attributes: &Attributes) -> Result<()> {
         let is_dated = attributes.gps_time.is_some() && attributes.gps_time_kind == GpsTimeKind::AdjustedStandard;
         let lacking = [

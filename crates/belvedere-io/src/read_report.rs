@@ -52,7 +52,7 @@ pub struct FileReport {
     pub crs_source: String,
     /// Oddities of the file.
     pub notes: Vec<String>,
-    /// Contradictions in it, and with what other files announced.
+    /// Contradictions in it, and with the announcements of other files.
     pub contradictions: Vec<FoundContradiction>,
 }
 

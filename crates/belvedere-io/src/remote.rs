@@ -100,7 +100,7 @@ impl Pace {
         Self { bytes: 0, waited: Duration::ZERO, patience }
     }
 
-    /// Counts what came since `start`; says whether the server is too slow.
+    /// Counts the bytes received since `start`; returns true if the server is too slow.
     fn is_too_slow(&self, start: Instant, bytes: usize) -> bool {
         let waited = self.waited + start.elapsed();
         waited > self.patience && ((self.bytes + bytes as u64) as f64) < waited.as_secs_f64() * MIN_SPEED as f64
@@ -137,7 +137,7 @@ impl Remote {
     /// The file at `address`.
     ///
     /// # Errors
-    /// Those of connecting and of the server, in words that say what to do.
+    /// Those of connecting and of the server, in words that give advice.
     pub(crate) fn open(address: &str) -> Result<Self> {
         let first = Part { start: 0, length: FIRST_BYTES, size: None };
         let mut pace = Pace::new(NO_PROGRESS);

@@ -1,4 +1,4 @@
-//! Poses of scans: what turns scan into file coordinates must be a rotation.
+//! Poses of scans: a pose must be a rotation from scan to file coordinates.
 
 /// Maximum deviation of lengths and products of the axes of a rotation from one and zero: some programs write four
 /// digits.

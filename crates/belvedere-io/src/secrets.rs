@@ -1,7 +1,7 @@
 //! Users, passwords and keys of addresses, kept apart from the names that are shown and written.
 //!
 //! A name in the program never holds a secret: [`hidden`] cuts it where an address comes in, and only the client of web
-//! servers looks it up again. What was cut stays in memory, as long as the process runs.
+//! servers looks it up again. The parts cut stay in memory, as long as the process runs.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -19,10 +19,9 @@ struct Secret {
     query: String,
 }
 
-/// The address without user, password and key, which readers of this process know from then on; what is no address as
-/// it is.
+/// The address without user, password and key, which readers of this process know from then on; other paths unchanged.
 ///
-/// Files beside the address need the same secrets: what has the same ending, `?***`, on the same server gets them.
+/// Files beside the address need the same secrets: names with the same ending, `?***`, on the same server get them.
 #[must_use]
 pub fn hidden(path: &Path) -> PathBuf {
     match path.to_str().and_then(hidden_text) {

@@ -17,7 +17,7 @@ const MAX_BLOCKS: usize = 4 * BLOCKS[0] * BLOCKS[1];
 const SAMPLE: u64 = 500_000;
 const MIN_SAMPLE: usize = 100;
 /// Maximum deviation of the directions of 95 % of the returns from the regular grid, radians: 0.1°, 0.17 m in 100 m, a
-/// quarter of what a pulse proves around itself.
+/// quarter of the radius that a pulse proves around itself.
 const TOLERANCE: f64 = 0.1 * DEGREE;
 const TOLERATED_SHARE: f64 = 0.95;
 /// Margin about cells with a return, radians; at least a row. Beams and angles that are a little off graze no edge.
@@ -26,8 +26,8 @@ const MARGIN: f64 = 0.1 * DEGREE;
 const MIN_TOP: f64 = 45.0 * DEGREE;
 /// Smallest piece of the sky that counts, steradians: 36° across. The lamp and the skylight of a room are smaller.
 const MIN_SOLID_ANGLE: f64 = 0.3;
-/// Share of the returns that come from farther away than pulses prove their way empty. What returns that many pulses is
-/// no single reflector.
+/// Share of the returns that come from farther away than pulses prove their way empty. An object that returns that many
+/// pulses is no single reflector.
 const FARTHER_SHARE: f64 = 0.001;
 /// Maximum turn of the columns, radians: once around, and the part that scanners measure twice.
 const MAX_TURN: f64 = 1.05 * TAU;

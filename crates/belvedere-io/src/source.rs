@@ -169,10 +169,10 @@ impl<'a> Source<'a> {
         Ok((name, opened))
     }
 
-    /// The source at its first byte, without a buffer, and what tells its versions apart.
+    /// The source at its first byte, without a buffer, and a value that tells its versions apart.
     ///
     /// # Errors
-    /// [`Error::Io`]; [`Error::Malformed`] for what is no file.
+    /// [`Error::Io`]; [`Error::Malformed`] for a path that is no file.
     pub fn into_versioned_reader(self) -> Result<OpenSource<'a>> {
         Ok(self.opened()?.1)
     }
@@ -180,7 +180,7 @@ impl<'a> Source<'a> {
     /// A reader at the first byte of the source, and its size in bytes.
     ///
     /// # Errors
-    /// [`Error::Io`]; [`Error::Malformed`] for what is no file.
+    /// [`Error::Io`]; [`Error::Malformed`] for a path that is no file.
     pub fn into_reader(self) -> Result<(impl Read + Seek + Send + 'a, u64)> {
         let input = self.open()?;
         Ok((input.reader, input.size))
@@ -272,8 +272,8 @@ pub(crate) fn place_in(folder: &Path, path: &str) -> PathBuf {
     }
 }
 
-/// The folder of a file, and what an address has behind its path, such as a key, `ept.json?sig=KEY`: files below
-/// it need it too.
+/// The folder of a file, and the part of an address behind its path, such as a key, `ept.json?sig=KEY`: files below it
+/// need it too.
 pub(crate) fn folder_and_query(file: &Path) -> (PathBuf, &str) {
     let text = web_address(file).unwrap_or_default();
     let plain = text.split(['?', '#']).next().unwrap_or_default();

@@ -11,7 +11,7 @@ use belvedere_data::{Error, Result};
 ///
 /// # Errors
 /// [`Error::UnknownFormat`], [`Error::Malformed`] for missing columns, empty cells, ids that are no whole number up to
-/// 65 535 or occur twice, and files without stations; what [`read_table`] refuses.
+/// 65 535 or occur twice, and files without stations; the errors of [`read_table`].
 pub fn read_stations<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<(u16, [f64; 3])>> {
     let source = source.into();
     let name = source.name().to_owned();

@@ -10,7 +10,7 @@ use belvedere_data::{Error, Result};
 /// Bytes of an SBET record: 17 little-endian f64, of which time, latitude, longitude and altitude come first.
 const SBET_RECORD_BYTES: usize = 17 * 8;
 
-/// Counts of a trajectory file: records and what was left out.
+/// Counts of a trajectory file: records and those left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TrajectoryReport {
     /// Records in the file.
@@ -19,8 +19,8 @@ pub struct TrajectoryReport {
     pub duplicate_count: usize,
 }
 
-/// The trajectory in a file, in the metres of the cloud's reference system and increasing in time, and what was left
-/// out.
+/// The trajectory in a file, in the metres of the cloud's reference system and increasing in time, and counts of the
+/// records left out.
 ///
 /// `.sbet` and `.out` hold 136-byte records with latitude and longitude in radians, which are projected. Their altitude
 /// is unchanged, above the ellipsoid (tens of metres off the cloud's heights, harmless for the signs of normals).

@@ -51,7 +51,7 @@ struct Properties {
 /// A tile of a catalogue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CatalogueTile {
-    /// Its file, from the folder that the catalogue lies in; addresses of the web stay what they are.
+    /// Its file, from the folder that the catalogue lies in; addresses of the web stay unchanged.
     pub path: PathBuf,
     /// Lowest and highest corner in the coordinates of its file, unlimited in height where the catalogue gives none;
     /// `None` where it gives no bounds.
@@ -87,7 +87,7 @@ pub(super) fn files_within(catalogue: Source<'_>, wanted: Option<&FileBox>) -> R
 /// The tiles of a catalogue, in its order.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Malformed`] for what is no catalogue.
+/// [`Error::Io`]; [`Error::Malformed`] for other files.
 pub fn read_catalogue<'a>(source: impl Into<Source<'a>>) -> Result<Vec<CatalogueTile>> {
     let input = source.into().open()?;
     let (name, size) = (input.name, input.size);

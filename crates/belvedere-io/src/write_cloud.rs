@@ -56,7 +56,7 @@ pub fn write_cloud<'a>(
     }
 }
 
-/// The report with what only the files of the cloud have.
+/// The report with the columns that only the files of the cloud have.
 fn of_attributes(mut report: WriteReport, cloud: &PointCloud) -> WriteReport {
     report.left_out.extend(not_in_cloud(cloud));
     report

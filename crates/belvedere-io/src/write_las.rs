@@ -81,7 +81,7 @@ pub(crate) fn write(
     }
 }
 
-/// Writes what `cloud` holds.
+/// Writes the points and columns of `cloud`.
 fn write_anew(output: Output<'_>, cloud: &PointCloud, extra: &[Column<'_>], records: &[Vlr]) -> Result<WriteReport> {
     let name = output.name().to_owned();
     let mut columns = extra.to_vec();
@@ -211,7 +211,7 @@ fn encode<W: WriteSeek + Send + Sync + 'static>(
     latched.inner.into_inner().map_err(|e| Error::io(name)(e.into_error()))
 }
 
-/// Writer that keeps its first error and ignores what follows. The LAS writer closes itself when it is dropped and
+/// Writer that keeps its first error and ignores all further data. The LAS writer closes itself when it is dropped and
 /// panics when that fails, as it would on a full disk.
 struct Latched<W: Write> {
     inner: BufWriter<W>,

@@ -47,7 +47,7 @@ impl MasbcppFolder<'_> {
 }
 
 /// Writes the arrays of `folder` into the folder at `path`, which is made if only it is missing. Each file appears only
-/// when it is complete; files of other names stay. Where writing fails, what was not there before is removed again.
+/// when it is complete; files of other names stay. Where writing fails, new files are removed again.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] when the arrays differ in length, before anything is written, and [`Error::Io`].

@@ -46,7 +46,7 @@ pub fn write_npy_f32<'a>(output: impl Into<Output<'a>>, values: &[f32]) -> Resul
     write_array(output.into(), &[values.len()], values.iter().copied())
 }
 
-/// Writes a raster as (height, width) f32, row 0 at the top; what is not finite stays as it is.
+/// Writes a raster as (height, width) f32, row 0 at the top; values that are not finite stay unchanged.
 ///
 /// # Errors
 /// [`Error::Io`].

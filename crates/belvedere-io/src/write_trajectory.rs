@@ -77,9 +77,9 @@ fn write_table(output: Output<'_>, trajectory: &Trajectory, crs: &Crs) -> Result
     })
 }
 
-/// Writes positions that were found as a table for people and for [`crate::read_trajectory`]: `.csv` or `.txt` with the
+/// Writes estimated positions as a table for people and for [`crate::read_trajectory`]: `.csv` or `.txt` with the
 /// columns time, x, y, z, sd_x, sd_y, sd_z, residual_deg and line. Positions and deviations are in the unit of the file
-/// of the cloud in the system `crs`; what is not known is left empty.
+/// of the cloud in the system `crs`; unknown values are left empty.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`] for other extensions, and [`Error::Io`]. An existing file is replaced only by a complete

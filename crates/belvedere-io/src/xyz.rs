@@ -14,7 +14,7 @@ use belvedere_data::{Error, Result};
 /// A line longer than this is no point.
 const MAX_LINE: u64 = 1 << 16;
 
-/// Lines looked at to tell what the columns after z are.
+/// Number of lines read to recognise the columns after z.
 const LOOK_AHEAD: usize = 1000;
 
 /// Line numbers of unreadable lines that the report names.

@@ -26,7 +26,7 @@ enum DensityKeyword {
     Number(f64),
 }
 
-/// Cameras to choose from, and what is wanted of them.
+/// Cameras to choose from, and the goal of the choice.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct CameraKeywords {

@@ -41,7 +41,7 @@ macro_rules! scalar_columns {
 #[pyclass(frozen, module = "belvedere._core")]
 pub(crate) struct Cloud(pub(crate) Arc<PointCloud>);
 
-/// A path, or a name and the bytes of what would be there, or a file of Python that has them.
+/// A path, or a name and the bytes of its file, or a file of Python that has them.
 #[derive(FromPyObject)]
 pub(crate) enum PyInput {
     Bytes(PathBuf, Vec<u8>),
@@ -59,7 +59,7 @@ impl PyInput {
     }
 }
 
-/// A file of Python, open for reading in binary mode. What it raises becomes an error of reading.
+/// A file of Python, open for reading in binary mode. An exception of it becomes an error of reading.
 struct PythonFile<'a>(&'a Py<PyAny>);
 
 impl PythonFile<'_> {
@@ -280,7 +280,7 @@ impl Cloud {
         [bounds.low, bounds.high].map(|corner| self.0.frame.to_file_coordinates(corner))
     }
 
-    /// Writes the cloud, and gives the remarks on what the file has not.
+    /// Writes the cloud, and gives the remarks on the columns missing from the file.
     fn write<'py>(&self, py: Python<'py>, path: PathBuf) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let cloud = Arc::clone(&self.0);
         let output = path.clone();

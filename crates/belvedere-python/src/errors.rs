@@ -8,8 +8,8 @@ use std::io::ErrorKind;
 
 /// The exception for an error of the library.
 ///
-/// What the operating system refuses becomes `OSError` or its subclass, or `MemoryError`; all else
-/// `belvedere.BelvedereError` with what is wrong, the offending value, and what to do about it.
+/// Refusals of the operating system become `OSError` or its subclass, or `MemoryError`; all else
+/// `belvedere.BelvedereError` with the problem, the offending value, and advice.
 pub(crate) fn exception(error: Error) -> PyErr {
     let message = error.to_string();
     let (what, value, advice) = match error {

@@ -19,7 +19,7 @@ use std::sync::Arc;
 #[pyclass(frozen, module = "belvedere._core", name = "Mesh")]
 pub(crate) struct PyMesh {
     mesh: Arc<belvedere::Mesh>,
-    /// Its file, or what it is called in messages.
+    /// Its file, or its name in messages.
     pub(crate) name: PathBuf,
 }
 

@@ -57,7 +57,7 @@ pub(crate) fn unproven_as(text: &str) -> PyResult<UnprovenAs> {
     }
 }
 
-/// The same where to report is what happens anyway: nothing is then known to be wanted.
+/// The same where reporting is the default: `None` if nothing else is requested.
 pub(crate) fn unproven_choice(text: &str) -> PyResult<Option<UnprovenAs>> {
     Ok(Some(unproven_as(text)?).filter(|unproven| *unproven != UnprovenAs::Reported))
 }
@@ -331,7 +331,7 @@ impl PyScene {
         self.0.model().balls().len()
     }
 
-    /// The same scene without what stands in an area: rings of x and y in the coordinates of the file, or a class. With
+    /// The same scene without the objects in an area: rings of x and y in the coordinates of the file, or a class. With
     /// the report as JSON, and remarks.
     fn without<'py>(
         &self,

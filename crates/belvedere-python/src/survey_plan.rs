@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// Stations to choose from, and what the scanner can do.
+/// Stations to choose from, and the limits of the scanner.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct StationKeywords {

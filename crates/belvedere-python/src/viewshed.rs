@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// The bands of cells with their value for no data, their names, what they hold, their grid, and remarks.
+/// The bands of cells with their nodata value, their names, their description, their grid, and remarks.
 type ViewshedReply<'py> = (Vec<(Bound<'py, PyAny>, f64)>, Vec<String>, String, Grid, Vec<Bound<'py, PyDict>>);
 
 impl LookingKeywords {
@@ -57,7 +57,7 @@ impl LookingKeywords {
 
 #[pymethods]
 impl PyScene {
-    /// The bands of cells with their value for no data, their names, what they hold, their grid, and remarks.
+    /// The bands of cells with their nodata value, their names, their description, their grid, and remarks.
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn viewshed<'py>(
         &self,

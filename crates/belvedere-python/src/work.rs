@@ -41,7 +41,7 @@ impl Watch {
         self.stages.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Hands stage, items done and items in all to `progress`, if there is one; what it raises cancels the work.
+    /// Hands stage, items done and items in all to `progress`, if there is one; an exception of it cancels the work.
     fn report(&self, py: Python<'_>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
         let Some(progress) = progress else { return Ok(()) };
         let current = self.stages().current();
@@ -70,7 +70,7 @@ fn check_threads() -> PyResult<()> {
 /// Runs `work` on a thread of its own while other Python threads run.
 ///
 /// # Errors
-/// Those of the work as exceptions, what `progress` raises, and what a signal raises: `KeyboardInterrupt`.
+/// Those of the work as exceptions, exceptions of `progress`, and that of a signal: `KeyboardInterrupt`.
 pub(crate) fn run<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<Py<PyAny>>,

@@ -1,4 +1,4 @@
-//! The page as one file that needs no server: its points, the shadows of the hours of a day, and what is seen from
+//! The page as one file that needs no server: its points, the shadows of the hours of a day, and the views from
 //! viewpoints.
 
 use crate::chunks::Chunks;

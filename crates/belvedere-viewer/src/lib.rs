@@ -1,4 +1,4 @@
-//! A local page in the browser: it shows a point cloud and asks the library what is seen, lit and shaded there.
+//! A local page in the browser: it shows a point cloud and asks the library which parts are seen, lit and shaded there.
 //!
 //! The server listens on 127.0.0.1 alone. It answers requests that know its token, name it as their host, and come from
 //! its own page (`guard`). It computes nothing itself. Each question is one file in `questions` that calls the library

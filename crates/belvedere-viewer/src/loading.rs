@@ -14,7 +14,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Takes what is read and built, and shows it on the page. As a [`Watcher`] it shows progress there.
+/// Takes the data read and built, and shows them on the page. As a [`Watcher`] it shows progress there.
 #[derive(Clone, Default)]
 pub struct Loading(Arc<Mutex<LoadingState>>);
 
@@ -64,8 +64,8 @@ impl Loading {
     /// with columns of results.
     ///
     /// # Errors
-    /// Those of reading; [`belvedere::Error::Malformed`] for a raster without a place and for what lies beside the
-    /// cloud as a whole, [`belvedere::Error::UnusableCrs`] for what is in another reference system.
+    /// Those of reading; [`belvedere::Error::Malformed`] for a raster without a place and for results that lie beside
+    /// the cloud as a whole, [`belvedere::Error::UnusableCrs`] for results in another reference system.
     pub fn show_results<'a>(
         &self,
         source: impl Into<Source<'a>>,
@@ -95,7 +95,7 @@ impl Loading {
         Ok(())
     }
 
-    /// Says what must be known of the files and the scene: remarks of the layer of questions.
+    /// Adds remarks on the files and the scene, from the layer of questions.
     pub fn remark(&self, remarks: &[impl Serialize]) {
         // remarks are maps of texts and numbers, which JSON holds
         let values = remarks.iter().filter_map(|remark| serde_json::to_value(remark).ok());

@@ -25,7 +25,7 @@ const AREAS: &str = "cleared.geojson";
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct DrawnPlan {
-    /// Corners of areas without what stands there now.
+    /// Corners of areas to be cleared.
     clear: Vec<Vec<[f64; 2]>>,
     buildings: Vec<Building>,
     /// Numbers of meshes that were loaded.
@@ -176,7 +176,7 @@ impl Plans {
     }
 }
 
-/// Refuses to clear areas of a scene where what stands in them is not known any more.
+/// Refuses to clear areas of a scene whose points are not known any more.
 fn check_can_clear(scene: &PageScene, text: &SceneText) -> Result<(), Refusal> {
     let reason = if text.cloud_beside.is_some() {
         "Areas can be cleared only where the balls are built from the cloud: start the program with the cloud alone."

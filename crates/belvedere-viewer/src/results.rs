@@ -116,7 +116,7 @@ impl ResultFile {
         json!({ "name": self.name, "columns": columns, "covers_cloud": matches!(self.results, ResultsFile::Points { .. }), "is_shown_first": self.is_shown_first })
     }
 
-    /// Places and values, or lines. What has no height lies on the ground of the scene.
+    /// Places and values, or lines. Places without a height lie on the ground of the scene.
     pub(crate) fn drawn(&self, scene: &PageScene, control: &Control<'_>) -> Result<QuestionReply> {
         let on_ground = OnGround { ground: scene.ground(control).ok(), low: f64::from(scene.model().bounds().low[2]) };
         let frame = scene.model().frame();

@@ -14,7 +14,7 @@ const GROUND_CELL: f64 = 1.0;
 /// Maximum distance of a clicked place from the nearest point of a plane, metres.
 const REACH: f64 = 1.0;
 
-/// The planes of all roofs, and what sun and sky send in a year.
+/// The planes of all roofs, and the radiation of sun and sky in a year.
 pub(crate) struct RoofPlanes {
     pub(crate) planes: Vec<RoofPlane>,
     /// The points that the rows of planes belong to, local metres.

@@ -26,7 +26,7 @@ const MAX_MESH_BYTES: usize = 32 << 20;
 const PATIENCE: Duration = Duration::from_secs(10);
 /// Questions that wait or are answered; more are refused.
 const MAX_QUESTIONS: usize = 24;
-/// The page may load what is its own, and nothing else; nobody may show it in a frame.
+/// The page may load its own files only; nobody may show it in a frame.
 const POLICY: &str = "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 
 /// State shared by all requests.
@@ -90,7 +90,7 @@ async fn state(State(shared): State<Arc<ServerState>>) -> Response {
     ([(header::CONTENT_TYPE, "application/json")], shared.session.state()).into_response()
 }
 
-/// A part of what is drawn.
+/// A part of the drawing.
 async fn part(State(shared): State<Arc<ServerState>>, request: Request) -> Response {
     let (session, path) = (shared.session.clone(), below_token(&request));
     replied(tokio::task::spawn_blocking(move || session.part(&path)).await)

@@ -25,7 +25,7 @@ pub(crate) struct ShownCloud {
     pub(crate) description: Value,
 }
 
-/// The scene that questions are put to, with what the page shows of it.
+/// The scene that questions are put to, with the parts of it that the page shows.
 pub(crate) struct PageScene {
     pub(crate) inner: ask::Scene,
     pub(crate) shown: Arc<ShownCloud>,
@@ -123,7 +123,7 @@ impl PageScene {
         self.inner.model()
     }
 
-    /// The scene with a plan: what stands in areas is cleared, then meshes in metres are added.
+    /// The scene with a plan: areas are cleared, then meshes in metres are added.
     pub(crate) fn planned(
         &self,
         areas: &[ClearedArea],
@@ -157,7 +157,7 @@ impl PageScene {
         self.shown.chunks.rows().iter().map(|row| u8::from(is_cleared(row))).collect()
     }
 
-    /// Makes what most questions need. What fails here is said by the question that needs it.
+    /// Makes the data that most questions need. A failure here is reported by the question that needs them.
     pub(crate) fn prepare(&self) {
         let control = Control::none();
         let _ = self.blockers(UnprovenAs::Visible, &control);
@@ -169,7 +169,7 @@ impl PageScene {
         self.index_proof();
     }
 
-    /// Indexes the pulses that prove lines of sight free. What fails here is said by the question that needs it.
+    /// Indexes the pulses that prove lines of sight free. A failure here is reported by the question that needs them.
     pub(crate) fn index_proof(&self) {
         let control = Control::none();
         let _ = self.blockers(UnprovenAs::Reported, &control);
@@ -177,7 +177,7 @@ impl PageScene {
     }
 
     /// [`Self::prepare`] on a thread of its own: not on one of the pool, which must not wait for locks. Where the
-    /// system has none, the first question makes what it needs; in a browser the owner of the session calls `prepare`.
+    /// system has none, the first question makes its own data; in a browser the owner of the session calls `prepare`.
     pub(crate) fn prepare_aside(self: &Arc<Self>) {
         #[cfg(feature = "server")]
         {

@@ -46,7 +46,7 @@ impl PageServer {
     /// Begins to serve a page without a scene on 127.0.0.1.
     ///
     /// # Errors
-    /// What the operating system says of the port.
+    /// Errors of the operating system about the port.
     pub fn start(params: &ViewerParams) -> std::io::Result<Self> {
         let mut builder = tokio::runtime::Builder::new_multi_thread();
         let runtime = builder.worker_threads(THREADS).thread_name("belvedere-page").enable_all().build()?;
@@ -75,7 +75,7 @@ impl PageServer {
     /// Opens the page in the default browser.
     ///
     /// # Errors
-    /// What the operating system says.
+    /// Errors of the operating system.
     pub fn open_browser(&self) -> std::io::Result<()> {
         open::that_detached(Path::new(&self.url()))
     }

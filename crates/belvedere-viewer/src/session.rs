@@ -64,10 +64,10 @@ impl Session {
         state.to_string().into_bytes()
     }
 
-    /// A part of what is drawn: `points/N` and `colors/N` of a chunk, `meshes/N`, `balls`.
+    /// A part of the drawing: `points/N` and `colors/N` of a chunk, `meshes/N`, `balls`.
     ///
     /// # Errors
-    /// [`Refusal::Missing`] for what is not there, or not yet.
+    /// [`Refusal::Missing`] for a part that is not there, or not yet.
     pub fn part(&self, path: &str) -> Result<Vec<u8>, Refusal> {
         let now = self.loading.now();
         let (kind, number) = path.split_once('/').unwrap_or((path, ""));
@@ -132,7 +132,7 @@ impl Session {
         Ok(reply.into_bytes())
     }
 
-    /// The scene with what was made with it, to be kept for the next time (`read_kept_model`).
+    /// The scene with its derived data, to be kept for the next time (`read_kept_model`).
     ///
     /// # Errors
     /// [`Refusal::NotReady`], and those of [`write_kept_model`].
@@ -154,7 +154,8 @@ impl Session {
         }
     }
 
-    /// Makes what most questions need, so that the first one does not wait for it; not on a thread of the pool either.
+    /// Makes the data that most questions need, so that the first one does not wait for them; not on a thread of the
+    /// pool either.
     pub fn prepare(&self) {
         if let Some(scene) = self.loading.now().scene {
             scene.prepare();

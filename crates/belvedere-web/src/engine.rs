@@ -115,7 +115,7 @@ impl Engine {
         Ok(Self { session, cloud: Some(cloud) })
     }
 
-    /// A name for the scene of what was read, under which it can be kept: of the contents, how scenes are built, and
+    /// A name for the scene of the files read, under which it can be kept: of the contents, how scenes are built, and
     /// the program.
     #[must_use]
     pub fn scene_name(&self) -> Option<String> {
@@ -186,7 +186,7 @@ impl Announced {
     }
 }
 
-/// Files that were chosen, by what they hold.
+/// Chosen files by their contents.
 struct Chosen<'a> {
     clouds: Vec<&'a OpenedFile>,
     meshes: Vec<&'a OpenedFile>,
@@ -209,7 +209,7 @@ impl<'a> Chosen<'a> {
         chosen
     }
 
-    /// Shows what is beside the cloud, and columns of results of its own.
+    /// Shows the data beside the cloud, and columns of results of its own.
     fn show<H: Host>(&self, session: &Session, cloud: &PointCloud, host: &H, control: &Control<'_>) -> Result<()> {
         let (loading, frame, bounds) = (session.loading(), &cloud.frame, cloud.bounds().unwrap_or_default());
         for &file in &self.meshes {

@@ -1,6 +1,6 @@
 //! Border to JavaScript: exported and imported plain functions of numbers. The only `unsafe` of this crate.
 //!
-//! Texts and bytes are handed over as an address and a length. [`take`] gives room for what comes in. What goes out is
+//! Texts and bytes are handed over as an address and a length. [`take`] gives room for incoming ones. Outgoing ones are
 //! given to `reply` before the call returns. A call returns 0 after a reply, and 1 after a refusal, whose text is the
 //! reply. One thread calls all of them, and it is none of the pool.
 //!
@@ -32,7 +32,7 @@ unsafe extern "C" {
     fn stage(from: *const u8, length: usize, total: f64);
     /// The numbers at [`progress`] have changed, perhaps.
     fn tick();
-    /// Takes what a panic says.
+    /// Takes the message of a panic.
     fn failed(from: *const u8, length: usize);
     /// Starts a thread, which calls [`run_thread`] with the address.
     fn spawn(builder: usize);
@@ -143,7 +143,7 @@ unsafe extern "C" fn give(at: *mut u8, length: usize) {
     drop(unsafe { Vec::from_raw_parts(at, 0, length.max(1)) });
 }
 
-/// Called first: from then on `failed` gets what a panic says.
+/// Called first: from then on `failed` gets the message of a panic.
 #[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 extern "C" fn start() {
     std::panic::set_hook(Box::new(|info| {
@@ -159,7 +159,7 @@ extern "C" fn progress() -> *const u32 {
     DONE.as_ptr()
 }
 
-/// The reply is what the headers of files, an array of [`OpenedFile`], announce: an [`Announced`], or null.
+/// The reply is the announcement of the headers of files, an array of [`OpenedFile`]: an [`Announced`], or null.
 ///
 /// # Safety
 /// That of [`given`].
@@ -197,7 +197,7 @@ unsafe extern "C" fn open(from: *const u8, length: usize) -> u32 {
     }))
 }
 
-/// The reply is the name under which the scene of what was read can be kept.
+/// The reply is the name under which the scene of the files read can be kept.
 #[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 extern "C" fn scene_name() -> u32 {
     with_engine(|engine| Ok(engine.scene_name().unwrap_or_default().into_bytes()))
@@ -232,7 +232,7 @@ extern "C" fn scene_file() -> u32 {
     with_engine(|engine| engine.session().scene_file())
 }
 
-/// Makes what must be there before the first question; the reply is empty.
+/// Indexes the pulses before the first question; the reply is empty.
 #[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 extern "C" fn index_proof() -> u32 {
     with_engine(|engine| {
@@ -241,7 +241,7 @@ extern "C" fn index_proof() -> u32 {
     })
 }
 
-/// Makes what most questions need; the reply is empty.
+/// Makes the data that most questions need; the reply is empty.
 #[cfg_attr(target_family = "wasm", unsafe(no_mangle))]
 extern "C" fn prepare() -> u32 {
     with_engine(|engine| {
@@ -250,7 +250,7 @@ extern "C" fn prepare() -> u32 {
     })
 }
 
-/// Answers what is at a path: a part of what is drawn, or a question with its body.
+/// Answers the request at a path: a part of the drawing, or a question with its body.
 ///
 /// # Safety
 /// That of [`given`], for both.

@@ -1,4 +1,4 @@
-//! Comfort: what walkers on routes, and windows, get of sun and sky.
+//! Comfort: sun and sky of walkers on routes, and of windows.
 
 use super::places::{leave_out_outside, test_edge};
 use super::sections::{LinesSection, NamedValues, PeriodSection};

@@ -20,7 +20,7 @@ use belvedere_data::{Error, Mesh, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Ground made around the parcel and what is protected, metres.
+/// Margin of the ground made around the parcel and the protected pieces, metres.
 const MARGIN: f64 = 5.0;
 /// Maximum number of suns and places that are named as those that limit the envelope.
 const MAX_LIMITING: usize = 3;
@@ -138,7 +138,7 @@ pub struct EnvelopeSection {
     limiting_places: Vec<String>,
 }
 
-/// Directions to suns, and what to call each.
+/// Directions to suns, and the name of each.
 struct NamedSuns {
     directions: Vec<[f64; 3]>,
     names: Vec<String>,

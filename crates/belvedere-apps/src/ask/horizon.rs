@@ -15,7 +15,7 @@ use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use serde::{Deserialize, Serialize};
 
-/// Elevation from which on the zenith itself is covered, degrees: what rounding leaves.
+/// Minimum elevation at which the zenith itself counts as covered, degrees: 90 less rounding.
 const OVERHEAD_DEG: f64 = 89.999;
 
 /// Above which elevation the sky is free around observers.

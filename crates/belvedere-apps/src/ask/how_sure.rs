@@ -30,7 +30,7 @@ pub const EXPECTED_OBSERVERS: &str = "expected number of observers";
 pub struct HowSure {
     /// True to give the probability, 0 to 1, that a target is visible or lit. Default: false.
     pub probability: bool,
-    /// The least probability, above 0.5 and at most 1, of what is more likely, below which an answer is uncertain; so
+    /// Minimum probability, above 0.5 and at most 1, of the more likely answer, below which an answer is uncertain; so
     /// are unproven answers. `None` to leave that out.
     pub certain: Option<f64>,
 }
@@ -69,7 +69,7 @@ impl HowSure {
         if self.is_wanted() { scene.check_pulses(Parameter::Certainty) } else { Ok(()) }
     }
 
-    /// Refuses what has no probabilities: `value`, the reason being `expected`.
+    /// Refuses answers without probabilities: `value`, the reason being `expected`.
     pub(super) fn check_without(&self, value: &str, expected: &'static str) -> Result<()> {
         if !self.is_wanted() {
             return Ok(());
@@ -125,7 +125,7 @@ impl HowSure {
         likely.into_iter().chain(uncertain).collect()
     }
 
-    /// Measures of what several observers see.
+    /// Returns the measures of the view of several observers.
     #[must_use]
     pub fn measures_of_many(&self, found: SeenProbabilities) -> Vec<Measure> {
         let likely = self
@@ -180,8 +180,8 @@ impl HowSure {
         }
     }
 
-    /// Says how sure the answers of one viewer or sun are: `visible` names what is likely where the probability is
-    /// high.
+    /// Reports the certainty of the answers of one viewer or sun: `visible` names the outcome that a high probability
+    /// makes likely.
     pub(super) fn summarise(
         &self,
         probabilities: &[f32],
@@ -203,7 +203,7 @@ impl HowSure {
     }
 }
 
-/// Mean of what is not NaN, 0 where all is.
+/// Mean of the values that are not NaN, 0 where all are.
 fn mean(probabilities: &[f32]) -> f64 {
     let known = probabilities.iter().filter(|probability| !probability.is_nan());
     let count = known.clone().count();

@@ -8,8 +8,8 @@ use crate::targets::Measure;
 use crate::viewshed::title_of_cells;
 use belvedere_data::{Error, Parameter, Result};
 
-/// Says in `context` what the measures of cells of a side, metres, answer to a question, as [`ask`](super::ask) says it
-/// of a scene; returns the title of a map.
+/// Reports in `context` the answer of the measures of cells of a side, metres, to a question; returns the title of a
+/// map. The words are those of [`ask`](super::ask) for a scene.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for a question that has no answers of cells in parts, and for a site that is not known.

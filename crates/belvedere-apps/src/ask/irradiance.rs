@@ -348,7 +348,7 @@ pub(super) fn title(whereabouts: &Whereabouts<'_>) -> String {
     format!("Energy of sun and sky, kWh/m²{}", whereabouts.far_in_words())
 }
 
-/// Says what was found of places.
+/// Reports the measures of places.
 pub(super) fn summarise(measures: &[Measure], places: &str, context: &mut Context) {
     if let Some(first) = measures.first() {
         context.headline(format!("energy on {places}: {}", spread(&first.values, 0, "kWh/m²")));

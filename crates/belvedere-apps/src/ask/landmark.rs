@@ -131,8 +131,8 @@ struct Lookers {
 }
 
 impl LandmarkShape {
-    /// The surface of the landmark about the local origin `origin`, metres, with what is known of it. `cloud` has the
-    /// points of the scene.
+    /// The surface of the landmark about the local origin `origin`, metres, with a report on it. `cloud` has the points
+    /// of the scene.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a mesh that was not read and for a cloud without points; those of

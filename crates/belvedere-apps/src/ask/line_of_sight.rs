@@ -1,4 +1,4 @@
-//! Lines of sight: whether the observers of pairs see their targets, and what blocks first.
+//! Lines of sight: whether the observers of pairs see their targets, and the first obstacle of each.
 
 use super::how_sure::HowSure;
 use super::observers::{Standing, check_height, note_beside, note_enclosed, stand};
@@ -57,7 +57,7 @@ pub struct ProfileRows {
 pub struct SightsResults {
     /// Observer and target of each, local metres; a height is NaN where it is not known.
     pub pairs: Vec<[[f64; 3]; 2]>,
-    /// The answers, with unproven ones taken for what they are to be.
+    /// The answers, with unproven ones counted as requested.
     pub answers: Vec<Answer>,
     /// Result of each line; `None` if the ends make no line.
     pub sights: Vec<Option<LineOfSight>>,
@@ -74,7 +74,7 @@ pub struct SightsResults {
 /// Results of lines of sight in columns, for tables.
 #[derive(Clone, Debug)]
 pub struct SightColumns<'a> {
-    /// Distance from the observer to what blocks first, metres; NaN where nothing does.
+    /// Distance from the observer to the first obstacle, metres; NaN without one.
     pub ranges: Vec<f64>,
     /// Length of a free line that no pulse came near to, metres, if pulses were tested.
     pub unproven: Option<Vec<f64>>,

@@ -19,7 +19,7 @@ const MIN_HEIGHT: f64 = 2.0;
 const MIN_SUPPORT: f64 = 0.02;
 const SUPPORT: f64 = 1.0;
 
-/// Remarks on what a model knows: that its cloud lies on its side, and other contradictions.
+/// Remarks on contradictions in a model, such as a cloud on its side.
 #[must_use]
 pub fn remarks_on_model(model: &SceneModel) -> Vec<Remark> {
     let noted = FoundContradiction::noted_in(&model.parts().provenance);

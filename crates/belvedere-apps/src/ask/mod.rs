@@ -1,7 +1,6 @@
-//! Questions: the one way from what a user wants to know to an answer, for the command line, Python, the page and
-//! cities.
+//! Questions: the one way from a user's request to an answer, for the command line, Python, the page and cities.
 //!
-//! A face parses what its user gave into a [`Question`] and [`Places`], puts it to a [`Scene`] with [`ask`], and shows
+//! A face parses the user's input into a [`Question`] and [`Places`], puts it to a [`Scene`] with [`ask`], and shows
 //! the [`Answers`]. Defaults, checks, warnings and the third state of an answer are made here, so that no face has its
 //! own.
 //!
@@ -197,7 +196,7 @@ pub struct Answers<F = QuestionResults> {
     pub found: F,
     /// A value for each target, of each thing that was measured.
     pub measures: Vec<Measure>,
-    /// The answer in a few lines: what was computed, and the figures that matter.
+    /// The answer in a few lines: the quantity computed, and its main figures.
     pub headline: Vec<String>,
     /// Warnings and notes.
     pub remarks: Vec<Remark>,
@@ -222,10 +221,10 @@ pub trait Ask {
     /// Checks all that does not depend on a scene: hours of work may go into one.
     ///
     /// # Errors
-    /// [`InvalidParameter`](belvedere_data::Error::InvalidParameter) for what cannot be.
+    /// [`InvalidParameter`](belvedere_data::Error::InvalidParameter) for values that are not possible.
     fn check(&self) -> Result<()>;
 
-    /// Finds the answers; what is worth knowing beside them goes into `context`. Call [`ask`].
+    /// Finds the answers; remarks and further results go into `context`. Call [`ask`].
     ///
     /// # Errors
     /// Those of the question.
@@ -241,8 +240,8 @@ pub trait Ask {
 /// Puts a question about places to a scene.
 ///
 /// # Errors
-/// Those of the question: [`InvalidParameter`](belvedere_data::Error::InvalidParameter) for what cannot be, and
-/// [`Cancelled`](belvedere_data::Error::Cancelled).
+/// Those of the question: [`InvalidParameter`](belvedere_data::Error::InvalidParameter) for values that are not
+/// possible, and [`Cancelled`](belvedere_data::Error::Cancelled).
 pub fn ask<Q: Ask>(scene: &Scene, question: &Q, places: &Places, control: &Control<'_>) -> Result<Answers<Q::Found>> {
     question.check()?;
     let mut context = Context::default();
@@ -262,12 +261,12 @@ pub fn ask<Q: Ask>(scene: &Scene, question: &Q, places: &Places, control: &Contr
 }
 
 impl<F> Answers<F> {
-    /// Creates answers without what [`Context`] gathered.
+    /// Creates answers without the contents of a [`Context`].
     fn new(found: F, measures: Vec<Measure>) -> Self {
         Self { found, measures, headline: Vec::new(), remarks: Vec::new(), report: Report::default() }
     }
 
-    /// This with what was gathered on the way.
+    /// This with the contents of `context`.
     #[must_use]
     pub fn with(self, context: Context) -> Self {
         let Context { report, headline, remarks } = context;

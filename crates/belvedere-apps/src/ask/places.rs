@@ -1,4 +1,4 @@
-//! The places that questions are about: from what a user gives to targets, with what has no answer and why.
+//! The places of questions: from a user's input to targets, with the places left out and why.
 
 use super::observers::Standing;
 use super::scene::Scene;
@@ -168,7 +168,7 @@ pub fn moved(cloud: &PointCloud, scene: &Scene) -> Result<Vec<[f32; 3]>> {
     Ok(bare.moved_to(frame).positions)
 }
 
-/// Cells without those under a cover or inside what was added.
+/// Cells without those under a cover or inside added meshes.
 pub(super) fn cells_of(
     scene: &Scene,
     ground: Ground,

@@ -75,7 +75,7 @@ pub struct ProtectedViewSection {
 }
 
 impl ProtectedViewQuestion {
-    /// Figures of what was found on cells of `cell` metres, and the answer in words.
+    /// Figures of the limits found on cells of `cell` metres, and the answer in words.
     fn sum_up(&self, found: &limits::ProtectedView, heights: &Raster<f32>, cell: f64, context: &mut Context) {
         let sum = |of: fn(&ViewpointReport) -> usize| found.viewpoints.iter().map(of).sum::<usize>();
         let known: Vec<f64> = heights.values().iter().filter(|v| v.is_finite()).map(|&v| f64::from(v)).collect();

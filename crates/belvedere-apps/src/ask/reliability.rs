@@ -111,7 +111,7 @@ const NUMBERS: [&str; 9] = [
     "hidden_places",
 ];
 
-/// The parts of a scene that keep what was measured on its survey: ball files have it, and questions to such a scene
+/// The parts of a scene with the reliability measured on its survey: ball files keep it, and questions to such a scene
 /// have a remark with it.
 #[must_use]
 pub fn with_reliability(parts: ModelParts, found: &SurveyReliability) -> ModelParts {

@@ -1,4 +1,5 @@
-//! The scene that questions are put to: a model with its cloud, and what takes long to make and several questions need.
+//! The scene that questions are put to: a model with its cloud, and derived data that take long to make and several
+//! questions need.
 
 use super::terrain_heights::{remark_on_ground_cloud, remark_on_terrain};
 use super::viewer::remark_on_doubt;
@@ -17,7 +18,7 @@ use belvedere_data::report::rounded;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A model with the points that it was made from, and what questions share: made when first needed, and kept.
+/// A model with the points that it was made from, and data that questions share: made when first needed, and kept.
 pub struct Scene {
     model: SceneModel,
     /// In the frame of the model; without points for a ball file alone.
@@ -57,7 +58,7 @@ impl Whereabouts<'_> {
         convergence(&self.frame.crs, [0, 1].map(|axis| self.frame.origin[axis] + place[axis])).ok()
     }
 
-    /// Remarks on what speaks against the reference system.
+    /// Adds remarks on evidence against the reference system.
     pub fn remark(&self, context: &mut Context) {
         let (crs, origin) = (&self.frame.crs, self.frame.origin);
         context.add(remark_on_doubt(crs.doubt.as_deref()));
@@ -94,7 +95,7 @@ pub struct KnownGround {
     pub report: GroundReport,
 }
 
-/// Maximum number of cells of a ground that is not made from the whole cloud once more: 25 times what one place needs.
+/// Maximum number of cells of a ground that is not made from the whole cloud once more: 25 times the need of one place.
 const FEW_CELLS: usize = 40_000;
 
 /// The ground that was made so far.
@@ -111,7 +112,7 @@ pub trait GroundStore: Send + Sync {
     /// The ground on a grid, if it was kept.
     fn find(&self, grid: &MapGrid, params: &GroundParams) -> Option<KnownGround>;
 
-    /// Keeps ground that was made. What cannot be kept is made again.
+    /// Keeps ground that was made. Ground that cannot be kept is made again.
     fn keep(&self, params: &GroundParams, known: &KnownGround);
 }
 
@@ -263,7 +264,8 @@ impl Scene {
         self.without_vegetation.get(|| self.model.scene_without_vegetation(&self.rule, control))
     }
 
-    /// The ground on a grid; the last one is kept, and from the second of few cells on what shows it, by squares.
+    /// The ground on a grid. The last one is kept. From the second grid of few cells on, so are the points that show
+    /// the ground, by squares.
     ///
     /// # Errors
     /// Those of [`Scene::ground_cloud`] and [`Ground::of_cloud`].
@@ -300,7 +302,7 @@ impl Scene {
         Ok(known)
     }
 
-    /// Refuses scenes whose pulses are unknown, where somebody wants to say what unproven answers count as.
+    /// Refuses scenes whose pulses are unknown, where the user sets how unproven answers count.
     pub(super) fn check_proof(&self) -> Result<()> {
         self.check_pulses(Parameter::UnprovenAs)
     }

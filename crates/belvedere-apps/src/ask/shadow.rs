@@ -1,4 +1,4 @@
-//! Shadow: what of one or more suns reaches places.
+//! Shadow: light of one or more suns at places.
 
 use super::how_sure::HowSure;
 use super::sections::{MeasuresSection, PlacesReport};
@@ -176,7 +176,7 @@ impl Ask for ShadowQuestion {
     }
 }
 
-/// Takes unproven light for what it is to be, and returns it where it is to be reported.
+/// Counts unproven light as requested, and returns it where it is to be reported.
 fn settled(lit: &mut [f32], doubts: Option<Vec<f32>>, unproven: UnprovenAs) -> Option<Vec<f32>> {
     let mut doubts = doubts?;
     match unproven {
@@ -195,7 +195,7 @@ fn settled(lit: &mut [f32], doubts: Option<Vec<f32>>, unproven: UnprovenAs) -> O
     }
 }
 
-/// Says what was found of suns; where there is one, what of its light is unproven may follow its measure.
+/// Reports the light of suns. With a single sun, its unproven light may follow its measure.
 pub(super) fn summarise(suns: &[NamedSun], measures: &[Measure], places: &str, context: &mut Context) {
     let share = |measure: &Measure| measure.statistics().map_or(f64::NAN, |found| 100.0 * found.mean);
     match (suns, measures) {

@@ -92,7 +92,7 @@ pub(super) fn title(whereabouts: &Whereabouts<'_>) -> String {
     format!("Sky view{}", whereabouts.far_in_words())
 }
 
-/// Says what was found.
+/// Reports the sky seen.
 pub(super) fn summarise(measures: &[Measure], places: &str, context: &mut Context) {
     context.headline(format!("sky seen from {places}"));
     for measure in measures {

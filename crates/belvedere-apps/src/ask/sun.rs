@@ -25,7 +25,7 @@ pub const MAX_LISTED_SUNS: usize = 5;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SunPlace {
-    /// Latitude and longitude, degrees, north and east positive; `None` for what the reference system says.
+    /// Latitude and longitude, degrees, north and east positive; `None` for those of the reference system.
     pub location: Option<[f64; 2]>,
     /// Zone of times and days, such as Europe/Amsterdam or +02:00; `None` for that of a given time, else mean solar
     /// time.
@@ -86,7 +86,7 @@ pub struct Days {
     pub year: Option<i16>,
     /// Minutes between two suns, 1/6 to 60; `None` for 10.
     pub time_step_min: Option<f64>,
-    /// Lower suns do not count, degrees; `None` for 0, or what a rule says.
+    /// Minimum elevation of a sun that counts, degrees; `None` for 0, or that of a rule.
     pub min_sun_elevation_deg: Option<f64>,
 }
 
@@ -140,7 +140,7 @@ pub fn check_sun([azimuth, elevation]: [f64; 2], range: SunRange) -> Result<()> 
     refused(Parameter::SunDirection, format!("{azimuth},{elevation}"), expected)
 }
 
-/// The greatest declination of the sun, degrees, and what air, grids and rounded numbers add.
+/// Maximum declination of the sun, degrees, with additions for air, grids and rounded numbers.
 const MAX_DECLINATION: f64 = 25.0;
 
 /// Returns a remark on a sun, azimuth and elevation in degrees, that never stands there over `site`, if that is known.
@@ -169,7 +169,7 @@ fn refused<T>(parameter: Parameter, value: impl Into<String>, expected: &'static
 }
 
 impl SunPlace {
-    /// Checks what does not depend on a scene.
+    /// Checks the values that do not depend on a scene.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a location, a zone or an air that cannot be.
@@ -185,8 +185,8 @@ impl SunPlace {
     /// `elsewhere`.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] where nothing says it, for a given location that is far from what the reference
-    /// system says, and those of [`Site::of_scene`].
+    /// [`Error::InvalidParameter`] without any location, for a given location that is far from that of the reference
+    /// system, and those of [`Site::of_scene`].
     pub fn site_of(&self, frame: &Frame, bounds: &Bounds, elsewhere: Option<[f64; 2]>) -> Result<(Site, SiteFrom)> {
         let given = self.location.map(|location| location.map(f64::to_radians));
         let unknown = |value: String| {
@@ -295,7 +295,7 @@ impl Days {
             .with_refraction(place.refraction)
     }
 
-    /// Checks what does not depend on a scene.
+    /// Checks the values that do not depend on a scene.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for days, times, steps and elevations that cannot be.
@@ -385,7 +385,7 @@ pub(super) fn check_min_elevation(rises: bool, params: &DayParams) -> Result<()>
 }
 
 impl Suns {
-    /// Checks what does not depend on a scene.
+    /// Checks the values that do not depend on a scene.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for directions, times and days that cannot be, and without any.

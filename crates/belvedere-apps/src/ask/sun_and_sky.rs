@@ -13,7 +13,7 @@ use belvedere_data::Result;
 use belvedere_data::control::Control;
 use std::sync::Arc;
 
-/// Targets, what blocks their light, and what of it trees let through.
+/// Targets, the obstacles of their light, and the share of it that trees let through.
 pub(super) struct Light {
     pub(super) targets: Arc<Targets>,
     pub(super) near_edge: Vec<Option<bool>>,

@@ -76,7 +76,7 @@ impl SunHoursQuestion {
     /// Returns the suns of the days and of the rules at a site, and its time zone.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] without days, and for what cannot be.
+    /// [`Error::InvalidParameter`] without days, and for values that are not possible.
     pub fn plan(&self, site: &Site) -> Result<(SunPlan, Zone)> {
         let zone = self.place.zone_at(site, self.days.times())?;
         let params = self.days.params(&self.place);
@@ -159,7 +159,7 @@ impl Ask for SunHoursQuestion {
     }
 }
 
-/// Says what was found: hours where they are the first measure, and whether each rule is met, of which measures are the
+/// Reports the hours, where they are the first measure, and whether each rule is met; the measures of rules are the
 /// last.
 pub(super) fn summarise(plan: &SunPlan, title: &str, measures: &[Measure], places: &str, context: &mut Context) {
     context.headline(format!("{title}: {places}"));

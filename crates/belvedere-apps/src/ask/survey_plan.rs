@@ -88,7 +88,7 @@ pub struct SurveyPlanResults {
     pub unproven: usize,
 }
 
-/// A candidate with what is expected of it: what tables hold.
+/// A candidate with its expected gain: a row of a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedStation {
     /// Position of its eye, local metres.

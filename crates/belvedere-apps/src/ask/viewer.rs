@@ -40,7 +40,7 @@ pub fn remark_on_outside(outside: usize, count: usize, things: &str) -> Option<R
     Remark::of_share("targets-outside-cloud", outside, count, things, OUTSIDE_CLOUD)
 }
 
-/// A warning of what speaks against a reference system.
+/// A warning of evidence against a reference system.
 #[must_use]
 pub fn remark_on_doubt(doubt: Option<&str>) -> Option<Remark> {
     doubt.and_then(|doubt| Remark::of_contradiction(REFERENCE_SYSTEM.found(doubt)))

@@ -1,4 +1,4 @@
-//! Viewshed: what observers see of cells, of points and of far terrain, or from where a target is seen.
+//! Viewshed: cells, points and far terrain that observers see, or the places from where a target is seen.
 
 mod limits;
 mod seen_targets;
@@ -147,7 +147,7 @@ impl ViewshedQuestion {
         self.unproven.unwrap_or(UnprovenAs::Reported)
     }
 
-    /// Height above the ground of the given places, and of what stands in cells, metres.
+    /// Height above the ground of the given places, and of the targets in cells, metres.
     fn heights(&self) -> [f64; 2] {
         let [observer, target] =
             [self.observer_height.unwrap_or(OBSERVER_HEIGHT), self.target_height.unwrap_or(TARGET_LIFT)];
@@ -267,7 +267,7 @@ impl ViewshedQuestion {
         skip_unfit(places, (self.who(), Reach::FarTerrain), (blockers, ground), (scene, context), control)
     }
 
-    /// Refuses what eyes on far terrain cannot have, and notes where the terrain changes nothing.
+    /// Refuses eyes that are not possible with far terrain, and notes where the terrain changes nothing.
     fn check_far_eyes(&self, eyes: &[[f64; 3]], blockers: &MedialScene, context: &mut Context) -> Result<()> {
         if blockers.far_terrain().grid().is_none() {
             return Ok(());

@@ -1,4 +1,4 @@
-//! Window views: what is seen from windows, and how far.
+//! Window views: kinds and ranges of the surfaces seen from windows.
 
 use super::places::{leave_out_outside, test_edge};
 use super::sections::{LinesSection, NamedValues};
@@ -100,7 +100,7 @@ pub struct ViewsSection {
 }
 
 impl WindowViewsQuestion {
-    /// The windows of a scene, without roofs, floors and what lies outside the cloud.
+    /// The windows of a scene, without roofs, floors and windows outside the cloud.
     fn targets(
         &self,
         scene: &Scene,

@@ -1,4 +1,4 @@
-//! Windows: from what a user gives to the targets in front of them.
+//! Windows: from a user's input to the targets in front of them.
 
 use super::SharedObject;
 use crate::targets::{Targets, Window, objects_of_windows};
@@ -44,7 +44,7 @@ impl Default for GivenWindows {
 }
 
 impl GivenWindows {
-    /// Checks what does not depend on a scene.
+    /// Checks the values that do not depend on a scene.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a tilt that is not 0 to 180 degrees.

@@ -6,8 +6,8 @@
 //! prices bound the last sum for any S. Any prices therefore give a valid bound, and the least of these bounds is that
 //! of the linear relaxation.
 //!
-//! Prices equal to the worth of what a greedy selection leaves open, and 0 elsewhere, give a bound no worse than that
-//! of Nemhauser, Wolsey & Fisher (1978).
+//! Prices equal to the worth of the targets that a greedy selection leaves open, and 0 elsewhere, give a bound no worse
+//! than that of Nemhauser, Wolsey & Fisher (1978).
 //!
 //! # Source
 //! Galvão & ReVelle 1996 (Lagrangean relaxation of maximal covering), Held, Wolfe & Crowder 1974 (subgradients),
@@ -36,7 +36,7 @@ pub(super) enum CandidateFate {
     Out,
 }
 
-/// Candidates with what is decided of each, and how many more may be chosen.
+/// Candidates with the decision on each, and the number that may still be chosen.
 pub(super) struct BranchNode<'q> {
     pub(super) problem: &'q Problem<'q>,
     pub(super) fates: &'q [CandidateFate],
@@ -173,7 +173,7 @@ impl BranchNode<'_> {
     }
 }
 
-/// Prices that are the worth of what a selection leaves open.
+/// Prices equal to the worth of the targets that a selection leaves open.
 pub(super) fn prices_of(selection: &CameraSelection<'_>) -> Vec<f64> {
     let problem = selection.problem;
     let price = |(count, worth): (&u32, &f64)| if *count < problem.required { *worth } else { 0.0 };

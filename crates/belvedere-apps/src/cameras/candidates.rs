@@ -1,4 +1,4 @@
-//! Cameras that could be put up, and what they are to look at.
+//! Candidate cameras and their targets.
 
 use super::camera::{Camera, Lens};
 use crate::roof_planes::BUILDING;
@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 pub const CAMERA_HEIGHT: f64 = 4.0;
 /// Height of cameras above roofs, metres.
 pub const ROOF_CAMERA_HEIGHT: f64 = 1.0;
-/// Height of what cameras look at above the ground, metres: the head of a person.
+/// Height of targets of cameras above the ground, metres: the head of a person.
 pub const CAMERA_TARGET_HEIGHT: f64 = 1.5;
 /// Minimum height of a roof above the ground, metres: lower ones are cars and hedges.
 const MIN_ROOF: f64 = 2.0;
@@ -66,7 +66,7 @@ impl Default for MountingParams {
     }
 }
 
-/// A place for cameras, with what is said of it; the rest is as in [`MountingParams`].
+/// A place for cameras, with the settings given for it; the others are as in [`MountingParams`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mount {
     /// Position of the eye, local metres.

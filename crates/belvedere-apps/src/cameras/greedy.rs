@@ -10,7 +10,7 @@ use std::collections::BinaryHeap;
 /// Cameras handed to a thread at once.
 const CHUNK: usize = 64;
 
-/// A camera with what it adds; of equal ones the first.
+/// A camera with its gain; of equal ones the first.
 #[derive(PartialEq)]
 struct Gain(f64, Reverse<usize>);
 
@@ -28,8 +28,8 @@ impl PartialOrd for Gain {
     }
 }
 
-/// Adds the camera of `candidates` that gains most until `is_enough` or no camera gains anything. What a camera gains
-/// only shrinks as others are added, so that few gains are computed anew.
+/// Adds the camera of `candidates` with the largest gain until `is_enough` or no camera gains anything. The gain of a
+/// camera only shrinks as others are added, so that few gains are computed anew.
 ///
 /// # Source
 /// Nemhauser, Wolsey & Fisher 1978: at least 1 − 1/e of the best possible gain. Minoux 1978: the lazy order.

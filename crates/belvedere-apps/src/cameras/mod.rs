@@ -8,8 +8,8 @@
 //! | which to choose | [`place_cameras`] |
 //!
 //! A target is covered by a camera if it is in its picture, near enough for the wanted pixels per metre, and nothing
-//! hides it. Selections are made greedily and improved by exchanges; the linear relaxation bounds what any selection
-//! could cover, and a search closes the gap where the problem is small enough.
+//! hides it. Selections are made greedily and improved by exchanges; the linear relaxation bounds the coverage of any
+//! selection, and a search closes the gap where the problem is small enough.
 
 mod bound;
 mod camera;

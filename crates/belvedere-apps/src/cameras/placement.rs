@@ -58,7 +58,7 @@ impl PlacementParams {
     }
 }
 
-/// Cameras that were chosen, and what is proven of them.
+/// Chosen cameras with the bounds proven for them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placement {
     /// New cameras, those that add most first.
@@ -128,7 +128,7 @@ pub fn place_cameras(
     }
 }
 
-/// A problem with what is decided of it from the start.
+/// A problem with the decisions fixed from the start.
 struct PlacementSolver<'a> {
     problem: &'a Problem<'a>,
     existing: Vec<usize>,
@@ -257,7 +257,7 @@ impl<'a> PlacementSolver<'a> {
         CameraSelection::of(self.problem, &all).value()
     }
 
-    /// The result, with the cameras in the order of what they add.
+    /// The result, with the cameras in the order of their gains.
     fn placement(
         &self,
         chosen: &[usize],

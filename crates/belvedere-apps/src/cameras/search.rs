@@ -86,7 +86,7 @@ pub(super) fn search(
     Ok((left_open.map_or(best.value, |bound| bound.min(root_bound)), made))
 }
 
-/// Exchanges cameras of a selection, but none of the `fixed`, and keeps what comes of it if it is the best.
+/// Exchanges cameras of a selection, but none of the `fixed`, and keeps the result if it is the best.
 pub(super) fn improve(
     problem: &Problem<'_>,
     best: &mut Best,

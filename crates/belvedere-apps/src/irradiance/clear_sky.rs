@@ -17,7 +17,7 @@ pub enum ClearSky {
     },
     /// Haurwitz, from the sun's height alone; it knows global radiation only, which is split by [`split_global`].
     Haurwitz,
-    /// Bird & Hulstrom, from what is in the air.
+    /// Bird & Hulstrom, from the contents of the air.
     Bird(BirdParams),
 }
 
@@ -65,8 +65,8 @@ impl ClearSky {
     /// Checks the parameters.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a turbidity that is not 1 to 20, and for what Bird's model knows outside its
-    /// range.
+    /// [`Error::InvalidParameter`] for a turbidity that is not 1 to 20, and for parameters of Bird's model outside
+    /// their range.
     pub fn validate(&self) -> Result<()> {
         let invalid = |parameter: Parameter, value: f64, expected: &'static str| {
             Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })

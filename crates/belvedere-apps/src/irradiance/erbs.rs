@@ -33,7 +33,7 @@ pub fn split_global(ghi: f64, zenith: f64, extraterrestrial: f64) -> Irradiance 
 }
 
 /// Radiation of a row of which `dni` or `dhi` may be missing: the one follows from the other and `ghi`, and both from
-/// [`split_global`] where neither is known. What is given stays as it is.
+/// [`split_global`] where neither is known. Given values stay unchanged.
 #[must_use]
 pub fn complete(ghi: f64, dni: Option<f64>, dhi: Option<f64>, zenith: f64, extraterrestrial: f64) -> Irradiance {
     let cosine = zenith.cos();

@@ -38,8 +38,8 @@ impl<'a> EnergyOutlines<'a> {
         }
     }
 
-    /// The share of what a plane with a unit `normal` gets without obstacles that would move with outlines by a degree;
-    /// `is_free` says which of [`PeriodRadiation::directions`] are free.
+    /// Share of the unobstructed energy of a plane with a unit `normal` that would change if outlines moved by a
+    /// degree. `is_free` flags the free ones of [`PeriodRadiation::directions`].
     pub(super) fn moved_share(&self, normal: [f64; 3], is_free: impl Fn(usize) -> bool) -> f64 {
         let Self { radiation, of_suns, sun, sky } = self;
         let first_patch = of_suns.len();

@@ -34,7 +34,7 @@ impl Irradiation {
         self.beam + self.diffuse + self.reflected
     }
 
-    /// Share of what would arrive without obstacles that is lost, 0 to 1; 0 where nothing would arrive.
+    /// Lost share of the energy that would arrive without obstacles, 0 to 1; 0 where none would arrive.
     #[must_use]
     pub fn loss(&self) -> f64 {
         if self.unshaded > 0.0 { (1.0 - self.total() / self.unshaded).clamp(0.0, 1.0) } else { 0.0 }
@@ -209,7 +209,7 @@ pub(super) fn on_plane(
     }
 }
 
-/// Adds what comes from the sun and from the sky around it.
+/// Adds the energy from the sun and from the sky around it.
 fn add_sun(radiation: &PeriodRadiation, normal: [f64; 3], light: impl Fn(usize) -> f64, groups: &mut [Irradiation]) {
     for share in &radiation.sun {
         let Some(sum) = groups.get_mut(share.group) else { continue };

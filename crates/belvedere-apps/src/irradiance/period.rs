@@ -32,8 +32,7 @@ pub struct IrradianceParams {
     /// 3 degrees. Against 1 degree the energy of a year on cells in Delft differs by 0.02 % on the mean and 0.9 %
     /// (RMS), in a third of the time.
     pub sun_cell: f64,
-    /// Share of the global radiation that the ground reflects, 0 to 1. Default 0.2: grass, and what PVGIS and GRASS
-    /// take.
+    /// Share of the global radiation that the ground reflects, 0 to 1. Default 0.2: grass, as in PVGIS and GRASS.
     pub albedo: f64,
     /// Radiation of the obstacles that hide the sky from a plane.
     pub surroundings: Surroundings,

@@ -20,7 +20,8 @@ use serde::Serialize;
 pub struct RoofIrradiation {
     /// Mean of its cells over the whole period, kWh/m²: panels that each work for themselves.
     pub mean: Irradiation,
-    /// The same where a row of cells gets what all of its cells get at once: strings without bypass diodes.
+    /// The same where a row of cells gets only the light that all of its cells get at once: strings without bypass
+    /// diodes.
     pub string_limited: Irradiation,
     /// Energy in each group of the period, kWh/m²: 12 months, or the whole.
     pub groups: Vec<f64>,

@@ -1,4 +1,4 @@
-//! A period in parts by what crowns of trees let through, and the energy of places and planes over all of them.
+//! A period in parts of equal transmission of crowns, and the energy of places and planes over all of them.
 
 use super::ClearSky;
 use super::instants::{clear_instants, weather_instants};
@@ -48,8 +48,8 @@ pub struct SeasonRadiation {
     pub factor: f64,
 }
 
-/// A period in parts by what crowns let through; one part where they let nothing through. The report is that of all
-/// parts.
+/// A period in parts of equal transmission of crowns; one part where they let nothing through. The report is that of
+/// all parts.
 ///
 /// # Errors
 /// Those of [`weather_instants`], [`clear_instants`] and [`PeriodRadiation::gather`], and [`Error::Cancelled`].

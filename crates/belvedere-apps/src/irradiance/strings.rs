@@ -12,8 +12,8 @@ pub struct PlaneIrradiation {
     /// Mean of its cells for each group of the period, kWh/m². Its loss is the least that a plant loses: that of panels
     /// that each work for themselves.
     pub mean: Vec<Irradiation>,
-    /// The same where a row of cells gets what all of its cells get at once: the most that a plant loses whose rows are
-    /// strings without bypass diodes.
+    /// The same where a row of cells gets only the light that all of its cells get at once. It is the maximum loss of a
+    /// plant whose rows are strings without bypass diodes.
     pub string_limited: Vec<Irradiation>,
     /// Cells that are counted: those that see anything of the sky.
     pub cell_count: usize,

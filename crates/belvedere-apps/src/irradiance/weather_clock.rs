@@ -8,7 +8,7 @@ use belvedere_data::weather::{Weather, WeatherStep};
 
 /// Radiation from which on it is day, W/m²: diffuse light reaches valleys too, and sensors show some watts at night.
 const DAYLIGHT: f64 = 5.0;
-/// Fewest days that tell: single ones are lit by the row, and by what clouds are in the west.
+/// Minimum number of days: single ones are lit by the row, and by clouds in the west.
 const MIN_DAYS: usize = 60;
 const DAY_S: f64 = 86_400.0;
 /// Rows that are this long at most, hours.

@@ -13,11 +13,11 @@ pub struct IsovistFigure {
     pub decimals: usize,
 }
 
-/// A drift that tables show as zero, metres: it has no direction but that of what sines are rounded by.
+/// Maximum drift that tables show as zero, metres: its direction would be that of the rounding of sines.
 const NO_DRIFT: f64 = 5e-5;
 
 impl Isovist {
-    /// All numbers that describe it; NaN for what has no value. `grid_north` is the azimuth of grid north from the
+    /// All numbers that describe it; NaN for those without a value. `grid_north` is the azimuth of grid north from the
     /// north that azimuths are counted from, radians.
     pub fn figures(&self, grid_north: f64) -> impl Iterator<Item = IsovistFigure> {
         let plan = &self.plan;

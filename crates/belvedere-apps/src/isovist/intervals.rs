@@ -119,7 +119,7 @@ impl RayPart {
     }
 }
 
-/// The interval around a sum, from what rays add to it, each with its sector.
+/// The interval around a sum, from the contributions of rays, each with its sector.
 fn interval_of_sum(sum: f64, parts: &[(usize, RayPart)]) -> [f64; 2] {
     let mut sectors = vec![0.0; parts.iter().map(|(sector, _)| sector + 1).max().unwrap_or(0)];
     parts.iter().for_each(|(sector, part)| sectors[*sector] += part.deviation);

@@ -1,4 +1,4 @@
-//! Rays that leave a room between the points of its surface: they are no part of what is seen of it.
+//! Rays that leave a room between the points of its surface: they are left out of the isovist.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -54,7 +54,7 @@ pub(super) struct ClosedSurface {
     /// Ranges with those of the surface around in its gaps; `None` in true openings.
     pub(super) ranges: Vec<Option<f64>>,
     width: usize,
-    /// Range of what may close a gap, metres.
+    /// Maximum range of a surface that closes a gap, metres.
     max_range: f64,
     /// Share of all directions that are gaps, 0 to 1.
     pub(super) gap_share: f64,

@@ -151,9 +151,9 @@ pub fn isovist(scene: &MedialScene, eye: [f64; 3], params: &IsovistParams, contr
     isovist_of(&range, params, control)
 }
 
-/// The isovist by the function `range`, which returns the distance to what blocks along a unit vector, metres, and
-/// `None` where nothing does. It is evaluated on a regular grid of azimuths and elevations, where each ray represents
-/// its cell, and along the horizon.
+/// The isovist by the function `range`, which returns the distance to the first obstacle along a unit vector, metres,
+/// and `None` without one. It is evaluated on a regular grid of azimuths and elevations, where each ray represents its
+/// cell, and along the horizon.
 ///
 /// Volumes are sums of r³ / 3 over solid angles: exact where ranges are equal, otherwise right to the order of the
 /// square of the step.

@@ -13,8 +13,8 @@ const RAYS_PER_STEP: usize = 4;
 /// Visible area in the level plane through the eye.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlanIsovist {
-    /// Corners of what is seen: azimuth clockwise from north, radians, and range, metres, the greatest where nothing
-    /// blocks. In rising order of azimuth; two corners close together stand on both sides of a jump.
+    /// Corners of the visible region: azimuth clockwise from north, radians, and range, metres, the maximum where
+    /// nothing blocks. In rising order of azimuth; two corners close together stand on both sides of a jump.
     pub corners: Vec<[f64; 2]>,
     /// Area, m².
     pub area: f64,

@@ -9,8 +9,8 @@ use belvedere_data::vector::{length, sub};
 /// about 2 points.
 const SAMPLE: usize = 64;
 
-/// The expected area that an eye sees, m²: what nothing blocks in its `view`, and by how much probabilities differ from
-/// that on pieces at even steps. `None` for a scene without pulses.
+/// The expected area that an eye sees, m²: the unblocked area in its `view`, corrected by the difference of
+/// probabilities from it on pieces at even steps. `None` for a scene without pulses.
 pub(super) fn area(
     scene: &MedialScene,
     landmark: &SurfacePieces,

@@ -22,7 +22,7 @@ impl LandmarkMeasure {
     }
 }
 
-/// All numbers of some views, the share first: the last, what is expected, only where a view has it.
+/// All measures of some views, the share first. The last one, the expected area, is there only if a view has it.
 #[must_use]
 pub fn measures(views: &[LandmarkView]) -> &'static [LandmarkMeasure] {
     let has_expected = views.iter().any(|view| view.expected_area.is_some());

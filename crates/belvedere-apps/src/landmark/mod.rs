@@ -98,13 +98,13 @@ pub struct LandmarkView {
     pub visible_area: f64,
     /// Area that nothing blocks but is not proven, m²; not among the visible.
     pub unproven_area: f64,
-    /// Area that counts, m²: the whole landmark, or what is turned to the observer ([`BackFaces::LeftOut`]).
+    /// Area that counts, m²: the whole landmark, or the faces turned to the observer ([`BackFaces::LeftOut`]).
     pub area: f64,
-    /// Solid angle of what is seen, steradians.
+    /// Solid angle of the visible parts, steradians.
     pub solid_angle: f64,
     /// Share of the full circle of azimuths in which some of it is seen, 0 to 1.
     pub horizon_share: f64,
-    /// Angle on the map between the outermost parts seen, what hides between them included, radians, 0 to 2π.
+    /// Angle on the map between the outermost visible parts, hidden parts between them included, radians, 0 to 2π.
     pub horizontal_extent: f64,
     /// Elevation of the highest part seen minus that of the lowest, radians, 0 to π.
     pub vertical_extent: f64,

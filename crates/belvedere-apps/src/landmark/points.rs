@@ -27,7 +27,7 @@ pub enum LandmarkPoints<'a> {
 ///
 /// # Errors
 /// [`Error::MissingAttribute`] for a class where the cloud has none, [`Error::NoPoints`] where no point is meant, and
-/// what estimating normals and finding the ground refuse.
+/// errors of estimating normals and finding the ground.
 pub fn landmark_points(cloud: &PointCloud, which: &LandmarkPoints<'_>) -> Result<(Vec<u32>, SurfacePieces)> {
     let rows: Vec<u32> = match which {
         LandmarkPoints::Class(class) => {

@@ -27,7 +27,7 @@ pub struct BestView {
     pub max_visible_share: f64,
     /// Number of the observer, from 1.
     pub max_visible_share_observer: usize,
-    /// Solid angle of what it sees, steradians.
+    /// Solid angle of the visible parts from there, steradians.
     pub max_visible_share_solid_angle_sr: f64,
 }
 

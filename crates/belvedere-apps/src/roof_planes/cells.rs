@@ -135,8 +135,8 @@ fn filled(flat: &[[f64; 2]], cell: f64, shift: f64) -> (Raster<bool>, [f64; 2], 
     (without_gaps(&filled), low, cell)
 }
 
-/// Turns groups of at most `max_count` cells into what surrounds them: empty ones that filled ones enclose, and filled
-/// ones that touch the others at a corner only.
+/// Inverts groups of at most `max_count` cells: empty ones that filled ones enclose, and filled ones that touch the
+/// others at a corner only.
 fn smooth(cells: &mut Raster<bool>, max_count: f64) {
     for value in [false, true] {
         for group in groups(cells, value) {

@@ -122,7 +122,7 @@ struct Region<'a> {
 }
 
 impl Region<'_> {
-    /// Grows, then once more with the plane found. What does not become a plane is given free.
+    /// Grows, then once more with the plane found. Points of a region that does not become a plane are given free.
     fn grow_again(&mut self, seed: u32, start: PlaneFit) -> Option<(Vec<u32>, PlaneFit)> {
         let mut plane = start;
         for round in 0..ROUNDS {

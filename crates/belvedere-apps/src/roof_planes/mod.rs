@@ -1,4 +1,4 @@
-//! Roofs as planes: the plane parts of what stands above the ground, with tilt, azimuth, area and the cells that solar
+//! Roofs as planes: the plane parts of objects above the ground, with tilt, azimuth, area and the cells that solar
 //! panels would lie on.
 
 mod cells;
@@ -144,9 +144,9 @@ impl RoofPlane {
 /// The plane parts of `points`, (N, 3) local metres, those of roofs being given; largest first. Points of no plane are
 /// left out, and so are planes without room for a panel.
 ///
-/// From points whose surroundings are flattest on, a plane takes in neighbours that lie near it and look the same way,
-/// and is fitted anew as it grows. Its area is that of the cells that hold points, less what cells at its outline reach
-/// over it.
+/// From points with the flattest surroundings on, a plane takes in neighbours that lie near it and have a similar
+/// normal, and is fitted anew as it grows. Its area is that of the cells that hold points, less the parts of cells that
+/// reach over its outline.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for parameters outside their range and points that are not finite; [`Error::Cancelled`].

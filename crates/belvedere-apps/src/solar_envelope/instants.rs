@@ -6,7 +6,7 @@ use belvedere_data::{Error, Parameter, Result};
 /// Maximum number of instants: three years at 10 minutes.
 const MAX_INSTANTS: usize = 200_000;
 
-/// A sun that must reach what is protected.
+/// A sun that must reach the protected pieces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnvelopeSun {
     /// Seconds of UTC since 1970.

@@ -1,4 +1,4 @@
-//! The solar envelope: the largest volume over a parcel that casts no shadow on what is protected, at any of the suns.
+//! The solar envelope: the largest volume over a parcel that casts no shadow on protected pieces, at any of the suns.
 //!
 //! A sun at elevation e shades the place g up to the height h − d tan e from an object of height h that stands d metres
 //! toward the sun. To keep g in the sun, h may be at most z(g) + d tan e. A protected edge swept toward the sun makes a
@@ -72,7 +72,7 @@ pub struct SolarEnvelope {
     pub grid: MapGrid,
     /// The columns, in the order of their cells.
     pub columns: Vec<EnvelopeColumn>,
-    /// Counts of what was left out.
+    /// Counts of suns and of pairs left out.
     pub report: EnvelopeReport,
 }
 
@@ -107,7 +107,7 @@ pub struct Binding {
     pub sun: usize,
 }
 
-/// Counts of what was left out.
+/// Counts of suns and of pairs left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EnvelopeReport {
     /// Suns at or below the horizon, which shade nothing.
@@ -125,9 +125,9 @@ pub struct EnvelopeReport {
 /// Computes the solar envelope of `parcel` over the cells of `ground`. It keeps the sun for each piece of `protected`
 /// at each of `suns`, (S, 3) unit vectors from the scene to the sun (x east, y grid north, z up).
 ///
-/// Each column is bounded by the least bound over its whole footprint: nothing built within the columns shades what is
-/// protected, and no column can be raised without that. Where a bound lies below the ground nothing may be built, and
-/// the height is 0. Protected edges that only touch a column from beside do not bound it.
+/// Each column is bounded by the least bound over its whole footprint: nothing built within the columns shades a
+/// protected piece, and no column can be raised without that. Where a bound lies below the ground nothing may be built,
+/// and the height is 0. Protected edges that only touch a column from beside do not bound it.
 ///
 /// `free`, a row for each piece's sample and a column for each sun, credits existing shade. Where it is not free, the
 /// piece is in shade at that sun, and the pair bounds nothing.
@@ -253,7 +253,7 @@ fn strips(
     strips
 }
 
-/// Lowers the columns of one row of cells to what the strips of a sun allow.
+/// Lowers the columns of one row of cells to the limits of the strips of a sun.
 fn bound(columns: &mut [EnvelopeColumn], grid: &MapGrid, strips: &[(ShadingStrip, usize)], sun: usize) {
     let (Some(first), Some(last)) = (columns.first(), columns.last()) else { return };
     let column_of = |column: &EnvelopeColumn| column.footprint.cell % grid.width;

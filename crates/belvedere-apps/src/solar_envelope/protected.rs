@@ -8,7 +8,7 @@ use belvedere_data::{Error, Parameter, Result};
 /// Maximum number of pieces of lines: every sun sweeps each over the parcel.
 const MAX_PIECES: usize = 1_000_000;
 
-/// A piece of what is protected: a point, an edge or a triangle.
+/// A protected piece: a point, an edge or a triangle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProtectedPiece {
     /// One, two or three corners, local metres.

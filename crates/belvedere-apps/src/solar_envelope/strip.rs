@@ -102,7 +102,7 @@ impl ShadingStrip {
         part.corners().iter().map(height).reduce(f64::min)
     }
 
-    /// An edge that runs toward the sun, or a point: what lies behind its ends, and on it.
+    /// Limit of an edge that runs toward the sun, or of a point: from the region behind its ends, and on it.
     fn limit_of_ray(&self, piece: &ConvexPolygon) -> Option<f64> {
         let behind = |[x, y, z]: [f64; 3]| {
             let [from, to] = piece.crossing([x, y], self.to_sun, f64::INFINITY)?;

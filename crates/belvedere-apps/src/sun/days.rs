@@ -42,7 +42,7 @@ impl Default for DayParams {
     }
 }
 
-/// A piece of time during which the sun is up, a step of the day or what the horizon leaves of it.
+/// A piece of time during which the sun is up: a step of the day, or its part above the horizon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunStep {
     /// Number of the step, from the midnight before: the same number on another day has the same hour angle.
@@ -61,7 +61,7 @@ pub struct SunStep {
 pub struct SunDay {
     /// Date at noon in the calendar of the zone.
     pub date: Date,
-    /// Instant at which clocks of the zone begin this date (as they run at its noon): what times of day count from.
+    /// Instant at which clocks of the zone begin this date (as they run at its noon): the origin of times of day.
     pub clock_start: f64,
     /// Midnight of the sun with which it begins.
     pub start: f64,
@@ -89,7 +89,7 @@ impl SunDay {
 }
 
 /// The day of the sun that a date names at a site. Of the true noons of the site it is the one whose mean noon comes
-/// next to 12 o'clock in the `zone`. Where `within` is given, only what lies between the two instants counts.
+/// next to 12 o'clock in the `zone`. If `within` is given, only the time between its two instants counts.
 ///
 /// # Errors
 /// [`Error::InvalidParameter`] for parameters outside their range, and those of [`sun_position_with`].

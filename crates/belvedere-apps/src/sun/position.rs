@@ -12,7 +12,7 @@ const UNIX_EPOCH: f64 = 2_440_587.5;
 const DAY: f64 = 86_400.0;
 /// Days of a year of the Gregorian calendar.
 const YEAR: f64 = 365.2425;
-/// Years that are taken: what the difference between the clocks of earth and sky is known for, within minutes.
+/// Accepted years: the difference between the clocks of earth and sky is known for them within minutes.
 const YEARS: std::ops::RangeInclusive<f64> = 1000.0..=3000.0;
 /// Pressure of the standard atmosphere at the sea, hPa.
 const STANDARD_PRESSURE: f64 = 1013.25;

@@ -110,8 +110,8 @@ impl Site {
     /// The same site with its longitude within ±π.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for what is out of range or not finite; longitudes of up to one more turn are taken
-    /// back.
+    /// [`Error::InvalidParameter`] for values out of range or not finite; longitudes of up to one more turn are
+    /// wrapped.
     pub fn validate(self) -> Result<Self> {
         let invalid = |parameter, value: f64, expected| {
             Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })

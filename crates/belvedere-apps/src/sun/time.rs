@@ -30,7 +30,7 @@ impl Zone {
     /// A zone by its name, such as "Europe/Amsterdam", or an offset from UTC, such as "+02:00"; "Z" is UTC.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for what is neither.
+    /// [`Error::InvalidParameter`] for a text that is neither.
     pub fn parse(text: &str) -> Result<Self> {
         let text = text.trim();
         if text.eq_ignore_ascii_case("z") || text.eq_ignore_ascii_case("utc") {

@@ -87,8 +87,8 @@ pub struct SunSums {
 
 impl SunSums {
     /// Adds the targets of `block`, whose columns are the directions of `plan` and which follow those added before.
-    /// `normals`, (M, 3), are those of all targets. Where `block` says what is seen without trees, `crowns` with the
-    /// site say what share of the light of each day these let through.
+    /// `normals`, (M, 3), are those of all targets. If `block` has a matrix without trees, `crowns` with the site give
+    /// the share of the light of each day that trees let through.
     ///
     /// # Errors
     /// Those of [`sun_hours`] and [`sun_hours_through_crowns`].

@@ -31,7 +31,8 @@ pub struct SunRule {
     pub min_elevation: f64,
 }
 
-/// A rule with a name: name, name of its column, days, hours, least elevation in degrees, what it requires.
+/// A rule with a name: name, name of its column, days, hours, minimum elevation in degrees, description of its
+/// requirement.
 struct NamedRule(&'static str, &'static str, RuleDays, f64, f64, &'static str);
 
 const EIGHT_MONTHS: RuleDays = RuleDays::Each([[2, 19], [10, 21]]);
@@ -110,7 +111,7 @@ impl SunRule {
 
 impl RuleDays {
     /// Days written as MM-DD or MM-DD..MM-DD, or by a name: "equinox" (21 March, as rules have it), "shortest-day" or
-    /// "winter-solstice", "longest-day" or "summer-solstice"; `None` for what is neither.
+    /// "winter-solstice", "longest-day" or "summer-solstice"; `None` for other texts.
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
         match text {

@@ -82,7 +82,7 @@ pub struct SurveyGain {
     pub proven: f64,
 }
 
-/// Stations that were chosen, and what is expected of them.
+/// Chosen stations with their expected gains.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurveyPlan {
     /// Candidates that were chosen, those that add most first.

@@ -1,4 +1,4 @@
-//! Cells of a grid on the ground, or on top of what stands on it.
+//! Cells of a grid on the ground, or on top of the objects on it.
 
 use super::{TARGET_LIFT, TargetLayout, Targets};
 use crate::viewshed::cell_targets;
@@ -15,7 +15,7 @@ pub enum CellLevel {
     /// The ground. Default.
     #[default]
     Ground,
-    /// The top of what stands there: roofs, crowns, and the ground between.
+    /// The top surface: roofs, crowns, and the ground between.
     Surface,
 }
 
@@ -100,8 +100,8 @@ impl Targets {
         Ok((Self::at(cloud.frame.clone(), positions, None, TargetLayout::Cells(Box::new(ground))), report))
     }
 
-    /// Sets cells made with `params` on the meshes that were added: those on a surface on top of what is higher, cloud
-    /// or mesh. Cells on the ground inside a mesh are left out; returns how many.
+    /// Sets cells made with `params` on the meshes that were added: those on a surface on top of the higher of cloud
+    /// and mesh. Cells on the ground inside a mesh are left out; returns how many.
     pub fn set_on_added(&mut self, added: &BlockingTriangles, params: &CellParams) -> usize {
         let TargetLayout::Cells(ground) = &mut self.layout else { return 0 };
         if params.level == CellLevel::Surface {

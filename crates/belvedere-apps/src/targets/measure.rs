@@ -1,4 +1,4 @@
-//! Values of targets, with what is needed to write and draw them.
+//! Values of targets, with the data to write and draw them.
 
 use super::ResultKind;
 use belvedere_data::report::rounded;
@@ -49,7 +49,7 @@ impl Measure {
         Self { description, ..self }
     }
 
-    /// This with what tells it from others alike.
+    /// This with a subject that tells it from similar ones.
     #[must_use]
     pub fn with_subject(self, subject: &str) -> Self {
         Self { subject: subject.to_owned(), ..self }

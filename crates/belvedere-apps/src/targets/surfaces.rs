@@ -1,4 +1,4 @@
-//! Faces of a mesh as targets, and what their pieces say of faces and objects.
+//! Faces of a mesh as targets, and means of their pieces over faces and objects.
 
 use super::{TargetLayout, Targets};
 use belvedere_core::query::{MeshTargetParams, SurfacePieces};
@@ -87,7 +87,7 @@ impl Targets {
 
 impl FaceMeans {
     /// The means of `values`, one for each piece of `surface`, over the faces of `mesh` and, by their area, over its
-    /// objects. What has no value does not count.
+    /// objects. Pieces without a value do not count.
     #[must_use]
     pub fn new(mesh: &Mesh, surface: &SurfacePieces, values: &[f32]) -> Self {
         let areas = surface.face_areas();

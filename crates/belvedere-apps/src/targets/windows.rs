@@ -70,8 +70,8 @@ impl Targets {
         Ok(Self { weights, groups, ..Self::at(frame, positions, Some(normals), TargetLayout::Points) })
     }
 
-    /// The faces of `mesh`, metres, as windows: the targets, in pieces of `spacing` metres at most, and what each
-    /// window is.
+    /// The faces of `mesh`, metres, as windows: the targets, in pieces of `spacing` metres at most, and the properties
+    /// of each window.
     ///
     /// # Errors
     /// Those of [`Targets::of_mesh`].

@@ -1,5 +1,5 @@
-//! Viewsheds: what one or many observers see of cells or points, from where a target is seen, and how high a thing must
-//! stand.
+//! Viewsheds: cells or points that one or many observers see, places from where a target is seen, and the height at
+//! which an object becomes visible.
 
 mod far;
 mod observers;
@@ -59,7 +59,7 @@ pub enum Masks {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Viewshed {
     /// The best of the observers' answers for each target: visible before unproven before blocked;
-    /// [`Answer::OutsideView`] for what none of them is turned to, (M).
+    /// [`Answer::OutsideView`] for targets outside the limits of all of them, (M).
     pub answers: Vec<Answer>,
     /// Number of observers that see each target, (M).
     pub counts: Vec<u32>,
@@ -78,7 +78,7 @@ pub const OBSERVER_HEIGHT: f64 = 1.7;
 /// Height above the ground at which targets on it are tested, metres. The height of the ground is accurate to a few
 /// centimetres, and balls bulge by as much between its points. Over tens of metres a line of sight at the ground itself
 /// would run in and out of them. On simulated towns 0.05 halves the false-blocked cells (6.9 to 3.7 %); 0.1 gains no
-/// more and sees more of what is hidden.
+/// more and sees more of the hidden cells.
 pub const GROUND_TOLERANCE: f64 = 0.05;
 
 /// The height above the ground at which a target of `height` metres is tested: no lower than [`GROUND_TOLERANCE`].
@@ -87,12 +87,12 @@ pub fn tested_height(height: f64) -> f64 {
     height.max(GROUND_TOLERANCE)
 }
 
-/// Description of a raster of what one observer sees.
+/// Description of a raster of the cells that one observer sees.
 pub const SEEN: &str = "1 nothing blocks it, 0 blocked, 255 nodata";
 /// Description of a raster of several observers.
 pub const SEEN_BY: &str = "number of observers from which nothing blocks the cell, 65535 nodata";
 
-/// Title of a map of what one or several observers see of cells, or of cells from which a target is seen.
+/// Title of a map of the cells that one or several observers see, or of cells from which a target is seen.
 #[must_use]
 pub fn title_of_cells(is_of_one: bool, is_reverse: bool) -> &'static str {
     match (is_reverse, is_of_one) {
@@ -120,7 +120,7 @@ pub fn answers_of_bands(bands: &[Measure]) -> Vec<Answer> {
     free.values.iter().enumerate().map(answer).collect()
 }
 
-/// Default side of a cell, metres: what points of usual airborne surveys (0.3 to 0.5 m apart) can tell.
+/// Default side of a cell, metres: the resolution of points of usual airborne surveys (0.3 to 0.5 m apart).
 pub const CELL: f64 = 0.5;
 
 /// Maximum number of cells of a default grid.
@@ -271,7 +271,8 @@ struct ObserverBand {
 }
 
 impl ViewshedTree<'_> {
-    /// Blocked for what somebody looks at, otherwise outside the view; outside the cloud for what lies there.
+    /// Blocked for targets within the limits of an observer, otherwise outside the view; outside the cloud for targets
+    /// there.
     fn before_anybody_sees(&self, observers: &[Observer]) -> Vec<Answer> {
         let lookers: Vec<&Observer> =
             observers.iter().filter(|observer| !self.scene.is_outside(observer.eye)).collect();
@@ -362,7 +363,7 @@ impl ViewshedTree<'_> {
     }
 }
 
-/// Adds what a band sees.
+/// Adds the cells that a band sees.
 fn add(result: &mut Viewshed, band: ObserverBand, masks: Masks) {
     for row in band.unproven {
         let answer = &mut result.answers[row as usize];

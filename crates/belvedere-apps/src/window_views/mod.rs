@@ -22,7 +22,7 @@ pub const VIEW_DIRECTIONS: usize = 1000;
 pub const VIEW_SPACING: f64 = 2.0;
 /// A face whose normal rises or falls by more than this, as a sine, is a roof or a floor and no facade: 45°.
 const STEEPEST_NORMAL: f32 = std::f32::consts::FRAC_1_SQRT_2;
-/// Kinds of what is seen.
+/// Number of kinds of surfaces seen.
 const KINDS: usize = SeenKind::ALL.len();
 
 /// View from one window. All is NaN for a window without a position.
@@ -32,8 +32,8 @@ pub struct WindowView {
     pub shares: [f64; KINDS],
     /// The same, weighted by the cosine to the normal of the window, as light arrives through it; 1 together.
     pub cosine_shares: [f64; KINDS],
-    /// Mean range of the things seen, metres, by solid angle; sky and what is beyond the cloud do not count, far
-    /// terrain neither. NaN where no thing is seen.
+    /// Mean range of the surfaces seen, metres, by solid angle; sky, places beyond the cloud and far terrain do not
+    /// count. NaN without a surface.
     pub mean_range: f64,
     /// Half of the solid angle of the things seen is nearer than this, metres; NaN where no thing is seen.
     pub median_range: f64,

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// balls by less.
 const FARTHEST_FROM_POINT: f64 = 1.0;
 
-/// A kind of what is seen from a window.
+/// Kind of surface seen from a window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SeenKind {
@@ -19,7 +19,7 @@ pub enum SeenKind {
     Vegetation,
     /// Water.
     Water,
-    /// Buildings, and what was added to a scene.
+    /// Buildings, and meshes added to a scene.
     Building,
     /// Bare ground, roads and rails; and far terrain, above the horizon or below it.
     Ground,
@@ -49,7 +49,7 @@ impl SeenKind {
         }
     }
 
-    /// The kind of a thing that is called so; `None` for sky, for what is beyond the cloud, and for other words.
+    /// The kind of a surface by its name; `None` for sky, for places beyond the cloud, and for other words.
     #[must_use]
     pub fn thing_called(name: &str) -> Option<Self> {
         let is_thing = |seen: &Self| !matches!(seen, Self::Sky | Self::Beyond);

@@ -125,9 +125,9 @@ fn in_centimetres<S: Serializer>(radius: &Option<f64>, serializer: S) -> std::re
 
 /// Indices of the points worth keeping, ascending, and how many each step left out.
 ///
-/// Steps run in the order of the fields of [`CleanParams`], each on what the ones before kept. Of points in one place
-/// the first in the file stays. Flags and classes are looked at where the cloud has them. An empty cloud gives no
-/// index. The result is the same for any number of threads.
+/// Steps run in the order of the fields of [`CleanParams`], each on the points that the previous ones kept. Of points
+/// in one place the first in the file stays. Flags and classes are used where the cloud has them. An empty cloud gives
+/// no index. The result is the same for any number of threads.
 ///
 /// # Errors
 /// - [`Error::LengthMismatch`] if an attribute has another length than the cloud.

@@ -110,7 +110,7 @@ pub(super) trait CentralSurface: Sync {
     fn radius_at_eye(&self, radius: f64, _distance: f64, _margin: f64) -> f64 {
         radius
     }
-    /// Limits of depth of what is drawn.
+    /// Minimum and maximum depth drawn.
     fn limits(&self, view: &View) -> [f64; 2];
     /// Returns the area that a ball covers when its surface passes through the eye, or it holds the eye, so that its
     /// outline gives no information; `None` for no area.
@@ -286,7 +286,7 @@ impl<S: CentralSurface> SplatSurface for Central<S> {
 }
 
 impl<S: CentralSurface> Central<S> {
-    /// Depth of one ball in the middle of one pixel: what [`SplatSurface::depths`] says of it.
+    /// Depth of one ball at the centre of one pixel, as computed by [`SplatSurface::depths`].
     #[expect(clippy::cast_possible_truncation, reason = "components of a unit vector")]
     pub(super) fn depth_at(&self, splat: &CentralSplat, pixel: [usize; 2]) -> f32 {
         let direction = self.view.direction(pixel.map(|at| at as f64 + 0.5)).map(|component| component as f32);

@@ -32,9 +32,9 @@ pub struct DepthMap {
 /// out. Balls that hold the eye of the view (its distance to their centre is at most their radius) are left out and
 /// counted.
 ///
-/// Cost: reading every ball once, then work in proportion to what is seen. Balls are drawn tile by tile from front to
-/// back, and blocks of pixels that are already nearer than a ball can come are skipped. The result is the same for any
-/// number of threads and any order of balls.
+/// Cost: reading every ball once, then work in proportion to the visible ones. Balls are drawn tile by tile from front
+/// to back, and blocks of pixels that are already nearer than any depth of a ball are skipped. The result is the same
+/// for any number of threads and any order of balls.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] for columns of unequal length, [`Error::InvalidParameter`] for 2³² balls or more, and for

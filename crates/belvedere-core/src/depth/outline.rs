@@ -2,7 +2,7 @@
 
 use belvedere_data::view::{Projection, View};
 
-/// The outline of what covers everything.
+/// The outline of a surface that covers the whole picture.
 pub(super) const ALL: [[f64; 2]; 2] = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
 
 /// Returns the range of columns and of rows, in pixels from the upper left corner, of the outline of a ball in a view

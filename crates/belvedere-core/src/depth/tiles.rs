@@ -1,9 +1,9 @@
-//! Drawing balls tile by tile, from front to back, leaving out what is hidden.
+//! Drawing of balls tile by tile, from front to back, with occlusion culling.
 //!
 //! Balls are sorted into the tiles they may touch. Each tile then draws its own from the nearest to the farthest and
 //! stops at the first that begins behind everything drawn so far. Within a tile, blocks of 8 x 8 pixels know their
-//! farthest depth, and a ball skips those it cannot come nearer in. Large balls (a 30 m ball covers thousands of
-//! pixels) thus cost what is seen of them.
+//! farthest depth, and a ball skips the blocks in which it cannot be nearer. Large balls (a 30 m ball covers thousands
+//! of pixels) thus cost only their visible part.
 
 use crate::blocking::Ball;
 use belvedere_data::Result;
@@ -34,8 +34,8 @@ const MAX_LISTED_TILES: usize = 16;
 /// Balls handed to a thread at once.
 const CHUNK: usize = 8192;
 
-/// A surface that represents a ball in a view, and what is needed to draw it. All depths are in one unit, which the
-/// surface chooses.
+/// A surface that represents a ball in a view, and the data to draw it. All depths are in one unit, which the surface
+/// chooses.
 pub(super) trait SplatSurface: Sync {
     /// A ball in the view.
     type Splat: Copy + Send + Sync;

@@ -200,7 +200,7 @@ impl Groups {
         level
     }
 
-    /// For each level what is known of its group.
+    /// Size and extent of the group of each level.
     fn sizes(&self, levels: &[Level]) -> Vec<Group> {
         let mut sizes: Vec<Group> = levels.iter().map(Group::of).collect();
         for (number, level) in levels.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The ground of a few cells at a time: what shows it is sorted by squares on the map once.
+//! The ground of a few cells at a time: the points that show it are sorted by squares on the map once.
 
 use super::{Ground, GroundParams, GroundReport, MapGrid, cells_near_returns, tested_points, triangulate};
 use crate::neighbors::NeighborIndex;
@@ -32,7 +32,7 @@ pub struct GroundBySquares {
 }
 
 impl GroundBySquares {
-    /// Finds what shows the ground of a cloud.
+    /// Selects the points that show the ground of a cloud.
     ///
     /// # Errors
     /// Those of [`Ground::of_cloud`].
@@ -98,7 +98,7 @@ impl GroundBySquares {
     }
 }
 
-/// Squares over ground points, rows from the south; what lies beside them belongs to the outermost.
+/// Squares over ground points, rows from the south; places outside them belong to the nearest outermost square.
 struct Squares {
     low: [f64; 2],
     side: f64,

@@ -22,7 +22,7 @@ const CHUNK: usize = 65_536;
 ///
 /// # Source
 /// Pingel, Clarke & McBride 2013, "An improved simple morphological filter for the terrain classification of airborne
-/// LIDAR data": SMRF. Here windows are squares, grow faster beyond 18 cells, and what is missing is triangulated.
+/// LIDAR data": SMRF. Here windows are squares, grow faster beyond 18 cells, and gaps are triangulated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FinderParams {
     /// Side of the cells whose lowest points are looked at, metres, above 0. Default 1, as in the source.

@@ -1,4 +1,4 @@
-//! Ground that is found block by block, so that a part of a survey finds what the whole finds.
+//! Ground found block by block, so that a part of a survey gives the same ground as the whole.
 
 use super::find::{FinderParams, find_ground};
 use belvedere_data::control::Control;

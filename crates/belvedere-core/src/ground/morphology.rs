@@ -10,8 +10,8 @@ enum Extreme {
     Max,
 }
 
-/// `heights` without what is narrower than `2 · radius + 1` cells and higher than its surroundings: the least of each
-/// square, then the most of those. No height may be NaN.
+/// Morphological opening of `heights` with a square of `2 · radius + 1` cells: minimum filter, then maximum filter. No
+/// height may be NaN.
 pub(super) fn opened(heights: &Raster<f32>, radius: usize) -> Raster<f32> {
     window(&window(heights, radius, Extreme::Min), radius, Extreme::Max)
 }

@@ -28,8 +28,8 @@ impl HighestPoints {
         }
     }
 
-    /// The heights, local metres: in cells without a point the mean of the filled neighbours, else what `fallback` says
-    /// of the cell of that number.
+    /// The heights, local metres: in cells without a point the mean of the filled neighbours, else the value of
+    /// `fallback` for the cell of that number.
     #[must_use]
     pub fn filled(self, fallback: impl Fn(usize) -> f32) -> Raster<f32> {
         let Self { grid, heights: mut highest } = self;

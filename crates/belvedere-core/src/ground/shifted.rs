@@ -237,8 +237,7 @@ fn two_levels(squares: &Squares, side: f32) -> Option<GroundShift> {
 }
 
 /// Returns the mean level of the ground around squares with two levels, in units of their height difference: 0 for the
-/// lower one and 1 for the upper one. `None` without such ground. A slope adds on one side what it takes away on the
-/// other.
+/// lower one and 1 for the upper one. `None` without such ground. A slope cancels out between opposite sides.
 fn level_around(squares: &Squares, steps: &BTreeMap<[i32; 2], f32>) -> Option<f32> {
     let (mut sum, mut count) = (0.0, 0.0);
     for (at, step) in steps {

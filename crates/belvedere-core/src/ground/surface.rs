@@ -1,4 +1,4 @@
-//! The surface of what stands on the ground at the middle of each cell, to ask questions above.
+//! Height of the highest surface above the ground at the middle of each cell, for questions about places above it.
 
 use super::{Ground, MAX_GAP_FROM_RETURNS, cells_near_returns, highest_points};
 use crate::neighbors::{Neighbor, NeighborIndex};

@@ -12,7 +12,7 @@ const SAMPLE: usize = 64;
 const MIN_SAMPLED: usize = 32;
 /// Steps of scanner positions, metres: a car leaves each before it has sent 2000 pulses, and f32 rounds to less.
 const STEP_M: f32 = 0.002;
-/// Tripods stand farther apart than that, metres; what is nearer is one of them on both sides of a step.
+/// Minimum distance between tripods, metres; nearer ones are one tripod on both sides of a step.
 const MIN_APART: f32 = 0.1;
 /// Sectors about a tripod that the nearest points on the floor are looked for in, and how many must have one: its legs
 /// may hide the others.
@@ -21,9 +21,9 @@ const MIN_SECTORS: usize = 24;
 /// Maximum distance of the floor's nearest points from the foot of a tripod, in heights of the scanner above them:
 /// scanners look down to 30° from straight down or more.
 const MAX_HEIGHTS: f32 = 1.2;
-/// A scanner is higher above the floor than that, metres; what is nearer is the tripod itself.
+/// Minimum height of a scanner above the floor, metres; points nearer to it are the tripod itself.
 const MIN_HEIGHT: f32 = 0.5;
-/// Maximum slope of a floor; what lies farther above or below the others is no part of it.
+/// Maximum slope of a floor; points farther above or below the others are no part of it.
 const MAX_SLOPE: f32 = 0.5;
 
 /// A place on the floor below a tripod.
@@ -157,8 +157,7 @@ mod tests {
     /// Radius of the place that the scanner does not look at, metres.
     const BLIND: f32 = 0.8;
 
-    /// A floor that rises by a tenth to the east, measured but for what lies below the tripod, in sectors for which
-    /// `is_open`.
+    /// A floor that rises by a tenth to the east, measured except below the tripod, in sectors for which `is_open`.
     fn floor(is_open: impl Fn(f32) -> bool) -> (Vec<[f32; 3]>, NeighborIndex, FreeSegments) {
         let mut positions = Vec::new();
         for ring in 0_u8..20 {

@@ -1,4 +1,4 @@
-//! Cutting balls down to what the pulses leave of them.
+//! Cutting of balls by pulses.
 
 use super::marks::RadiusCaps;
 use crate::neighbors::Tangent;

@@ -1,4 +1,5 @@
-//! The model that Belvedere answers from: balls cut by pulses, and the rules for what balls alone represent badly.
+//! The model that Belvedere answers from: balls cut by pulses, and the rules for objects that balls alone represent
+//! badly.
 
 use super::carve::{CarveReport, carve};
 use super::close_range::CloseRangeBalls;

@@ -23,7 +23,7 @@ pub(super) struct Cells<V> {
 }
 
 impl<V: Copy + Send + Sync> Cells<V> {
-    /// Gathers `entries` with `merge`, whose outcome must not depend on the order of what is merged.
+    /// Gathers `entries` with `merge`, whose result must not depend on the order of its arguments.
     pub(super) fn new(mut entries: Vec<(Cell, V)>, merge: impl Fn(V, V) -> V) -> Self {
         entries.par_sort_unstable_by_key(|entry| entry.0);
         entries.dedup_by(|later, earlier| {

@@ -1,4 +1,4 @@
-//! Balls that hang below each other: how what has points on its top only is filled.
+//! Chains of balls below each other, which fill objects with points on their tops only.
 
 use super::marks::{Fill, FillPlace};
 

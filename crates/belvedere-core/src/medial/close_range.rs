@@ -1,9 +1,9 @@
 //! Balls for scanners that stand among the things they measure: tripods, cars, rooms.
 //!
-//! Such a scanner sees a wall, a car or a trunk from one side, from near by, and nothing of what lies behind. Balls as
-//! thick as those of surveys from the air would fill that space, through which lines of sight run that never meet the
-//! surface. Here balls are only as thick as it takes to close the surface; what no pulse has seen is left for the
-//! pulses to call unproven.
+//! Such a scanner sees a wall, a car or a trunk from one side, from a short distance, and nothing behind it. Balls as
+//! thick as those of surveys from the air would fill that space, although lines of sight run through it that never meet
+//! the surface. Here balls are only as thick as needed to close the surface; space that no pulse has seen is left for
+//! the pulses to call unproven.
 
 use super::below_tripods::{FloorPlace, floors_below};
 use super::carve::CarveReport;
@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 /// Balls handed to a thread at once; their searches share the cache.
 const CHUNK: usize = 512;
-/// Balls of less than this are left out, metres: pulses passed on all sides, and what is left is noise.
+/// Minimum radius of a ball, metres: smaller ones are noise, as pulses passed on all sides.
 const MIN_RADIUS: f32 = 1e-3;
 
 /// Sizes of balls for scanners that stand among the things they measure.
@@ -28,7 +28,7 @@ pub struct CloseRangeParams {
     /// Default 2, since scan lines are often twice as far apart as the points on them. 1.5 leaves gaps at the edges of
     /// rooms.
     pub max_spacings: f32,
-    /// Maximum radius, metres, above 0. Default 0.15: 0.25 blocks twice as much of what is visible behind cars and
+    /// Maximum radius, metres, above 0. Default 0.15: 0.25 blocks twice as much of the visible space behind cars and
     /// fences.
     pub max_radius: f32,
     /// Depth to which points and pulses may enter a ball before it gives way to them, as a share of the most radius, 0
@@ -46,7 +46,7 @@ impl Default for CloseRangeParams {
     }
 }
 
-/// Balls that close the surfaces, and what became of them.
+/// Balls that close the surfaces, with counts by outcome.
 pub(super) struct CloseRangeBalls {
     pub(super) balls: MedialBalls,
     pub(super) shrinking: ShrinkReport,

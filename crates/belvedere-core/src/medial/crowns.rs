@@ -1,4 +1,4 @@
-//! Crowns of trees: what share of the pulses gets through them, and balls that fill those that let few through.
+//! Crowns of trees: the share of pulses that pass through them, and balls that fill dense ones.
 
 use super::cells::{Cell, Cells, cell};
 use super::kinds::Kind;

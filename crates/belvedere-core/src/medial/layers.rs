@@ -1,4 +1,4 @@
-//! Points sorted into columns of small voxels, so that what lies above, below and beside a place is found at once.
+//! Points sorted into columns of small voxels, for searches above, below and beside a place.
 
 use std::ops::Range;
 

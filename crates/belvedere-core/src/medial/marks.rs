@@ -16,7 +16,7 @@ const CHUNK: usize = 512;
 /// Marks of one rule.
 #[derive(Debug, Default)]
 pub(super) struct Marks {
-    /// Balls that are smaller because of what their point is.
+    /// Balls with a smaller radius because of the kind of their point.
     pub(super) caps: Vec<Cap>,
     /// Balls that reach into places known to be empty.
     pub(super) cuts: Vec<Cut>,
@@ -106,7 +106,7 @@ impl RadiusCaps {
         Self { radii, unbounded: params.unbounded_radius, is_centred: Vec::new() }
     }
 
-    /// Tightens the radii by what a rule marks.
+    /// Reduces the radii by the caps of a rule.
     pub(super) fn tighten(&mut self, caps: &[Cap]) {
         for cap in caps {
             let Some(radius) = self.radii.get_mut(cap.row) else { continue };
@@ -184,7 +184,7 @@ pub(super) fn fill(
 }
 
 impl Fill {
-    /// Centre and radius of what pulses leave of the ball, where that is enough. The ball at its point has the radius
+    /// Centre and radius of the ball after cutting by pulses, if large enough. The ball at its point has the radius
     /// `own`.
     fn ball(&self, free_segments: &FreeSegments, own: f32) -> Option<([f32; 3], f32)> {
         let most = self.max_radius;

@@ -24,8 +24,8 @@ pub struct ReliefParams {
     /// 2.4: 0.85 m at 8 pulses per m², and 0.27 m at 80, where 0.75 m takes slopes for edges and costs own points 0.6
     /// points false-blocked.
     pub reach_spacings: f32,
-    /// Minimum and maximum height above that level, metres. Default 0.2 to 1.5: less is noise; what falls off deeper
-    /// may overhang, and 2.5 m blocks a point more of what is visible from the street.
+    /// Minimum and maximum height above that level, metres. Default 0.2 to 1.5: lower ones are noise; higher ones may
+    /// overhang, and 2.5 m blocks one percentage point more of the visible space at street level.
     pub heights: [f32; 2],
     /// Radius above which the ball at a point represents it well enough, metres, above 0. Default 0.75: 0.4 gains 0.5
     /// points less on roofs; 1.5 gains another 0.1 of twice as many points.

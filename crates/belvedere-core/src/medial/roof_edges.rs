@@ -1,8 +1,8 @@
 //! Walls that no pulse reached, found by the edges of the roofs above them.
 //!
 //! Behind balconies and on walls along the flight there are hardly any points, and balls from the far side of a house
-//! bulge out between them. A house does not reach beyond its roof, so that what comes from within is cut below the
-//! roof's edge.
+//! bulge out between them. A house does not reach beyond its roof, so that balls from inside are cut below the roof's
+//! edge.
 
 use super::cells::cell;
 use super::kinds::Kind;
@@ -185,7 +185,7 @@ mod tests {
         (OrientedCloud::with_known_normals(positions, normals).unwrap(), classes)
     }
 
-    /// Places below the roof edges, and what is left of the ball of this radius at the first point of `of`.
+    /// Places below the roof edges, and the remaining radius of a ball of this radius at the first point of `of`.
     fn edges_and_radius(roof: &OrientedCloud, classes: Vec<u8>, of: &OrientedCloud, radius: f32) -> (RoofEdges, f32) {
         let params = RoofEdgeParams::default();
         let edges = with_survey(roof, Some(classes), &[], |mut survey| {

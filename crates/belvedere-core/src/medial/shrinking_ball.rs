@@ -84,7 +84,7 @@ impl ShrinkParams {
         Self { max_spacings: 3.0, ..Self::tau() }
     }
 
-    /// Checks what [`shrink`] checks, before a cloud is there.
+    /// Makes the checks of [`shrink`] before a cloud is there.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for the first parameter out of its range.
@@ -141,7 +141,7 @@ pub struct ShrinkReport {
 /// Points handed to a thread at once; their searches share the cache.
 const CHUNK: usize = 512;
 
-/// One ball per point of `cloud` on the given side, row i for point i, and what became of them.
+/// One ball per point of `cloud` on the given side, row i for point i, with counts by outcome.
 ///
 /// `index` must have been built from the cloud's positions. A point without a normal gets a ball of radius 0 at its own
 /// place that touches nothing.

@@ -95,9 +95,9 @@ impl MarkingRule for SlenderParams {
 }
 
 impl SlenderParams {
-    /// Returns the height of each point of a slender thing above the lowest point near by, NaN for all others. Points
-    /// of ground, vegetation and buildings are left out (class 6, or no class and higher than what stands). So are
-    /// points that are too low, or not passed by pulses on all sides.
+    /// Returns the height of each point of a slender object above the lowest point near by, NaN for all others. Points
+    /// of ground, vegetation and buildings are left out (class 6, or no class and higher than objects on the ground).
+    /// So are points that are too low, or not passed by pulses on all sides.
     fn heights(&self, survey: &Survey<'_>, control: &Control<'_>) -> Result<Vec<f32>> {
         let stop = Stop::new(control);
         let positions = survey.positions();
@@ -127,7 +127,7 @@ impl SlenderParams {
         Ok(heights)
     }
 
-    /// The fills of what stands on the ground, whose points are the rows `standing`.
+    /// The fills of objects on the ground, whose points are the rows `standing`.
     fn fills(
         &self,
         survey: &Survey<'_>,

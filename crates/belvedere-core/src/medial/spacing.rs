@@ -1,7 +1,7 @@
 //! Spacing of pulses: the unit of the sizes of balls.
 //!
-//! What lies between two pulses nothing is known of. Balls that close a surface are as large as that, whatever the
-//! survey: half a metre for two pulses a square metre, half a decimetre for a hundred.
+//! Nothing is known of the space between two neighbouring pulses. Balls that close a surface are as large as that
+//! spacing, whatever the survey: half a metre for two pulses a square metre, half a decimetre for a hundred.
 
 use super::cells::{Cells, cell};
 use belvedere_data::Attributes;

@@ -290,8 +290,8 @@ fn surfaces(layers: &Layers, beside: &[usize], proven: &[bool], min_proof: f32) 
     found.reduce_with(either).unwrap_or_default()
 }
 
-/// [`surfaces`] for one way to lay blocks. A surface is what hangs together of voxels that go on to all sides or are
-/// proven, with what lies beside them.
+/// [`surfaces`] for one partition into blocks. A surface is a connected set of voxels that go on to all sides or are
+/// proven, with the voxels beside them.
 fn surfaces_in_blocks(
     layers: &Layers,
     beside: &[usize],

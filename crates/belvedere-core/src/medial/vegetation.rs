@@ -1,4 +1,4 @@
-//! Vegetation in clouds where no class says what is vegetation.
+//! Vegetation in clouds without a class for it.
 
 use super::kinds::Kind;
 use crate::neighbors::{FARTHEST_NEIGHBOR, NeighborIndex};

@@ -3,7 +3,7 @@
 use belvedere_data::balls::MedialBalls;
 use belvedere_data::{Error, Result};
 
-/// Flags the balls that are vegetation, (B), by what carving measured: those whose `transmission`, (B), is a number.
+/// Flags the balls that are vegetation, (B), as measured by carving: those whose `transmission`, (B), is a number.
 #[must_use]
 pub fn vegetation_of_transmission(transmission: &[f32]) -> Vec<bool> {
     transmission.iter().map(|share| !share.is_nan()).collect()

@@ -1,4 +1,4 @@
-//! A check of what blocks, balls and surfaces, against the pulses that carved them.
+//! Check of balls and surfaces against the pulses that carved them.
 
 use super::report::BlockedPulses;
 use crate::pulses::FreeSegments;

@@ -21,14 +21,14 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 impl SceneModel {
-    /// The scene model of `cloud`, and what became of its points on the way.
+    /// The scene model of `cloud`, with counts of its points by step.
     ///
     /// The result is the same, bit by bit, for any number of threads.
     ///
     /// # Errors
     /// - [`Error::NoPoints`] if cleaning leaves none.
     /// - [`Error::NoSurface`] if it leaves too few for a surface.
-    /// - [`Error::MissingAttribute`] if the cloud lacks what the parameters need.
+    /// - [`Error::MissingAttribute`] if the cloud lacks a column that the parameters need.
     /// - [`Error::InvalidParameter`] for a parameter out of range.
     /// - [`Error::Cancelled`].
     pub fn build(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<(Self, BuildReport)> {
@@ -168,7 +168,7 @@ impl OrientedSurvey {
         Ok((balls, BallsReport::Shrunk(report)))
     }
 
-    /// Crowns as a medium, by what returns, (N) as the points kept, tell of plants.
+    /// Crowns as a medium, from the kinds of returns, (N) as the points kept, that tell plants apart.
     fn medium(&self, kinds: &[PlantReturn], frame: &Frame, control: &Control<'_>) -> Result<ExtinctionVoxels> {
         let Some(input) = &self.carving else { return Ok(ExtinctionVoxels::default()) };
         let returns = PlantReturns {

@@ -41,7 +41,7 @@ pub enum ClearedArea {
     Class(u8),
 }
 
-/// Counts of what was cleared.
+/// Counts of points and balls that were cleared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ClearReport {
     /// Points that are gone.
@@ -57,8 +57,8 @@ pub struct ClearReport {
 }
 
 impl SceneModel {
-    /// Returns the model and its cloud, in its frame, without what stands in `area`: points above the ground, balls at
-    /// them, and added meshes, of which triangles go with their middle. Surface patches are cut at the edge of a
+    /// Returns the model and its cloud, in its frame, without the objects in `area`: points above the ground, balls at
+    /// them, and added meshes. Triangles of meshes go with their middle. Surface patches are cut at the edge of a
     /// polygon, and all go with the class of buildings. Balls beside a polygon that reach into it are cut to its edge,
     /// at the point that they touch. The ground below is closed with balls at the height interpolated from the ground
     /// around. Lines of sight through the freed space are proven free.
@@ -217,7 +217,7 @@ impl SceneModel {
 }
 
 impl ClearedArea {
-    /// Areas that clear what stands in `polygons`, local metres on the map, each an outline and its holes. Those near
+    /// Areas that clear the objects in `polygons`, local metres on the map, each an outline and its holes. Those near
     /// each other are one area, so that many take hardly longer than one, and the columns over each area stay narrow.
     #[must_use]
     pub fn of_polygons(polygons: Vec<Vec<Vec<[f64; 2]>>>) -> Vec<Self> {

@@ -18,8 +18,8 @@ const ABOVE_GROUND: f64 = 0.3;
 const AROUND: f64 = 2.0;
 /// The same distance for cleared points of a class, metres: these may stand close to other points.
 const AROUND_OF_CLASS: f64 = 1.0;
-/// Distance to the next ground point from which the ground is closed with balls, metres: beyond what ground points hold
-/// themselves.
+/// Distance to the next ground point from which the ground is closed with balls, metres: beyond the radius that ground
+/// points close themselves.
 const GAP: f32 = 0.7;
 /// Radius of balls that close the ground, metres, and how far they lie apart: their tops are up to 0.03 m below the
 /// ground between them.
@@ -37,7 +37,7 @@ pub struct Clearing {
     ground: Ground,
     /// Rows of the cloud that are points of the ground.
     ground_rows: Vec<u32>,
-    /// Height of what stood there, NaN where nothing did.
+    /// Height of the top of the removed objects, NaN in cells without one.
     tops: Raster<f32>,
     /// True if points below the cleared ones go too, unless their class is ground.
     clears_low: bool,
@@ -98,8 +98,8 @@ impl Clearing {
         self.ground.height_at(place)
     }
 
-    /// A ball, made smaller at the point of the surface that it is tangent at until it does not reach into what a
-    /// polygon clears; `None` where it vanishes. Beside points of a class balls stay.
+    /// Returns a ball cut to the outside of a polygon: it shrinks, tangent to the surface at the same point, until it
+    /// does not reach in. `None` where it vanishes. Beside points of a class balls stay.
     #[must_use]
     pub fn cut(&self, center: [f32; 3], radius: f32, point: [f32; 3]) -> Option<([f32; 3], f32)> {
         let (middle, whole) = (center.map(f64::from), f64::from(radius));
@@ -183,7 +183,7 @@ impl Clearing {
         })
     }
 
-    /// Height of what stands in the area around the middle of each cell; NaN where nothing does.
+    /// Height of the highest point of the area around the middle of each cell; NaN without one.
     fn tops_of(&self, cloud: &PointCloud) -> Raster<f32> {
         let grid = &self.ground.grid;
         let mut tops = Raster::filled(grid.width, grid.height, f32::NAN);

@@ -111,7 +111,7 @@ pub(super) fn unix_day_of(gps_time: f64) -> Option<i64> {
     day
 }
 
-/// The surveys of a cloud by gaps of months, where there are several, and what differs between the first and the last.
+/// The surveys of a cloud by gaps of months, where there are several, and the changes between the first and the last.
 fn dated(cloud: &PointCloud) -> (Vec<DatedSurvey>, Option<SurveyChange>) {
     let attributes = &cloud.attributes;
     let Some(times) = attributes.gps_time.as_deref().filter(|_| is_dated(attributes)) else {

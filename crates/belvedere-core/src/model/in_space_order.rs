@@ -2,8 +2,8 @@
 //! near each other in memory.
 //!
 //! Every stage looks around each point, and takes the first of several that are equally near. In this order it takes
-//! the same one whatever the order of the file. Where a program has mixed the points of a scanner, what a stage finds
-//! would also lie anywhere in memory, and fetching it would take most of the time.
+//! the same one whatever the order of the file. Where a program has mixed the points of a scanner, neighbours would
+//! also lie anywhere in memory, and fetching them would take most of the time.
 
 use belvedere_data::vector::compare_places;
 use belvedere_data::{Attributes, PointCloud};
@@ -88,7 +88,7 @@ fn of_column<T: Ord>(values: Option<&[T]>, a: usize, b: usize) -> Ordering {
     values.map_or(Ordering::Equal, |values| values[a].cmp(&values[b]))
 }
 
-/// The points of `cloud` at `rows`, with what models are made from: neither colours nor where they come from.
+/// The points of `cloud` at `rows`, with the columns from which models are made: neither colours nor sources.
 pub(super) fn points_at(cloud: &PointCloud, rows: &[u32]) -> PointCloud {
     let PointCloud { frame, positions, scanner_positions, sky_regions, cleared_places, .. } = cloud;
     let attributes = &cloud.attributes;

@@ -1,8 +1,8 @@
-//! The scene model: what Belvedere answers from, made from a cloud in one step.
+//! The scene model, made from a cloud in one step, from which Belvedere answers.
 //!
-//! [`SceneModel::build`] decides how a cloud becomes a scene: which points are kept, where the scanner was, how normals
-//! are turned outward, whether pulses can carve, and what is vegetation. [`ModelParams`] says otherwise where that is
-//! wanted. A saved model ([`SceneModel::parts`], [`SceneModel::from_parts`]) is a ball file.
+//! [`SceneModel::build`] decides how a cloud becomes a scene: the points kept, the place of the scanner, the sign of
+//! the normals, the use of pulses for carving, and the vegetation. [`ModelParams`] overrides each decision. A saved
+//! model ([`SceneModel::parts`], [`SceneModel::from_parts`]) is a ball file.
 //!
 //! The stages are public functions of the modules below; [`OrientedSurvey::prepare`] stops before the balls are made.
 
@@ -46,7 +46,7 @@ use belvedere_data::horizon::HorizonProfile;
 use belvedere_data::{Bounds, ElevationGrid, Error, Frame, Mesh, Parameter, Result, SurfacePatches};
 use std::sync::{Arc, OnceLock};
 
-/// A scene that answers what is visible: balls that block lines of sight, and the pulses that prove others free.
+/// A scene for queries of visibility: balls that block lines of sight, and the pulses that prove others free.
 ///
 /// Rows of points ([`MedialBalls::source`], [`MedialBalls::touch`]) are those of the cloud that the model was built
 /// from, also where points were cleaned away.
@@ -129,7 +129,7 @@ impl SceneModel {
         DerivedParts { vegetation: self.vegetation.clone(), normals: self.normals.clone(), tree, proof }
     }
 
-    /// The model of the parts of another one and what was derived with them: nothing is made again.
+    /// The model of the parts and the derived data of another one: nothing is computed again.
     ///
     /// # Errors
     /// Those of [`SceneModel::from_parts`]; [`Error::LengthMismatch`] and [`Error::InvalidParameter`] where the two do
@@ -222,7 +222,7 @@ impl SceneModel {
 
     /// The same model before the terrain of an elevation raster, local metres, which `name` names in errors: directions
     /// below the horizon of a target are blocked for it. Within the box of the cloud on the map, and a cell of the
-    /// raster around it, terrain blocks nothing: the cloud shows what stands there. It is not saved.
+    /// raster around it, terrain blocks nothing: there the cloud decides. It is not saved.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for terrain that does not reach the cloud, or lies far above or below it.
@@ -241,7 +241,7 @@ impl SceneModel {
         &self.far_terrain
     }
 
-    /// Everything that is saved of a model: what a ball file holds.
+    /// The saved parts of a model, as in a ball file.
     #[must_use]
     pub fn parts(&self) -> &ModelParts {
         &self.parts
@@ -273,7 +273,7 @@ impl SceneModel {
         &self.parts.frame
     }
 
-    /// The smallest box around the points that the balls were made from: what a view must hold to show the scene.
+    /// The smallest box around the points of the balls: a view must hold it to show the scene.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         self.parts.bounds

@@ -10,7 +10,7 @@ use belvedere_data::trajectory::Trajectory;
 use belvedere_data::{Frame, Mesh, Result};
 use std::sync::Arc;
 
-/// Parameters of a scene model. [`ModelParams::default`] is what Belvedere uses unless anything else is requested.
+/// Parameters of a scene model. Belvedere uses [`ModelParams::default`] unless anything else is requested.
 ///
 /// ```
 /// use belvedere_core::medial::ShrinkParams;

@@ -26,8 +26,7 @@ use std::borrow::Cow;
 
 /// Points no farther from a line than this lie on it, metres: the step of coordinates in most files.
 const LINE_WIDTH: f64 = 1e-3;
-/// Memory that a model takes for each point at least, beside the cloud, bytes: two thirds of what was measured with
-/// large clouds.
+/// Minimum memory of a model for each point, beside the cloud, bytes: two thirds of the use measured with large clouds.
 const MIN_BYTES_OF_POINT: usize = 400;
 /// Maximum accepted median angle between pulses with several returns and their trajectory, degrees. Returns 3 m apart
 /// show a true one to 2°; one that is a second off in time misses by more than 3.
@@ -36,7 +35,7 @@ const MAX_MISS_DEG: f64 = 3.0;
 /// nothing else is uncertain. One return in 30,000 lies that much too far away, and balls begin below the surface.
 const NOISES_BEFORE_RETURNS: f32 = 4.0;
 
-/// A cloud that is ready for balls: cleaned, with outward normals, an index, and what its pulses prove empty.
+/// A cloud ready for balls: cleaned, with outward normals, an index, and the space that its pulses prove empty.
 pub struct OrientedSurvey {
     /// The points that were kept, with outward normals; where they are to be carved, on the surface that they scatter
     /// about.
@@ -470,7 +469,7 @@ fn tell_ground(cloud: &PointCloud) -> bool {
     cloud.attributes.classification.as_ref().is_some_and(|classes| classes.iter().any(|class| matches!(class, 2..=5)))
 }
 
-/// Classes of a cloud whose own do not say what is ground: 2 where that is found, and otherwise as they are.
+/// Classes of a cloud without a class of ground: 2 for the ground found, and otherwise unchanged.
 fn found_classes(cloud: &PointCloud, control: &Control<'_>) -> Result<Vec<u8>> {
     let is_ground = control.stage("finding ground", cloud.len(), || ground_in_blocks(cloud, control))?;
     let mut classes = cloud.attributes.classification.clone().unwrap_or_else(|| vec![1; cloud.len()]);

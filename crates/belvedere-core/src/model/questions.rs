@@ -37,8 +37,8 @@ impl SceneModel {
     /// The scene that answers lines of sight by `rule`.
     ///
     /// Its answers distinguish unproven from visible where the pulses are known. With [`UnprovenAs::Visible`] that
-    /// makes no difference, and the pulses are left out. They are indexed when a line of sight first needs them. What
-    /// lies beside or below the cloud has no answer ([`SceneModel::coverage`]).
+    /// makes no difference, and the pulses are left out. They are indexed when a line of sight first needs them.
+    /// Targets beside or below the cloud have no answer ([`SceneModel::coverage`]).
     ///
     /// # Errors
     /// Those of [`BallTree::new`] and [`Proof::from_columns`]; [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -81,8 +81,8 @@ impl SceneModel {
         self.pulses().map(proof).transpose()
     }
 
-    /// The scene of [`SceneModel::scene`] without the balls that are vegetation, and without pulses: what blocks where
-    /// no tree stood.
+    /// The scene of [`SceneModel::scene`] without the balls of vegetation, and without pulses: the obstacles if no tree
+    /// stood.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`](belvedere_data::Error::LengthMismatch) where it is not known which balls are
@@ -93,7 +93,7 @@ impl SceneModel {
         Ok(self.completed(scene))
     }
 
-    /// A scene of balls with what else blocks, and where the cloud lies.
+    /// A scene of balls with all other obstacles, and the extent of the cloud.
     fn completed(&self, scene: MedialScene) -> MedialScene {
         let scene = scene.with_coverage(self.coverage()).with_triangles(self.triangles.clone());
         let scene = scene.with_far_terrain(self.far_terrain.clone());

@@ -70,10 +70,10 @@ pub struct PulsesReport {
     /// Points found to be ground, where no class says which are. Left out where classes do.
     #[serde(rename = "points_found_to_be_ground", skip_serializing_if = "is_zero")]
     pub found_ground: usize,
-    /// Why the crowns of trees could not be measured, if they could not: what is missing to tell pulses apart.
+    /// Reason why the crowns of trees could not be measured, if so: the data missing to tell pulses apart.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crowns_not_measured: Option<String>,
-    /// Pulses whose way the finished balls block, of those used: what is built against what was measured. Left out
+    /// Pulses that the finished balls block, of those used: a check of the model against its measurements. Left out
     /// where none were used to carve.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub blocked: Option<BlockedPulses>,

@@ -67,7 +67,7 @@ impl SurveyStatistics {
         FARTHEST_NEIGHBOR
     }
 
-    /// The way to clean that leaves out what is left out of the whole.
+    /// The cleaning of a part that leaves out the same points as that of the whole.
     #[must_use]
     pub fn cleaning(&self, params: &CleanParams) -> CleanParams {
         let with_radius = |isolated: &IsolatedPoints| {

@@ -55,7 +55,7 @@ impl TerrainReport {
 /// are not those of the cloud.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] with what to do.
+/// [`Error::InvalidParameter`] with advice.
 pub fn check_terrain(terrain: &ElevationGrid, name: &str, cloud: Bounds, frame: &Frame) -> Result<()> {
     let ([west, south], [east, north]) = terrain.on_map();
     let (low, high) = cloud.on_map();

@@ -1,4 +1,4 @@
-//! Building the tree: split at the median of the longest extent down to full leaves, then box what came out.
+//! Building of the tree: split at the median of the longest extent down to full leaves, then boxes from the leaves up.
 
 use super::lanes::{Child, LANES, LaneBlock, WideNode};
 use belvedere_data::Result;

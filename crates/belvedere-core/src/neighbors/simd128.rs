@@ -43,6 +43,6 @@ impl Lanes for NeighborSimd128 {
         let (x, y, z) = (along(&block.x, 0), along(&block.y, 1), along(&block.z, 2));
         let depth = x * Eight::all(inward[0]) + y * Eight::all(inward[1]) + z * Eight::all(inward[2]);
         let radii = (x * x + y * y + z * z) / (depth + depth);
-        passing(radii, bound, out) & Eight::all(0.0).below(depth)
+        passing(radii, bound, out) & Eight::all(0.0).less_than(depth)
     }
 }

@@ -32,7 +32,7 @@ impl Default for Neighborhood {
 }
 
 impl Neighborhood {
-    /// Checks what [`estimate`] checks, before a cloud is there.
+    /// Makes the checks of [`estimate`] before a cloud is there.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for fewer than 3 or more than 256 neighbours, or a flatness that is not above zero.

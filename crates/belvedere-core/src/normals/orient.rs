@@ -29,15 +29,15 @@ pub const LOW_CONFIDENCE: f32 = 0.05;
 /// sparse facades normals are tilted by ten degrees and more. On simulated towns (seeds 7 and 8) leaving such signs to
 /// the vote gains 0.9 to 1.3 points of IoU in free air.
 const GRAZING: f32 = 0.3;
-/// Part of a pulse's way that leads up, from which on it comes from above: roofs and ground vote for such surveys. What
-/// is seen from the side, or from below as ceilings are, knows neither.
+/// Minimum vertical part of a pulse's direction for it to come from above: roofs and ground vote for such surveys.
+/// Surfaces seen from the side, or from below as ceilings are, know neither.
 const FROM_ABOVE: f64 = 0.3;
 
 /// Source of the outward side of each normal.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Orientation<'a> {
-    /// Upward; steep points away from the higher half of what is within 3 m.
+    /// Upward; steep points away from the higher half of the points within 3 m.
     Up,
     /// Towards the scanner set-up that the file names for each point, the nearest where it names none.
     Scanner,
@@ -248,7 +248,7 @@ fn each(
     Ok(verdicts)
 }
 
-/// Fills in what no verdict was found for: by the vote where the surface is steep, else by up.
+/// Fills in signs without a verdict: by the vote where the surface is steep, else by up.
 fn fall_back(
     cloud: &PointCloud,
     vectors: &[[f32; 3]],

@@ -1,4 +1,4 @@
-//! The points of a block and of what lies about it, in an order that follows from their positions.
+//! The points of a block and its margin, in an order that follows from their positions.
 
 use super::edges::Outline;
 use super::ridges::RidgeLine;
@@ -72,7 +72,7 @@ impl Return {
     }
 }
 
-/// A block with what lies about it.
+/// A block with its margin.
 pub(super) struct Block {
     /// Its number in the grid of the reference system.
     pub(super) number: [i64; 2],
@@ -93,7 +93,7 @@ pub(super) struct Block {
     counts: Vec<u32>,
 }
 
-/// The cells of a block and what lies about it.
+/// The cells of a block and its margin.
 #[derive(Clone, Copy)]
 struct Grid {
     /// Margin beyond the block, metres.
@@ -453,7 +453,7 @@ fn ordered(v: f32) -> u32 {
     if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }
 
-/// A number of cells, 0 for what is below.
+/// A number of cells, 0 if negative.
 fn count_of(cells: f64) -> usize {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cells of a block, and saturating")]
     let count = cells.max(0.0) as usize;

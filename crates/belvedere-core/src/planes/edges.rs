@@ -44,8 +44,8 @@ const MIN_LENGTH: f64 = 1.0;
 const END_SPACINGS: f64 = 3.5;
 /// Middles of sides that share a return or a pulse are not independent: how many count as one.
 const MIDDLES_AS_ONE: f64 = 6.0;
-/// Standard deviation of what no number of pulses averages out, metres: how far outside an axis may lie and
-/// a part of its beam still be seen.
+/// Standard deviation of the errors that no number of pulses averages out, metres: the maximum distance of an axis
+/// outside an edge whose beam is still partly returned.
 const COMMON_SD: f64 = 0.02;
 
 /// An edge of a plane in plan.
@@ -56,7 +56,7 @@ pub(super) struct EdgeLine {
     /// Standard deviation across, metres.
     pub(super) sd: f64,
     pub(super) count: usize,
-    /// Median height of what lies below, metres below the plane.
+    /// Median height of the returns below, metres below the plane.
     pub(super) drop: f64,
     /// True if it is known well enough to cut balls and to end patches.
     pub(super) is_sure: bool,
@@ -101,7 +101,7 @@ pub(super) struct Standing {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outline {
     pub(super) edges: Vec<EdgeLine>,
-    /// Returns within: of the plane, and of what stands on it.
+    /// Returns within: of the plane, and of objects on it.
     pub(super) inside: Vec<[f64; 2]>,
     /// Number of these, from the first, that belong to the plane itself.
     pub(super) own: usize,

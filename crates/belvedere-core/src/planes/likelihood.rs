@@ -7,7 +7,7 @@
 use super::edges::Outline;
 use super::line::PlanLine;
 
-/// Share of pulses that do the other thing, whatever the edge: noise, holes, what stands on roofs.
+/// Share of pulses with the opposite outcome, whatever the edge: noise, holes, objects on roofs.
 const OTHER: f64 = 0.02;
 /// Distance across the line within which pulses count, spacings.
 const REACH_SPACINGS: f64 = 3.2;

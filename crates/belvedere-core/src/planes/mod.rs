@@ -210,7 +210,7 @@ impl BuildingSurfaces {
         }
     }
 
-    /// Adds what another block found.
+    /// Adds the surfaces of another block.
     fn append(&mut self, other: Self) {
         let outlines = &mut self.outlines;
         let (planes, edges, walls) = (outlines.planes.len(), outlines.edges.len(), outlines.walls.len());

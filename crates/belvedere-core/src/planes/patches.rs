@@ -178,7 +178,7 @@ fn convex(ridges: &[RidgeLine], plane: usize) -> impl Iterator<Item = (&RidgeLin
         .map(move |ridge| (ridge, if ridge.planes[0] == plane { ridge.planes[1] } else { ridge.planes[0] }))
 }
 
-/// The pieces of one roof: what lines split is taken whole where its cells count, and in rows of cells elsewhere.
+/// The pieces of one roof: a part split by lines is taken whole where its cells count, and in rows of cells elsewhere.
 fn pieces(roofs: &Roofs, ridges: &[RidgeLine], outline: &Outline, plane: usize) -> Vec<Leaf> {
     let cover = Cover::new(roofs, ridges, outline, plane);
     let high = [0, 1].map(|axis| cover.low[axis] + cover.size[axis] as f64 * CELL);
@@ -228,7 +228,7 @@ fn split(polygon: Vec<[f64; 2]>, line: &PlanLine) -> Vec<Vec<[f64; 2]>> {
     [left, right].into_iter().filter(|part| area(part) > 1e-9).collect()
 }
 
-/// Adds what counts of a part of a roof.
+/// Adds the counting cells of a part of a roof.
 fn pieces_of_part(cover: &Cover, polygon: Vec<[f64; 2]>, plane: usize, leaves: &mut Vec<Leaf>) {
     let size = area(&polygon);
     if size < MIN_AREA {

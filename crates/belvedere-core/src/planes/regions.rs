@@ -1,4 +1,4 @@
-//! Space before known surfaces: balls of what lies behind them do not reach into it.
+//! Empty space before known surfaces, which balls behind them do not enter.
 
 use super::block::{Block, block_of};
 use super::edges::Outline;

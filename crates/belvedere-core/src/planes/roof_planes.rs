@@ -63,7 +63,7 @@ impl Roof {
     }
 }
 
-/// The planes of a block and what lies about it.
+/// The planes of a block and its margin.
 pub(super) struct Roofs {
     /// First returns that may lie on buildings, metres from the corner of the block.
     pub(super) points: Vec<[f64; 3]>,

@@ -1,4 +1,4 @@
-//! Upright sheets: parapets, steps between roofs, what stands on roofs, and the inside of buildings.
+//! Upright sheets: parapets, steps between roofs, objects on roofs, and the inside of buildings.
 
 use super::block::Block;
 use super::edges::{EdgeLine, Outline, Parapet, Standing};
@@ -13,7 +13,7 @@ use std::cmp::Ordering;
 const MIN_AREA: f64 = 0.005;
 /// Width of the solid part of a building inside the edge of a roof, metres.
 const WITHIN: f64 = 0.5;
-/// Minimum height of an edge above what lies below it for that, metres.
+/// Minimum height of such an edge above the surface below it, metres.
 const MIN_DROP: f64 = 2.0;
 /// Minimum share of such edges of a roof that have a wall below them: canopies and decks have none.
 const MIN_WALLED: f64 = 0.5;
@@ -333,7 +333,7 @@ fn past_box(block: &Block, roof: &Roof, frame: &PlanLine, [low, high]: [[f64; 2]
     past
 }
 
-/// Adds the sides of what stands on a roof and is too small for a plane: chimneys and the like.
+/// Adds the sides of objects on a roof that are too small for a plane: chimneys and the like.
 fn boxes(block: &Block, roofs: &Roofs, plane: usize, outline: &Outline, found: &mut BuildingSurfaces) {
     let roof = &roofs.planes[plane];
     let is_wanted =

@@ -1,7 +1,7 @@
 //! Slabs: decks, canopies, balconies and bridges, level planes that pulses run below.
 //!
-//! A ball below a slab would fill what is open there. A slab is closed by two level sheets instead, its top and its
-//! underside, and its points have no balls. Nothing is solid below it but what has points of its own.
+//! A ball below a slab would fill open space. A slab is closed by two level sheets instead, its top and its underside,
+//! and its points have no balls. Below it, only objects with points of their own are solid.
 
 use super::block::{Block, Return};
 use super::fit::Plane;

@@ -24,7 +24,7 @@ pub(super) const MIN_EAVES: f64 = 0.12;
 /// Length of a wall below eaves beyond its points, metres.
 const BEYOND_POINTS: f64 = 0.2;
 
-/// Standard deviation of what no number of points averages out, metres.
+/// Standard deviation of the errors that no number of points averages out, metres.
 const COMMON_SD: f64 = 0.008;
 
 /// A wall in plan.

@@ -54,7 +54,7 @@ pub struct SensorPart {
     pub pulse_count: usize,
     /// Pulses whose first and last return lie far enough apart.
     pub pair_count: usize,
-    /// Position half-way between the two times, local metres, together with what its neighbours say; NaN where nothing
+    /// Position half-way between the two times, local metres, with its agreement with its neighbours; NaN where none
     /// could be computed.
     pub position: [f64; 3],
     /// Its standard deviation by the residuals, metres.

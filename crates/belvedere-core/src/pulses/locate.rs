@@ -263,7 +263,7 @@ fn by_pulses(
     Ok(found.into_iter().map(|found| found.map_or(unknown, |(_, place)| place)).collect())
 }
 
-/// Says what may be missing where stations of tripods were searched for.
+/// Adds remarks on data that may be missing where stations of tripods were searched for.
 fn remark_stations(report: &mut ScannerReport) {
     // why there are no pulses of an aircraft is beside the point
     report.remarks.clear();

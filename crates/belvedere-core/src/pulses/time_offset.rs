@@ -56,7 +56,7 @@ impl Default for TimeOffsetParams {
 /// An offset of time that was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeOffset {
-    /// Seconds to be added to the times of the cloud, beside what [`ClockOffset`] adds.
+    /// Seconds to be added to the times of the cloud, beside those of [`ClockOffset`].
     pub seconds: f64,
     /// True if it is the offset of another clock, and was used.
     pub is_applied: bool,

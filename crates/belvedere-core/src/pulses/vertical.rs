@@ -8,8 +8,8 @@ use rayon::prelude::*;
 const HEIGHT: f32 = 1000.0;
 
 /// Minimum share of points with nothing above them for which vertical pulses are assumed. Clouds of aircraft have three
-/// quarters or more. Where the scanner stood among walls it is a fifth, and carving by wrong pulses blocks most of what
-/// is visible.
+/// quarters or more. Where the scanner stood among walls it is a fifth, and carving by wrong pulses blocks most of the
+/// visible space.
 pub(crate) const MIN_ASSUMED_SHARE: f64 = 0.5;
 
 /// Selection of points that count as ends of vertical pulses.

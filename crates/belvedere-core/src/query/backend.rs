@@ -17,7 +17,7 @@ pub trait Backend: Send + Sync + std::fmt::Debug {
     /// Takes the balls and the rule by which they block ([`crate::blocking`]).
     ///
     /// # Errors
-    /// What the device reports.
+    /// Errors of the device.
     fn prepare(&self, balls: &Arc<BallTree>) -> Result<Box<dyn PreparedBackend>>;
 
     /// Takes balls to draw them in views of so many pixels; `None`, the default, where that is no faster than
@@ -46,14 +46,14 @@ pub trait Backend: Send + Sync + std::fmt::Debug {
     }
 }
 
-/// Balls made ready by a backend. What takes long to make is made on first use and kept.
+/// Balls made ready by a backend. Costly parts are made on first use and kept.
 pub trait PreparedBackend: Send + Sync {
     /// Bounds of the depth of the first surface over each pixel of `view`, as [`crate::depth::depth_bounds`] defines
     /// them: they may be wider, but must hold. Balls that reach before `start`, as
     /// [`crate::depth::BoundsParams::start`], block nothing.
     ///
     /// # Errors
-    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled) and what the device reports.
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled) and errors of the device.
     fn depth(&self, view: &View, start: f64, control: &Control<'_>) -> Result<DepthBounds>;
 
     /// Settles the lines of sight without end of each of `targets`, (M, 3) local metres, in each of `directions`, (D,
@@ -139,7 +139,7 @@ pub enum LineAnswer {
 pub(super) const WORD: usize = 64;
 /// Words with a bit for each target of a block.
 pub(super) const WORDS: usize = 4;
-/// Targets that are stored, and looked at, together: neighbours, which share what blocks.
+/// Number of targets stored and tested together: neighbours, which share obstacles.
 pub(super) const BLOCK: usize = WORDS * WORD;
 
 /// A bit for each target of a block.
@@ -165,7 +165,7 @@ impl Settled {
         Self { direction_count, free: open.clone(), blocked: open, open_from }
     }
 
-    /// Sets what is known of a line.
+    /// Sets the answer of a line.
     pub fn set(&mut self, target: usize, direction: usize, line: LineAnswer) {
         let (at, word, bit) = self.place(target, direction);
         for (bits, of) in [(&mut self.free, LineAnswer::Free), (&mut self.blocked, LineAnswer::Blocked)] {
@@ -175,7 +175,7 @@ impl Settled {
         }
     }
 
-    /// Sets what is known of all lines of a direction: a bit for each target, 32 a word, of those that are free and of
+    /// Sets the answers of all lines of a direction: a bit for each target, 32 a word, of those that are free and of
     /// those that are blocked. Bits beyond the last target must not be set.
     pub fn set_direction(&mut self, direction: usize, free: &[u32], blocked: &[u32]) {
         let count = self.direction_count;
@@ -191,7 +191,7 @@ impl Settled {
         each_word(&mut self.blocked, [direction, count], blocked, |word, known| *word |= known);
     }
 
-    /// Sets what is known of all lines of the directions from `first` on: what `known` holds of the same targets.
+    /// Sets the answers of all lines of the directions from `first` on to those of `known`, for the same targets.
     pub fn set_directions(&mut self, first: usize, known: &Self) {
         let count = known.direction_count;
         let parts = [(&mut self.free, &known.free), (&mut self.blocked, &known.blocked)];

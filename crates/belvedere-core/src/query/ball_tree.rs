@@ -1,4 +1,4 @@
-//! Balls in a tree of boxes: what exact lines of sight are traced through.
+//! Balls in a bounding volume hierarchy, for exact tracing of lines of sight.
 
 use crate::blocking::{Ball, BlockRule};
 use crate::ray_index::{Ray, RayIndex};
@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Length of the ray that finds what holds a point, metres: any will do.
+/// Length of the ray that finds the balls around a point, metres: any will do.
 pub(super) const PROBE: f64 = 1e-3;
 
 /// Balls, the rule by which they block, and a tree of boxes around them. A backend takes its balls from here.
@@ -127,7 +127,7 @@ impl BallTree {
         &self.index
     }
 
-    /// The balls in the order of the tree: what lies close together in space does so here.
+    /// The balls in the order of the tree: neighbours in space are close together.
     #[must_use]
     pub fn balls(&self) -> &[Ball] {
         &self.balls

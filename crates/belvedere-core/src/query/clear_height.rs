@@ -7,7 +7,7 @@ use belvedere_data::vector::{length, sub, unit};
 
 /// Minimum step upward, metres: for rounding that leaves a line of sight in a ball whose top it just reached.
 const MIN_STEP: f64 = 1e-3;
-/// To what the top of a ball that gives way to the target is known, metres.
+/// Accuracy of the top of a ball that gives way to the target, metres.
 const TOP_TOLERANCE: f64 = 1e-3;
 
 impl MedialScene {

@@ -1,9 +1,9 @@
 //! Probability that a target is visible, with every answer.
 //!
-//! An answer is wrong mostly where its line of sight passes close to an edge of what the scene holds, or through space
-//! that no pulse saw. So the probability follows from lines parallel to it ([`ParallelLines`]), from the length that no
-//! pulse came near to, and from whether an end is inside an obstacle. Each of these has a score; the sum of scores
-//! is the logarithm of the odds. The scores are fitted to simulated towns with exact answers (`research/`, program
+//! An answer is wrong mostly where its line of sight passes close to an edge of an obstacle, or through space that no
+//! pulse saw. So the probability follows from lines parallel to it ([`ParallelLines`]), from the length that no pulse
+//! came near to, and from whether an end is inside an obstacle. Each of these has a score; the sum of scores is the
+//! logarithm of the odds. The scores are fitted to simulated towns with exact answers (`research/`, program
 //! `confidence`; docs/methods/confidence.md has the reliability curves).
 //!
 //! # Source

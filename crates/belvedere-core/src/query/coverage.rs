@@ -13,7 +13,7 @@ pub(super) const CEILING: f64 = 10_000.0;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 4096;
 
-/// The space over which a cloud has points: nothing is known of what stands beside it, and nobody is below its lowest
+/// The space over which a cloud has points: nothing is known of objects beside it, and nobody is below its lowest
 /// point.
 ///
 /// It is the box around the points, 1 m wider on all sides and below, and 10 km higher.

@@ -50,7 +50,7 @@ impl MedialScene {
         }
     }
 
-    /// The answer of [`MedialScene::far_sight_answer`] and what blocks first; `None` instead of
+    /// The answer of [`MedialScene::far_sight_answer`] and its first obstacle; `None` instead of
     /// [`Answer::OutsideView`].
     pub(super) fn far_line_of_sight(
         &self,

@@ -28,7 +28,7 @@ impl MedialScene {
     /// its range, metres. `None` if nothing blocks.
     ///
     /// In contrast to [`MedialScene::seen_along`] the place is a target. Balls near it give way by
-    /// [`BlockRule::shell`](super::BlockRule::shell), so that the surface of the place does not hide what is beside it.
+    /// [`BlockRule::shell`](super::BlockRule::shell), so that the surface of the place does not hide its neighbourhood.
     /// An obstacle is found in exactly the directions that the visibility matrix has as blocked by balls and meshes. Of
     /// all balls that block, it is the one that the line enters first. The range is 0 in a ball that holds the place
     /// even with the shell.

@@ -1,4 +1,4 @@
-//! Space that is free because what stood there was cleared.
+//! Space that is free because its objects were cleared.
 
 use super::proof::clip;
 use crate::ground::MapGrid;

@@ -55,7 +55,7 @@ impl RadioWave {
     }
 }
 
-/// A radio link, with the heights of what stands beside it raised by the sag of the link, so that it is straight.
+/// A radio link, with the heights of obstacles raised by the sag of the link, so that it is straight.
 struct Link {
     start: [f64; 3],
     /// Unit vector to the other end.

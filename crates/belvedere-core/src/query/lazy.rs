@@ -40,7 +40,7 @@ impl<T: Send + Sync> Lazy<T> {
         Ok(self.value.get_or_init(|| value))
     }
 
-    /// The value, made by `make` if it is not there yet; for what cannot fail unless it is cancelled.
+    /// The value, made by `make` if it is not there yet; for a `make` that fails only if cancelled.
     pub(super) fn get(&self, make: impl Fn(&Control<'_>) -> Result<T> + Send + Sync) -> Option<&T> {
         self.get_or_make(|| make(&Control::none())).ok()
     }

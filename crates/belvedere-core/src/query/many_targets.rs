@@ -23,8 +23,8 @@ const TARGETS_PER_PIXEL: f64 = 16.0;
 
 impl MedialScene {
     /// The answer for each of `targets`, (M, 3) local metres, seen by `viewer`, in their order; progress counts
-    /// targets. What is not finite, or is the viewer itself, is [`Answer::OutsideView`]; what lies beside or below the
-    /// cloud [`Answer::OutsideCloud`].
+    /// targets. Targets that are not finite, or the viewer itself, are [`Answer::OutsideView`]; targets beside or below
+    /// the cloud [`Answer::OutsideCloud`].
     ///
     /// Every answer is that of [`MedialScene::answer`]. A few targets get a line of sight each. Many targets of one eye
     /// are ordered into a tree, and very many under one sun are compared with bounds of depth first.

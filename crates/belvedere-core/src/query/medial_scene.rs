@@ -37,7 +37,7 @@ const CHUNK: usize = 1024;
 /// Triangles of added meshes and of surface patches ([`MedialScene::with_triangles`]) block too, exactly. They do not
 /// change which space inside and around them is proven.
 ///
-/// With a coverage ([`MedialScene::with_coverage`]) what lies beside or below the cloud is [`Answer::OutsideCloud`].
+/// With a coverage ([`MedialScene::with_coverage`]) targets beside or below the cloud are [`Answer::OutsideCloud`].
 pub struct MedialScene {
     tree: Arc<BallTree>,
     pub(super) proof: Option<Proof>,
@@ -96,7 +96,7 @@ impl MedialScene {
         self.prepared.get_or_make(|| self.backend.prepare(&self.tree)).map(AsRef::as_ref)
     }
 
-    /// The same balls, with a distinction of what is proven visible from what is not.
+    /// The same balls, with proven and unproven lines of sight told apart.
     #[must_use]
     pub fn with_pulses(mut self, proof: Proof) -> Self {
         self.proof = Some(proof);
@@ -231,7 +231,7 @@ impl MedialScene {
         self.coverage.is_some_and(|coverage| !coverage.holds_end(position))
     }
 
-    /// `answers` of `targets`, with those of what lies outside the cloud as such.
+    /// `answers` of `targets`, with those of targets outside the cloud replaced by [`Answer::OutsideCloud`].
     pub(super) fn marked(&self, viewer: Viewer<'_>, targets: &[[f32; 3]], mut answers: Vec<Answer>) -> Vec<Answer> {
         if let Some(coverage) = &self.coverage {
             coverage.mark_outside(viewer, targets, &mut answers);
@@ -239,7 +239,7 @@ impl MedialScene {
         answers
     }
 
-    /// The pulses that prove what is visible, where they are known.
+    /// The pulses that prove lines of sight free, where they are known.
     #[must_use]
     pub fn proof(&self) -> Option<&Proof> {
         self.proof.as_ref()
@@ -412,7 +412,7 @@ impl MedialScene {
         range == f64::INFINITY && self.far_terrain.hides(target, towards)
     }
 
-    /// The ball of a row of the index as what blocks.
+    /// The ball of a row of the index as a blocker.
     pub(super) fn blocker_of_ball(&self, number: usize) -> Option<Blocker> {
         self.tree.rows().get(number).map(|&row| Blocker::Ball(row as usize))
     }

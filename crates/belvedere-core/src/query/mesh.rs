@@ -13,7 +13,7 @@ pub enum BackFaces {
     /// They count as not visible: shares are those of the whole surface.
     #[default]
     NotVisible,
-    /// They are not counted: shares are those of what is turned to the viewer.
+    /// They are not counted: shares are those of the faces turned to the viewer.
     LeftOut,
     /// They are queried as any other: for open surfaces and meshes whose triangles do not know their outside.
     BothSides,
@@ -74,7 +74,7 @@ impl SeenArea {
         self.visible / self.area
     }
 
-    /// Standard error of the visible area, m²: what sampling leaves open. What balls get wrong is not in it.
+    /// Standard error of the visible area by sampling, m². Errors of the balls are not included.
     #[must_use]
     pub fn standard_error(&self) -> f64 {
         self.variance.sqrt()

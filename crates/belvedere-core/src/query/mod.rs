@@ -2,14 +2,14 @@
 //!
 //! There are three kinds of queries of a [`MedialScene`]:
 //!
-//! - a pair of points: [`MedialScene::line_of_sight`] (what blocks it first, how much of it is not proven), with
+//! - a pair of points: [`MedialScene::line_of_sight`] (its first obstacle, its unproven length), with
 //!   [`MedialScene::crossings`], [`MedialScene::min_visible_height`], [`MedialScene::seen_along`],
 //!   [`MedialScene::seen_from_surface`] and [`MedialScene::far_sight_answer`] (one that leaves the cloud) beside it;
 //! - many targets of one viewer: [`MedialScene::visible_from`], or [`MedialScene::visible_in_views`] for pictures;
 //! - many directions at many targets: [`MedialScene::visibility_matrix`].
 //!
 //! Other models of a scene answer the second and the third by the trait [`Visibility`]. [`target_tree`] and
-//! [`certified`] hold what these are made of, for repeated queries of the same targets or the same view. A [`Backend`]
+//! [`certified`] hold the parts of these, for repeated queries of the same targets or the same view. A [`Backend`]
 //! settles lines of sight in bulk.
 
 pub mod backend;

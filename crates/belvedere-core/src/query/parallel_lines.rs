@@ -1,4 +1,4 @@
-//! Lines of sight parallel to one, beside it: where they disagree, it passes an edge of what is known of the scene.
+//! Lines of sight parallel to one, beside it: if their answers differ, it passes an edge of an obstacle.
 
 use super::MedialScene;
 use super::ball_tree::{MARGIN, near_reach};
@@ -71,9 +71,9 @@ impl BlockedLines {
 }
 
 impl MedialScene {
-    /// Finds what blocks the line of sight from `target`, local metres, to `range` metres (infinite for a direction)
-    /// along the unit vector `towards`, and lines parallel to it. All numbers but the range must be finite. The line
-    /// itself is free unless [`MedialScene::answer`] is blocked.
+    /// Finds the obstacles of the line of sight from `target`, local metres, to `range` metres (infinite for a
+    /// direction) along the unit vector `towards`, and of lines parallel to it. All numbers but the range must be
+    /// finite. The line itself is free unless [`MedialScene::answer`] is blocked.
     #[must_use]
     pub fn parallel_lines(&self, target: [f64; 3], towards: [f64; 3], range: f64) -> ParallelLines {
         self.blocked_lines(BlockedLines::NONE, target, towards, range).lines()

@@ -40,7 +40,7 @@ pub enum UnprovenAs {
 }
 
 impl UnprovenAs {
-    /// `answer`, or what to take in place of [`Answer::Unproven`].
+    /// `answer`, or its replacement if it is [`Answer::Unproven`].
     #[must_use]
     pub fn settle(self, answer: Answer) -> Answer {
         match (answer, self) {

@@ -12,8 +12,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Distance ahead within which the next pulse is searched if none is near, metres: half a street.
 const LOOK_AHEAD: f64 = 4.0;
-/// Nearness where pulses are dense enough, metres: what carves balls of half a metre leaves no room for things that
-/// block.
+/// Nearness where pulses are dense enough, metres: pulses that carve balls of half a metre leave no room for obstacles.
 const MIN_NEARNESS: f64 = 0.7;
 /// Share of the pulses that run more sideways than up from which on a survey is one from the ground.
 const GROUND_SHARE: f64 = 0.3;
@@ -146,7 +145,7 @@ impl Proof {
         Ok(Self { nearness, params: *params, pulses, kept: Arc::default(), index: Arc::new(Lazy::new()) })
     }
 
-    /// This, with what [`Proof::to_parts`] gave for the same pulses: it is not made again.
+    /// This, with the result of [`Proof::to_parts`] for the same pulses, which is not computed again.
     #[must_use]
     pub(crate) fn with_parts(self, parts: ProofParts) -> Self {
         Self { kept: Arc::new(Mutex::new(Some(parts))), index: Arc::new(Lazy::new()), ..self }

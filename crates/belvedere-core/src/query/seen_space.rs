@@ -18,8 +18,8 @@ const HEIGHT_AMONG_FLAT: f64 = SIDE_PER_NEARNESS;
 /// Boxes above one another: bits of a word. Higher scenes get higher boxes, of which fewer are near one pulse over
 /// their whole height.
 const MAX_LAYERS: f64 = 64.0;
-/// Maximum number of columns, 160 MB; a larger survey gets larger boxes, and what these cannot prove is tested with the
-/// pulses.
+/// Maximum number of columns, 160 MB; a larger survey gets larger boxes, and lines that these cannot prove are tested
+/// with the pulses.
 const MAX_COLUMNS: f64 = 2e7;
 /// Maximum shift of a pulse by rounding to f32, metres.
 const ROUNDING: f64 = 2e-3;

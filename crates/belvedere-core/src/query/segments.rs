@@ -1,4 +1,4 @@
-//! Lines of sight between pairs of points: what blocks them first, and all that lies on them.
+//! Lines of sight between pairs of points: the first obstacle, and all obstacles along them.
 
 use super::ball_tree::PROBE;
 use super::freed_space::pieces_outside;
@@ -35,7 +35,7 @@ pub enum Blocker {
     Ball(usize),
     /// A mesh that was added, by its number ([`super::BlockingTriangles::names`]).
     Mesh(usize),
-    /// A patch of a surface of the survey, by what it is a part of.
+    /// A patch of a surface of the survey, by the kind of its surface.
     Patch(PatchKind),
     /// The raster of far terrain, on lines of sight that leave the cloud.
     Terrain,
@@ -76,7 +76,7 @@ pub struct Obstruction {
 /// The piece of a line of sight that lies in one ball, however it blocks, in one mesh, or in a patch: a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// In what it lies.
+    /// The obstacle that the line crosses.
     pub blocker: Blocker,
     /// Distances at which the line enters and leaves it, metres from the observer, cut to the line.
     pub ranges: [f64; 2],
@@ -138,7 +138,7 @@ impl MedialScene {
         Some(self.sight_on_chords(observer, ends, &earth.corners(ends[0], ends[1])))
     }
 
-    /// Returns what `observer` sees along the part of a line of sight that [`MedialScene::answer_on_chords`] answers.
+    /// Returns the line of sight of `observer` along the part that [`MedialScene::answer_on_chords`] answers.
     pub(super) fn sight_on_chords(&self, observer: [f64; 3], ends: [[f64; 3]; 2], corners: &[[f64; 3]]) -> LineOfSight {
         let pieces = self.chords(ends, corners);
         let is_from_start = observer == ends[0];

@@ -18,7 +18,7 @@ pub struct SkylinePoint {
     /// The least elevation above which nothing blocks up to the zenith, radians, −π/2 (nothing blocks at all) to π/2
     /// (the zenith is hidden).
     pub elevation: f64,
-    /// Range of what stands there, metres; infinite where nothing does, and for far terrain.
+    /// Range of the obstacle, metres; infinite without one, and for far terrain.
     pub range: f64,
     /// Obstacle there; `None` for far terrain and for no obstacle.
     pub blocker: Option<Blocker>,

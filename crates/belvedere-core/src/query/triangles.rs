@@ -140,7 +140,7 @@ impl BlockingTriangles {
         self.tree.triangles().iter().zip(self.faces.iter()).map(|(corners, face)| (*corners, face.blocker))
     }
 
-    /// Corners of the triangles, local metres, and what each is part of.
+    /// Corners of the triangles, local metres, and the obstacle of each.
     pub fn triangles(&self) -> impl Iterator<Item = (&Corners, Blocker)> {
         self.tree.triangles().iter().zip(self.faces.iter()).map(|(corners, face)| (corners, face.blocker))
     }
@@ -298,7 +298,7 @@ impl BlockingTriangles {
         passages
     }
 
-    /// The triangles that do not give way to `eye`, and what they are part of.
+    /// The triangles that do not give way to `eye`, and their obstacles.
     pub(super) fn triangles_before(&self, eye: [f64; 3]) -> impl Iterator<Item = (Corners, Blocker)> + '_ {
         let seen = move |(_, face): &(&Corners, &Face)| !face.sheet.gives_way_to(eye);
         let faces = self.tree.triangles().iter().zip(self.faces.iter()).filter(seen);

@@ -15,13 +15,13 @@ pub enum Viewer<'a> {
     Each(&'a [[f32; 3]]),
 }
 
-/// Answers for targets, (M, 3) local metres, in their order; what [`Visibility::seen_from`] returns.
+/// Answers for targets, (M, 3) local metres, in their order; returned by [`Visibility::seen_from`].
 pub type Sight<'a> = Box<dyn Fn(&[[f32; 3]]) -> Result<Vec<Answer>> + Sync + 'a>;
 
-/// A model of a scene that gives what is visible: medial balls, and every other method that is compared with them.
+/// A model of a scene for queries of visibility: medial balls, and every method that is compared with them.
 pub trait Visibility: Sync {
-    /// Prepares whatever does not depend on the targets, such as a depth map or a convex hull, and returns what answers
-    /// them.
+    /// Prepares all data that do not depend on the targets, such as a depth map or a convex hull, and returns the
+    /// function that answers them.
     ///
     /// # Errors
     /// [`Error::UnsupportedViewer`] where the method knows no such viewer, [`Error::InvalidParameter`] for a viewer
@@ -33,7 +33,7 @@ pub trait Visibility: Sync {
     /// The answer for each of `targets`, (M, 3) local metres, seen by `viewer`.
     ///
     /// # Errors
-    /// As [`Visibility::seen_from`] and what it returns.
+    /// As [`Visibility::seen_from`] and its function.
     fn visible(&self, viewer: Viewer<'_>, targets: &[[f32; 3]]) -> Result<Vec<Answer>> {
         self.seen_from(viewer)?(targets)
     }

@@ -5,8 +5,8 @@ use crate::summary::CloudSummary;
 use belvedere_data::PointCloud;
 use std::fmt;
 
-/// Share of the points whose scanner must be known for nothing to be missing, percent: what lies beside the first and
-/// last pulses of a flight line stays unknown.
+/// Minimum share of the points whose scanner must be known for nothing to be missing, percent: points beside the first
+/// and last pulses of a flight line stay unknown.
 const NEARLY_ALL_PERCENT: f64 = 99.0;
 
 /// Share of the points in the densest twentieth of the ground from which on the scanner stood on it. Measured: 0.10 to

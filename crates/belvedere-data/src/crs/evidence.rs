@@ -116,7 +116,7 @@ impl Crs {
         self
     }
 
-    /// Compares what this system and `other` make of coordinates in the unit of their file.
+    /// Compares the places that this system and `other` give to coordinates in the unit of their file.
     #[must_use]
     pub fn compare(&self, other: &Self, coordinates: [f64; 2]) -> Comparison {
         let names = |crs: &Self| !matches!(crs.kind, CrsKind::Unknown | CrsKind::Local);

@@ -13,9 +13,9 @@ pub use projection::Projection;
 pub const MAX_PIXEL_COUNT: usize = 1 << 28;
 /// Maximum number of pixels on a side: longer pictures are slips, and many programs cannot open them.
 pub const MAX_SIDE: usize = 1 << 16;
-/// Width and height of a camera where no size is given, pixels: what screens show.
+/// Width and height of a camera where no size is given, pixels: those of usual screens.
 pub const CAMERA_SIZE: [usize; 2] = [1280, 720];
-/// Field of view of a camera where none is given, radians: 60 degrees, a little wider than what people look at.
+/// Field of view of a camera where none is given, radians: 60 degrees, a little wider than the gaze of people.
 pub const CAMERA_FOV: f64 = std::f64::consts::FRAC_PI_3;
 /// Width of a panorama where none is given, pixels: 0.18 degrees each.
 pub const PANORAMA_WIDTH: usize = 2048;

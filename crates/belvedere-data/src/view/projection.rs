@@ -15,7 +15,7 @@ pub enum Projection {
     /// A pinhole camera: square pixels, straight lines stay straight, the axis meets the middle of the picture. Depth
     /// is metres along `forward` from the eye.
     Perspective {
-        /// Pixels from the middle of the picture to what is seen 45° off the axis.
+        /// Pixels from the middle of the picture to a direction 45° off the axis.
         focal_px: f64,
         /// Minimum visible depth, metres, 0 or more.
         near: f64,

@@ -1,4 +1,4 @@
-//! Measured or typical radiation of a place: what weather files hold.
+//! Measured or typical radiation of a place: the contents of weather files.
 
 mod calendar;
 
@@ -88,7 +88,7 @@ impl Weather {
         ((years - 1.0).abs() > YEAR_TOLERANCE).then(remark)
     }
 
-    /// Checks what the reader of any format must have made sure of.
+    /// Checks the guarantees of the readers of all formats.
     ///
     /// # Errors
     /// [`Error::NoPoints`] without rows, [`Error::InvalidParameter`] for rows of the same time, for a place that is not

@@ -31,7 +31,7 @@ fn stored() -> Vec<Stored> {
     include_str!("places.csv").lines().skip(1).map(line).collect()
 }
 
-/// Metres between what the system of a row makes of its place and what PROJ does; `None` where it is refused.
+/// Metres between the places of a row by its system and by PROJ; `None` where it is refused.
 fn error_of(row: &Stored) -> Option<f64> {
     let crs = Crs::from_epsg(row.code)?;
     let [longitude, latitude] = row.place.map(f64::to_radians);

@@ -99,7 +99,7 @@ fn depth_maps_of_random_balls_are_within_the_tolerance() {
     }
 }
 
-/// Sets of balls at the edges of what numbers can say.
+/// Sets of balls at the edges of the range of numbers.
 pub(crate) fn hostile() -> Vec<(&'static str, MedialBalls)> {
     let plain: Vec<_> = random_balls(800, SIZE, 2.0).collect();
     let with = |others: &[([f64; 3], f64)]| balls_of(plain.iter().chain(others).copied());

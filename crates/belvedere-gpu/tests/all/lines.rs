@@ -49,8 +49,8 @@ const PLAIN: [&str; 3] = ["random balls", "a bias", "a single ball"];
 /// Targets that are tested with every ball one by one.
 const BRUTE: usize = 97;
 
-/// Compares what a device decides with exact lines of sight, and the bits of the matrix with those of the CPU. Says
-/// which share of the lines the device left open.
+/// Compares the decisions of a device with exact lines of sight, and the bits of the matrix with those of the CPU.
+/// Returns the share of the lines that the device left open.
 fn assert_equal_on(
     device: &DeviceInfo,
     balls: &MedialBalls,

@@ -11,7 +11,7 @@ use belvedere_data::{Error, Result};
 use std::io::{self, Read, Seek, Write};
 use zip::{ZipArchive, ZipWriter};
 
-/// Writes a model, what was derived with it, and notes about both, so that [`read_kept_model`] reads the same numbers.
+/// Writes a model, its derived data, and notes about both, so that [`read_kept_model`] reads the same numbers.
 ///
 /// # Errors
 /// [`Error::Io`].
@@ -50,7 +50,7 @@ fn write_derived<W: Write + Seek>(archive: &mut ZipWriter<W>, derived: &DerivedP
     Ok(())
 }
 
-/// Reads what [`write_kept_model`] wrote. Every array has a checksum.
+/// Reads a file of [`write_kept_model`]. Every array has a checksum.
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::Malformed`] for a file that is damaged.
@@ -82,7 +82,7 @@ pub fn write_kept_rasters<'a>(output: impl Into<Output<'a>>, rasters: &[&Raster<
     })
 }
 
-/// Reads what [`write_kept_rasters`] wrote.
+/// Reads a file of [`write_kept_rasters`].
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::Malformed`] for a file that is damaged.

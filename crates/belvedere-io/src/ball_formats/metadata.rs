@@ -19,7 +19,7 @@ const FORMAT: &str = "belvedere balls 1";
 /// Lengths of units in metres that occur, and many that do not.
 const UNITS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
-/// Number of surface patches: a program that passes over what it does not know would drop them without a word.
+/// Number of surface patches: a program that ignores unknown entries would drop them without a word.
 const PATCHES: &str = "surface_patches";
 
 const KINDS: [(CrsKind, &str); 5] = [
@@ -30,7 +30,7 @@ const KINDS: [(CrsKind, &str); 5] = [
     (CrsKind::Local, "local"),
 ];
 
-/// Origin, bounds, reference system and provenance of `balls`; `units` says what the numbers beside it mean.
+/// Origin, bounds, reference system and provenance of `balls`; `units` describes the units of the numbers beside it.
 pub(super) fn to_json(parts: &ModelParts, units: &str) -> String {
     let crs = &parts.frame.crs;
     let provenance: Map<String, Value> =

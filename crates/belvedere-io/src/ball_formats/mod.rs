@@ -84,7 +84,7 @@ struct FileBall {
     not(all(feature = "las", feature = "ply", feature = "npy")),
     allow(dead_code, reason = "a build without some formats uses a part of it")
 )]
-/// An index that was stored as a signed number: what is negative in 32 bits stands above 2³¹.
+/// An index that was stored as a signed number: negative numbers of 32 bits stand above 2³¹.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -15,7 +15,7 @@ pub(super) fn in_corners(values: &[f32; 9]) -> PatchTriangle {
     std::array::from_fn(|corner| std::array::from_fn(|axis| values[3 * corner + axis]))
 }
 
-/// The kinds of codes; what is wrong with the first that has none.
+/// The kinds of codes; a message for the first code without a kind.
 pub(super) fn kinds_of_codes(codes: &[u8]) -> Result<Vec<PatchKind>, String> {
     let kind = |&code: &u8| PatchKind::of_code(code).ok_or_else(|| format!("no surface patch is of kind {code}"));
     codes.iter().map(kind).collect()
@@ -36,7 +36,7 @@ pub(super) fn to_bytes(patches: &SurfacePatches, origin: [f64; 3]) -> Vec<u8> {
     bytes
 }
 
-/// The patches of [`to_bytes`], and the origin of their coordinates; what is wrong with them otherwise.
+/// The patches of [`to_bytes`], and the origin of their coordinates; a message for damaged bytes.
 pub(super) fn from_bytes(bytes: &[u8]) -> Result<(SurfacePatches, [f64; 3]), String> {
     let damaged = || "its surface patches are damaged; make the ball file again".to_owned();
     let (head, rows) = bytes.split_at_checked(HEAD_BYTES).ok_or_else(damaged)?;

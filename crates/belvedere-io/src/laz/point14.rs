@@ -3,7 +3,7 @@
 //! The laz crate (0.13) has the same decoder, but decodes GPS times by recursion (`gps_times.rs`). It cannot be
 //! replaced separately: the first layer, with the coordinates, tells whether a point has a new time.
 //!
-//! Source: what LASzip 3 writes for the item "Point14", versions 3 and 4.
+//! Source: the output of LASzip 3 for the item "Point14", versions 3 and 4.
 
 #![expect(
     clippy::cast_possible_truncation,
@@ -150,7 +150,7 @@ impl Point {
         usize::from(self.flags >> 4 & 3)
     }
 
-    /// 1 for an intermediate return plus what `first` and `last` add.
+    /// Sum of `first` for a first return and `last` for a last one; 0 for an intermediate return.
     fn place_of_return(&self, first: u8, last: u8) -> u8 {
         u8::from(self.return_number == 1) * first + u8::from(self.return_number >= self.return_count) * last
     }
@@ -277,7 +277,7 @@ impl Point14Field {
         }
     }
 
-    /// The channel of the next point and what changes in it.
+    /// The channel of the next point and its changed fields.
     fn next_changes(&mut self) -> io::Result<u32> {
         let layer = self.layers[0].as_mut().ok_or_else(no_coordinates)?;
         let Some(from) = &mut self.channels[self.channel] else { return Err(no_coordinates()) };

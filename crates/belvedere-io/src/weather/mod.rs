@@ -77,7 +77,7 @@ pub fn read_weather<'a>(source: impl Into<Source<'a>>) -> Result<Weather> {
     Ok(weather)
 }
 
-/// Notes on rows that lack what other rows of the file have.
+/// Notes on rows without values that other rows of the file have.
 fn missing_values(weather: &Weather) -> Vec<String> {
     let note = |name: &str, follows_from: &str, value: fn(&WeatherStep) -> Option<f64>| {
         let missing = weather.steps.iter().filter(|step| value(step).is_none()).count();

@@ -16,8 +16,8 @@ pub(crate) fn data(test: &str, relative: &str) -> Option<PathBuf> {
     None
 }
 
-/// Says that a test, or a part of one, did not run. The test runner captures what `eprintln!` prints and shows it for
-/// failed tests only, so this writes to standard error itself.
+/// Reports that a test, or a part of one, did not run. The test runner captures the output of `eprintln!` and shows it
+/// for failed tests only, so this writes to standard error itself.
 pub(crate) fn skipped(what: &str) {
     let _ = writeln!(std::io::stderr().lock(), "SKIPPED {what}");
 }

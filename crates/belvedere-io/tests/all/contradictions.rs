@@ -1,5 +1,5 @@
-//! Inputs that contradict themselves or what stands beside them: each is said or refused, and what agrees is read in
-//! silence. Numbers of points and bounds are known from how the inputs are made.
+//! Inputs that contradict themselves or the files beside them: each contradiction is reported or refused, and
+//! consistent inputs are read in silence. Numbers of points and bounds are known from the making of the inputs.
 
 use std::io::{Cursor, Read, Write};
 use std::path::Path;
@@ -15,7 +15,7 @@ use crate::hostile_input::e57;
 use crate::odd_clouds::{ept, ptx};
 use crate::sources::{cloud, file};
 
-/// Keys of what was said of a source, or the error.
+/// Keys of the contradictions reported for a source, or the error.
 fn said<'a>(source: impl Into<Source<'a>>, options: &ReadOptions) -> Result<Vec<&'static str>, String> {
     match read_cloud([source.into()], options, &Control::none()) {
         Ok((_, report)) => Ok(report.contradictions().iter().map(|found| found.row.key).collect()),

@@ -1,5 +1,5 @@
-//! Damaged and malicious files: every reader must answer with an error or a report, never panic, hang or allocate what
-//! the file cannot hold.
+//! Damaged and malicious files: every reader must answer with an error or a report, never panic, hang or allocate more
+//! than the file can hold.
 
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -190,7 +190,7 @@ impl RepeatableRandom {
     }
 }
 
-/// Reads what is at `path`; a message where the reader misbehaves.
+/// Reads the file at `path`; a message where the reader misbehaves.
 fn misbehaviour(path: &Path, size: usize) -> Option<String> {
     let paths = [path.to_owned()];
     match read_cloud(&paths, &ReadOptions::default(), &Control::none()) {

@@ -1,4 +1,4 @@
-//! Files that coverage-guided fuzzing made to crash LAS and LAZ readers, and what each costs to refuse.
+//! Files that coverage-guided fuzzing made to crash LAS and LAZ readers, and the cost of refusing each.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,4 +1,4 @@
-//! Clouds as programs leave them in folders, with what stands beside them.
+//! Clouds as programs leave them in folders, with the files beside them.
 
 use std::fmt::Write;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Files on a web server are what they are on the disk, and no more of them is transferred than is needed.
+//! Files on a web server are the same as on the disk, and no more of them is transferred than is needed.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! A window of a large cloud is what a look at all points gives, and costs little more than its own bytes.
+//! A window of a large cloud has the points of a search through all of them, and costs little more than its own bytes.
 #![expect(clippy::cast_possible_truncation, reason = "numbers of a file that is made here, of a few megabytes")]
 
 use std::io::{Cursor, Read, Seek, SeekFrom};
@@ -220,7 +220,7 @@ fn of_rows_that_hold_a_window_no_more_is_read_and_nothing_is_lost() {
     }
 }
 
-/// The points of a window and what the report says of the hierarchy, which `damage` changed.
+/// The points of a window and the notes of the report on the hierarchy, which `damage` changed.
 fn window_of(nodes: &[OctreeNode], damage: &dyn Fn(&mut Vec<u8>), options: &ReadOptions) -> (usize, String) {
     let bytes = copc(nodes, damage);
     let (cloud, report) = read_cloud([Source::bytes("tile.copc.laz", &bytes)], options, &Control::none())

@@ -61,7 +61,7 @@ pub(super) fn answer(question: &LineRequest, context: &RequestContext<'_>) -> Re
     Ok(QuestionReply::of(head))
 }
 
-/// Distances, the ground, the line and what is solid, in heights of the file.
+/// Distances, the ground, the line and the obstacles, in heights of the file.
 fn drawn(profile: &SightProfile, context: &RequestContext<'_>) -> Value {
     let frame = context.scene.model().frame();
     let height = |local: f64| (local + frame.origin[2]) / frame.crs.vertical_metres_per_unit;

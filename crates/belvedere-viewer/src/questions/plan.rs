@@ -1,4 +1,4 @@
-//! Scenario: the scene with what was drawn, for the questions that follow.
+//! Scenario: the scene with the drawn plan, for the questions that follow.
 
 use super::RequestContext;
 use crate::plans::DrawnPlan;

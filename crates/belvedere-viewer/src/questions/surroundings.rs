@@ -61,7 +61,7 @@ pub(super) fn answer(question: &AroundRequest, context: &RequestContext<'_>) -> 
     Ok(QuestionReply { head, body: panorama.values().iter().map(|&range| brightness(range)).collect() })
 }
 
-/// 0 for the sky, 1 for what is near, 255 for what is far.
+/// 0 for the sky, 1 for near things, 255 for far ones.
 fn brightness(range: f32) -> u8 {
     if !range.is_finite() {
         return 0;

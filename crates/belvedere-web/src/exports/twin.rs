@@ -1,4 +1,4 @@
-//! A host in Rust, and what goes through the border compared with the engine itself.
+//! A host in Rust, which compares the data at the border with the engine itself.
 
 use super::{HostFile, ask, build, give, open, scene_file, take};
 use crate::engine::{Engine, Host, OpenRequest, OpenedFile};
@@ -11,7 +11,7 @@ use std::sync::Mutex;
 
 /// Files of the host, by their number.
 static FILES: Mutex<Vec<Vec<u8>>> = Mutex::new(Vec::new());
-/// Bytes of room behind what was requested, which a host must not touch.
+/// Bytes of room behind the requested ones, which a host must not touch.
 const GUARD: usize = 64;
 
 thread_local! {

@@ -356,11 +356,11 @@ fn cityjson_parts_are_those_given_and_surfaces_say_what_they_are() {
 #[test]
 fn scanners_that_fly_hit_the_ground_as_densely_as_wanted_and_others_from_where_they_stand() {
     for regime in Regime::ALL {
-        let params = regime.town(Preset::Town.params(60.0, 3));
+        let params = regime.town(Preset::Town.params(100.0, 3));
         let scene = regime.scene(&params);
         let scan = regime.scan(&scene, &params, 2.0);
         let highest = scan.sensor_path.positions.iter().map(|p| p[2]).fold(f64::NEG_INFINITY, f64::max);
-        let density = scan.return_number.iter().filter(|&&number| number == 1).count() as f64 / 3600.0;
+        let density = scan.return_number.iter().filter(|&&number| number == 1).count() as f64 / 1e4;
         if regime.flies() {
             assert!(highest > 50.0 && (density / 2.0 - 1.0).abs() < 0.25, "{regime:?}: {highest} m, {density}");
         } else {

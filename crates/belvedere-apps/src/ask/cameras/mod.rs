@@ -62,8 +62,8 @@ pub struct CamerasQuestion {
     /// Treatment of unproven targets that nothing blocks: they are covered only if they count as visible. A given value
     /// needs pulses.
     pub unproven: Option<UnprovenAs>,
-    /// The least probability, above 0.5 and at most 1, with which a target must be visible to be covered; `None`, the
-    /// default, where the answer alone counts. What is given needs pulses.
+    /// Minimum probability, above 0.5 and at most 1, with which a target must be visible to be covered; `None`, the
+    /// default, where the answer alone counts. A value needs pulses.
     pub certain: Option<f64>,
 }
 

@@ -33,7 +33,7 @@ impl Default for Candidates {
     }
 }
 
-/// A place for cameras, with what is said of it; the rest is as in [`CameraLens`](super::CameraLens).
+/// A place for cameras, with the settings given for it; the others are as in [`CameraLens`](super::CameraLens).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GivenCamera {
     /// Local metres; the height is NaN where it follows from the ground.

@@ -93,7 +93,7 @@ impl SeenSection {
     }
 }
 
-/// Observers before what blocks.
+/// Observers and the obstacles before them.
 pub(super) struct Sights<'a> {
     pub(super) question: &'a ViewshedQuestion,
     pub(super) scene: &'a Scene,
@@ -103,7 +103,7 @@ pub(super) struct Sights<'a> {
 }
 
 impl Sights<'_> {
-    /// The cells that are targets: neither under a cover nor inside what was added.
+    /// The cells that are targets: neither under a cover nor inside added meshes.
     pub(super) fn cells(&self, ground: &Ground, context: &mut Context, control: &Control<'_>) -> Result<Targets> {
         let [_, height] = self.question.heights();
         let params = CellParams::default().with_height(tested_height(height));

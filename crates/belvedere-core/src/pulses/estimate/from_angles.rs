@@ -24,7 +24,7 @@ const MIN_PAIRS: usize = 20;
 /// Minimum distance between first and last return for a pulse to give its direction, metres.
 const MIN_LENGTH: f64 = 3.0;
 
-/// A point with what is needed of it.
+/// Columns of a point that the fit needs.
 #[derive(Clone, Copy)]
 struct AngleSample {
     line: u16,

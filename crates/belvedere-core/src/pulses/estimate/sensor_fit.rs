@@ -120,7 +120,7 @@ struct PathEquations {
 }
 
 impl PathEquations {
-    /// Adds what says that `matrix` times the position at `since` is `right`.
+    /// Adds the equations `matrix` · position at `since` = `right`.
     fn add(&mut self, matrix: &Matrix3<f64>, right: &Vector3<f64>, since: f64) {
         for (row, row_factor) in [(0, 1.0), (3, since)] {
             for (column, column_factor) in [(0, 1.0), (3, since)] {

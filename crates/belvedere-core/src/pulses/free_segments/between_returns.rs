@@ -1,4 +1,4 @@
-//! The ways of pulses between their returns: what they prove below crowns and beside edges.
+//! Paths of pulses between their returns, as evidence of free space below crowns and beside edges.
 
 use super::{FreeSegmentParams, FreeSegments};
 use crate::neighbors::NeighborIndex;

@@ -56,9 +56,9 @@ impl FreeSegments {
         self.free_segments.par_iter().map(line)
     }
 
-    /// The free segments as columns, in the order of the index. Directions are rounded, so that what
-    /// [`FreeSegments::from_columns`] makes of them lies up to 5 mm in 100 m off these; it gives the same columns
-    /// again, in another order.
+    /// The free segments as columns, in the order of the index. Directions are rounded, so that the segments of
+    /// [`FreeSegments::from_columns`] lie up to 5 mm in 100 m off these; they give the same columns again, in another
+    /// order.
     #[must_use]
     pub fn to_columns(&self) -> FreeSegmentColumns {
         let top = self.top;
@@ -93,7 +93,7 @@ impl FreeSegments {
         self.trees.iter().zip(ends).flat_map(|(tree, end)| std::iter::repeat_n(tree.way, end - tree.first))
     }
 
-    /// The free segments of `columns`, indexed. What begins above the top, or has no length, is left out.
+    /// The free segments of `columns`, indexed. Segments that begin above the top, or have no length, are left out.
     ///
     /// # Errors
     /// Those of [`FreeSegmentColumns::validate`], and [`Error::Cancelled`](belvedere_data::Error::Cancelled).
@@ -105,7 +105,7 @@ impl FreeSegments {
     }
 
     /// The same with the order and the boxes of an index of these columns ([`FreeSegments::order_and_boxes`]): nothing
-    /// is sorted again. What does not belong together is indexed anew.
+    /// is sorted again. If they do not belong together, the columns are indexed anew.
     pub(crate) fn from_index(
         columns: &FreeSegmentColumns,
         (order, boxes): (&[u32], &[[f32; 10]]),

@@ -13,8 +13,9 @@ impl FreeSegments {
     /// The ways of pulses of `cloud` that met nothing up to the sky, as free segments with the same upper limit of
     /// height as those of this survey. They begin at the scanner, and end where it receives no more returns.
     ///
-    /// These pulses met nothing with the whole of their beam. They prove and need not carve: what they pass has no
-    /// points, and so no balls. There are only as many as it takes for them to be half a metre apart at their far ends.
+    /// These pulses met nothing with the whole of their beam. They prove and need not carve: along their way there are
+    /// no points, and so no balls. There are only as many as it takes for them to be half a metre apart at their far
+    /// ends.
     ///
     /// A scanner outside of the box around the returns, as of a cloud that was cut, gives none.
     ///

@@ -39,7 +39,7 @@ impl SegmentAxis {
         Self { axis: 1, is_backward: true },
     ];
 
-    /// The way of a unit vector; `None` for what is not a number.
+    /// The axis of a unit vector; `None` if it is not a number.
     pub(super) fn of(direction: [f64; 3]) -> Option<Self> {
         if direction[2] > UPRIGHT_RISE {
             return Some(Self::UP);
@@ -85,8 +85,8 @@ pub(super) struct SegmentTree {
 
 impl SegmentTree {
     /// The tree over `free_segments`, which it puts in order; the first of them becomes segment number `first`. They
-    /// are in the order of a tree already where its [`SegmentTree::boxes`] are given. What is left when the work is
-    /// cancelled is no tree.
+    /// are in the order of a tree already where its [`SegmentTree::boxes`] are given. After a cancelled build the
+    /// result is no tree.
     pub(super) fn new(
         (way, boxes): (SegmentAxis, Option<&[[f32; 10]]>),
         free_segments: &mut [FreeSegment],
@@ -272,7 +272,7 @@ impl TreeBuild<'_> {
         best.1
     }
 
-    /// Builds the node over `items`, whose first segment is number `first`, into `nodes[0]`, and what is below it
+    /// Builds the node over `items`, whose first segment is number `first`, into `nodes[0]`, and its descendants
     /// behind.
     fn node(self, items: &mut [FreeSegment], first: usize, nodes: &mut [SegmentNode], index: usize) {
         if items.len() > PARALLEL && self.stop.is_set() {

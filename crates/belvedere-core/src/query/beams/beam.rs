@@ -21,7 +21,7 @@ const OPENED_SHARE: f32 = 2.5;
 
 /// All lines of sight of a box of targets lie between these planes.
 pub(super) struct Beam {
-    /// Two on either side, one behind the targets and one behind the eye; widened by what f32 rounds.
+    /// Two on either side, one behind the targets and one behind the eye; widened by the rounding of f32.
     pub(super) space: ConvexSpace,
     /// Width of the beam as a linear function of the position: at the local origin, and how it grows.
     width: f32,

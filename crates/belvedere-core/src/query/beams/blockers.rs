@@ -112,7 +112,7 @@ impl<B> Default for Blocks<B> {
 }
 
 impl<B: BeamBlock> Blocks<B> {
-    /// Number of blocks; what is pushed next gets a block of its own.
+    /// Number of blocks; the next entry gets a block of its own.
     pub(super) fn end(&mut self) -> usize {
         self.last = LANES;
         self.blocks.len()

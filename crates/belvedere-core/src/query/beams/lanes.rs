@@ -1,4 +1,4 @@
-//! Tests of eight boxes or balls at once. They only propose: what they pass is tested exactly.
+//! Tests of eight boxes or balls at once. They are conservative: all that pass are tested exactly.
 
 use super::blockers::LANES;
 use crate::blocking::Ball;
@@ -25,8 +25,8 @@ impl ConvexSpace {
         Self { normals: [[0.0; 3]; PLANES], offsets: [f32::MAX; PLANES], inward: [[0; 3]; PLANES] }
     }
 
-    /// Limits the space by a plane with an outward unit normal, so far out along it, local metres. What f32 rounds must
-    /// be added to the offset; boxes of nodes are padded by as much again.
+    /// Limits the space by a plane with an outward unit normal, so far out along it, local metres. The rounding of f32
+    /// must be added to the offset; boxes of nodes are padded by as much again.
     pub(super) fn set(&mut self, plane: usize, normal: [f32; 3], offset: f32) {
         self.normals[plane] = normal;
         self.offsets[plane] = offset;
@@ -88,8 +88,8 @@ pub(super) trait Kernels {
     fn columns(balls: &[Ball; LANES]) -> LaneColumns;
 }
 
-/// Plain loops over eight lanes without branches, which compilers turn into what instructions they may use. With
-/// `FUSED`, products are added before they are rounded, which is slow on machines that have no such instruction.
+/// Plain loops over eight lanes without branches, which compilers turn into the vector instructions that they may use.
+/// With `FUSED`, products are added before they are rounded, which is slow on machines that have no such instruction.
 pub(super) struct BeamScalar<const FUSED: bool>;
 
 /// The bits of lanes that are true.

@@ -59,7 +59,7 @@ impl Kernels for BeamSimd128 {
         let zero = Eight::all(0.0);
         let is_beside = dot(across, across).at_most(reach * reach);
         let is_ahead = (zero - reach).at_most(dot([mx, my, mz], [dx, dy, dz]));
-        LaneBits(is_beside & is_ahead & zero.below(reach))
+        LaneBits(is_beside & is_ahead & zero.less_than(reach))
     }
 
     #[inline(always)]

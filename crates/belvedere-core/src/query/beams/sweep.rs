@@ -472,7 +472,7 @@ struct Lists {
 }
 
 impl Lists {
-    /// Numbers of blocks of nodes and of balls; what is appended next gets blocks of its own.
+    /// Numbers of blocks of nodes and of balls; the next entries get blocks of their own.
     fn end(&mut self) -> [usize; 2] {
         [self.nodes.end(), self.balls.end()]
     }

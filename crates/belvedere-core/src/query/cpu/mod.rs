@@ -24,7 +24,7 @@ use std::sync::Arc;
 use sweep::{Swept, sweep_all};
 use whole_cells::{SweptDirection, TargetCell};
 
-/// Directions from which on it pays to gather what is near a target, and to sweep them.
+/// Minimum number of directions for which it pays to gather the obstacles near a target, and to sweep them.
 const WORTH_GATHERING: usize = 16;
 /// Lines of sight for each ball from which on it pays to sweep.
 const WORTH_SWEEPING: f64 = 4.0;
@@ -43,7 +43,7 @@ impl Backend for Cpu {
     }
 }
 
-/// Balls made ready for the processor: also what another device falls back to.
+/// Balls made ready for the processor, the fallback of other devices.
 pub struct PreparedBalls {
     tree: Arc<BallTree>,
     layers: Lazy<SpaceLayers>,

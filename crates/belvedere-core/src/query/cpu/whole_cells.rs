@@ -3,8 +3,8 @@
 //!
 //! A line of sight belongs to the cell in which it meets the lowest level of the layers. With the place (x, y, z) of
 //! its target in cells and the slope s of its direction this is x − z·s. Heights have 18 bits of fraction and slopes
-//! 26, so that their product has 44, as x and y have: the difference is exact. What was rounded before, heights and
-//! slopes, moves the line by less than 24 · 2⁻¹⁸ + 4096 · 2⁻²⁷ < 2⁻¹² cells. A line closer than that to the border of
+//! 26, so that their product has 44, as x and y have: the difference is exact. The rounding of heights and slopes
+//! before moves the line by less than 24 · 2⁻¹⁸ + 4096 · 2⁻²⁷ < 2⁻¹² cells. A line closer than that to the border of
 //! its cell has none ([`TargetCell::cell`]) and stays open.
 
 use super::space_layers::SpaceLayers;

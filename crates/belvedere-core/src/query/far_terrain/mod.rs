@@ -22,8 +22,8 @@ const CHUNK: usize = 90;
 /// Far terrain: a direction is blocked for a place if it is below the horizon there.
 ///
 /// A profile is the same for all places. A raster gives each place its own horizon, exact for heights that are bilinear
-/// between the middles of its cells, over the curved earth. What lies within the box of the cloud on the map, or within
-/// a cell of the raster around it, is left to the cloud. Cells without a height block nothing.
+/// between the middles of its cells, over the curved earth. Inside the box of the cloud on the map, and a cell of the
+/// raster around it, the cloud decides. Cells without a height block nothing.
 #[derive(Clone, Debug, Default)]
 pub struct FarTerrain {
     /// Azimuths from grid north.

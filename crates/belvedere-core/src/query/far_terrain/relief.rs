@@ -415,7 +415,7 @@ impl MapLines {
     }
 }
 
-/// More than what is rounded in the tangent of an elevation.
+/// Upper bound of the rounding error in the tangent of an elevation.
 fn rounding(tangent: f64) -> f64 {
     1e-9 * (1.0 + tangent.abs())
 }

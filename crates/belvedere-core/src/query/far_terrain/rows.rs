@@ -36,8 +36,8 @@ pub(in crate::query) fn hide_behind_terrain(
     })
 }
 
-/// Unsets the bits of lines of sight that the raster blocks, for targets close to each other: what is certain for their
-/// common box is not computed for each target.
+/// Unsets the bits of lines of sight that the raster blocks, for targets close to each other. Answers that are certain
+/// for their common box are not computed for each target.
 fn hide_block(far: &FarTerrain, targets: &[[f32; 3]], directions: &[[f64; 3]], rows: &mut [u64], width: usize) {
     let Some(relief) = &far.relief else { return };
     let bound = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {

@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Directions that are settled before targets are looked at: two bits of each are kept for every target meanwhile.
 const BATCH: usize = 512;
-/// Targets that are looked at before the next: as many as keep what is settled of them below 100 MB.
+/// Number of targets tested before the next: as many as keep their settled lines below 100 MB.
 const MAX_TARGETS: usize = BLOCK << 10;
 
 /// Share of lines of sight near balls below which each such line is tested separately. Settling a line takes about a
@@ -128,11 +128,11 @@ impl<'a> FreeLines<'a> {
         }
     }
 
-    /// Takes away what the balls of `scene` block of the directions in `columns`, each given once. Progress counts
-    /// targets.
+    /// Clears the bits of lines that the balls of `scene` block, of the directions in `columns`, each given once.
+    /// Progress counts targets.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a column beyond the last, what the backend of the scene reports, and
+    /// [`Error::InvalidParameter`] for a column beyond the last, errors of the backend of the scene, and
     /// [`Error::Cancelled`].
     pub fn hide_behind_balls(&mut self, scene: &MedialScene, columns: &[usize], control: &Control<'_>) -> Result<()> {
         if let Some(bad) = columns.iter().find(|&&column| column >= self.directions.len()) {
@@ -242,7 +242,7 @@ impl<'a> FreeLines<'a> {
         words
     }
 
-    /// Takes away what triangles block.
+    /// Clears the bits of lines that triangles block.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
@@ -253,7 +253,7 @@ impl<'a> FreeLines<'a> {
         hide_behind_triangles(triangles, self.tree.positions(), self.directions, &mut self.words, control)
     }
 
-    /// Takes away what far terrain blocks.
+    /// Clears the bits of lines that far terrain blocks.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
@@ -264,7 +264,7 @@ impl<'a> FreeLines<'a> {
         hide_behind_terrain(far, self.tree.positions(), self.directions, &mut self.words, control)
     }
 
-    /// Takes away what is not free in `other`, which is a clone of this from which other obstacles were taken.
+    /// Clears the bits that are not set in `other`, a clone of this with other obstacles applied.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] for another number of targets or directions.

@@ -93,9 +93,9 @@ impl MedialScene {
     /// and triangles. Each pair equals [`MedialScene::answer`] at infinite range, without a test of pulses. A target
     /// that is not finite sees nothing. Progress counts targets.
     ///
-    /// The backend settles most lines of sight ([`super::backend::PreparedBackend::settle`]). What it leaves open is
-    /// tested against the ball that blocked the neighbours, and finally against all balls. What the backend prepares
-    /// stays with the scene, so that targets may be queried in blocks.
+    /// The backend settles most lines of sight ([`super::backend::PreparedBackend::settle`]). The others are tested
+    /// against the ball that blocked the neighbours, and finally against all balls. The data that the backend prepares
+    /// stay with the scene, so that targets may be queried in blocks.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a direction that is not of unit length (to a millionth), and
