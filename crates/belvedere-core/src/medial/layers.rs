@@ -9,6 +9,8 @@ const STEP: f32 = 0.4;
 /// Voxels up and down that count as of the same height, which allows for slopes up to 45° and for the parapet of a
 /// balcony.
 const SAME_HEIGHT: i32 = 2;
+/// Share of a step by which rounding may put an origin before the corner that it lies on.
+const ROUNDING: f64 = 1e-6;
 /// Maximum number of cells: beyond this the columns would take gigabytes.
 const MAX_CELLS: f32 = 5e8;
 
@@ -60,12 +62,12 @@ impl Layers {
             }
         }
         let steps = [f64::from(BLOCK) / 2.0, f64::from(BLOCK) / 2.0, f64::from(STEP)];
+        // an origin on a corner stays on it
+        let corners: [f64; 3] = std::array::from_fn(|axis| (origin[axis] / steps[axis] + ROUNDING).floor());
         #[expect(clippy::cast_possible_truncation, reason = "at most half a block")]
-        let shift: [f32; 3] = std::array::from_fn(|axis| origin[axis].rem_euclid(steps[axis]) as f32);
+        let shift: [f32; 3] = std::array::from_fn(|axis| (origin[axis] - corners[axis] * steps[axis]).max(0.0) as f32);
         #[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
-        let corner = [0, 1]
-            .map(|axis| (origin[axis] / steps[axis]).floor() as i64)
-            .map(|v| v.saturating_mul(cells_of_half_block));
+        let corner = [0, 1].map(|axis| (corners[axis] as i64).saturating_mul(cells_of_half_block));
         let first_cell = [0, 1].map(|axis| cell_from_corner(low[axis] + shift[axis], side));
         low = [0, 1].map(|axis| first_cell[axis] as f32 * side - shift[axis]);
         let [width, height] = [0, 1].map(|axis| ((high[axis] - low[axis]) / side).floor() + 2.0);
@@ -260,8 +262,8 @@ mod tests {
         let corner = [155_003.0, 462_990.0, 5.0];
         let place = |i: u64| {
             let random = |k: u64| uniform(7, 3 * i + k);
-            // sixty-fourths of a metre, so that no frame rounds them
-            let steps = [2560.0 * random(0), 2560.0 * random(1), 320.0 * random(2)].map(f64::floor);
+            // 128ths of a metre, which no frame rounds, and of which none lies on the side of a cell
+            let steps = [2560.0 * random(0), 2560.0 * random(1), 320.0 * random(2)].map(|v| v.floor() + 0.5);
             #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
             std::array::from_fn(|axis| (corner[axis] + steps[axis] / 64.0 - origin[axis]) as f32)
         };

@@ -10,10 +10,6 @@ use std::ops::ControlFlow;
 const DARK: f64 = 46.0;
 /// Voxels that meet at a corner.
 const AROUND: usize = 8;
-/// Cells along a side of an area, of which only the highest block is known: lines that pass above it look no closer.
-const AREA: i32 = 8 * SIDE;
-/// Most areas of which that is known, 32 MiB: what is spread wider is looked at block by block.
-const MAX_AREAS: usize = 1 << 22;
 
 /// Extinction that is even in each cell between the middles of eight voxels: their mean. Shadows then do not follow the
 /// grid of the voxels, and a line takes one number from each cell.
@@ -24,45 +20,6 @@ pub struct Medium {
     table: BlockTable,
     /// Extinctions of the cells of each block, x fastest.
     cells: Vec<f32>,
-    areas: Areas,
-}
-
-/// How high crowns reach in squares of [`AREA`] cells on the map.
-#[derive(Clone, Debug, Default)]
-struct Areas {
-    /// Number of the first area on each axis of the map, and of areas north of each other.
-    first: [i32; 2],
-    deep: usize,
-    /// Height above which nothing is, cells; the lowest number where there is nothing. Empty for too many areas.
-    tops: Vec<f64>,
-}
-
-impl Areas {
-    fn new(table: &BlockTable) -> Self {
-        let [low, high] = table.bounds;
-        let first = [0, 1].map(|axis| (low[axis] * SIDE).div_euclid(AREA));
-        let [wide, deep] =
-            [0, 1].map(|axis| ((high[axis] * SIDE - 1).div_euclid(AREA) - first[axis] + 1).max(0) as usize);
-        let count = wide.checked_mul(deep).filter(|count| *count <= MAX_AREAS).unwrap_or_default();
-        let mut areas = Self { first, deep, tops: vec![f64::NEG_INFINITY; count] };
-        for number in &table.numbers {
-            let place = areas.place([0, 1].map(|axis| (number[axis] * SIDE).div_euclid(AREA)));
-            if let Some(top) = areas.tops.get_mut(place) {
-                *top = top.max(f64::from((number[2] + 1) * SIDE));
-            }
-        }
-        areas
-    }
-
-    /// Place of an area that holds blocks, or lies between such.
-    fn place(&self, [east, north]: [i32; 2]) -> usize {
-        (east - self.first[0]) as usize * self.deep + (north - self.first[1]) as usize
-    }
-
-    /// Whether all that is on an area lies below a height, cells.
-    fn end_below(&self, area: [i32; 2], height: f64) -> bool {
-        self.tops.get(self.place(area)).is_some_and(|top| height >= *top)
-    }
 }
 
 impl Medium {
@@ -95,8 +52,7 @@ impl Medium {
                 }
             }
         }
-        let areas = Areas::new(&table);
-        Self { shift, table, cells, areas }
+        Self { shift, table, cells }
     }
 
     /// Whether nothing takes light.
@@ -111,31 +67,17 @@ impl Medium {
     pub fn optical_depth(&self, start: [f64; 3], towards: [f64; 3], range: f64) -> f64 {
         let start = std::array::from_fn(|axis| start[axis] / VOXEL_SIDE + self.shift[axis]);
         let line = GridLine::new(start, towards);
-        let bounds = self.table.bounds;
-        let Some(ranges) = line.within(bounds, [0.0, range / VOXEL_SIDE]) else { return 0.0 };
+        let Some(ranges) = line.within(self.table.bounds, [0.0, range / VOXEL_SIDE]) else { return 0.0 };
         let mut depth = 0.0;
-        let in_block = |block: [i32; 3], ranges: [f64; 2], depth: &mut f64| {
+        let _ = line.each_cell(SIDE, self.table.bounds, ranges, |block, ranges| {
             let Some(at) = self.table.get(block) else { return ControlFlow::Continue(()) };
             let low = block.map(|v| v * SIDE);
             let cells = &self.cells[at * VOXELS..(at + 1) * VOXELS];
             let _ = line.each_cell::<()>(1, [low, low.map(|v| v + SIDE)], ranges, |cell, [from, to]| {
-                *depth += (to - from) * f64::from(cells[place_in_block(cell)]);
+                depth += (to - from) * f64::from(cells[place_in_block(cell)]);
                 ControlFlow::Continue(())
             });
-            if *depth > DARK { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        };
-        let areas =
-            [bounds[0].map(|v| (v * SIDE).div_euclid(AREA)), bounds[1].map(|v| (v * SIDE - 1).div_euclid(AREA) + 1)];
-        let _ = line.each_cell(AREA, areas, ranges, |area, ranges| {
-            let lowest = ranges.map(|range| line.at(range)[2]).into_iter().fold(f64::INFINITY, f64::min);
-            if self.areas.end_below([area[0], area[1]], lowest) {
-                return ControlFlow::Continue(());
-            }
-            let own: [[i32; 3]; 2] = [
-                std::array::from_fn(|axis| (area[axis] * (AREA / SIDE)).max(bounds[0][axis])),
-                std::array::from_fn(|axis| ((area[axis] + 1) * (AREA / SIDE)).min(bounds[1][axis])),
-            ];
-            line.each_cell(SIDE, own, ranges, |block, ranges| in_block(block, ranges, &mut depth))
+            if depth > DARK { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         depth * VOXEL_SIDE
     }
@@ -213,27 +155,6 @@ mod tests {
         }
         assert_eq!(medium.optical_depth([500.0, 0.0, 0.0], [1.0, 0.0, 0.0], f64::INFINITY), 0.0);
         assert_eq!(Medium::default().optical_depth([0.0; 3], [0.0, 0.0, 1.0], f64::INFINITY), 0.0);
-    }
-
-    #[test]
-    fn lines_above_low_crowns_meet_the_high_ones_behind() {
-        // a hedge 3 m high, and a tree of 40 m 300 m behind it
-        let mut voxels: Vec<[i32; 3]> = (0..200).map(|x| [x, 0, x % 3]).collect();
-        voxels.extend((0..40).flat_map(|z| (0..4).map(move |x| [300 + x, 0, z])));
-        voxels.sort_unstable();
-        let extinction = vec![0.5; voxels.len()];
-        let medium = Medium::new(&ExtinctionVoxels { voxels, extinction }, [0.0; 3]);
-        let towards = unit([1.0, 0.0, 0.1]).unwrap();
-        // from 8 m it stays above the hedge and reaches the tree 38 m up
-        let depth = |height: f64| medium.optical_depth([0.5, 0.5, height], towards, f64::INFINITY);
-        let back = |height: f64| {
-            let end = [600.5, 0.5, height + 60.0];
-            medium.optical_depth(end, towards.map(|v| -v), f64::INFINITY)
-        };
-        // half of the cells of a wall of voxels lie beside it: a quarter of the extinction in 5 m, and half in 3
-        let expected = 0.5 * (3.0 * 0.5 + 2.0 * 0.25) / towards[0];
-        assert!((depth(8.0) - expected).abs() < 0.01, "{} {expected}", depth(8.0));
-        assert!((back(8.0) - depth(8.0)).abs() < 1e-9 && depth(15.0) == 0.0 && depth(1.0) > depth(8.0));
     }
 
     #[test]
