@@ -8,7 +8,7 @@ use crate::sun_hours::{SunHours, SunHoursParams, sun_hours};
 use crate::targets::{Measure, TARGET_LIFT, Targets, weighted_mean};
 use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
-use belvedere_data::vector::{cross, dot, unit};
+use belvedere_data::vector::{cross, dot, to_f32, unit};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -242,9 +242,7 @@ pub fn sky_component(matrix: &VisibilityMatrix, sky: &SkyDirections, normals: &[
                 sum += cosine * solid_angle * luminances[column];
             }
         }
-        #[expect(clippy::cast_possible_truncation, reason = "a share")]
-        let share = (sum / (7.0 * PI / 9.0)) as f32;
-        share
+        to_f32(sum / (7.0 * PI / 9.0))
     };
     Ok(normals.par_iter().enumerate().with_min_len(CHUNK).map(component).collect())
 }

@@ -6,7 +6,7 @@ use belvedere_core::ground::{Ground, MapGrid};
 use belvedere_core::query::{Answer, BackFaces, MedialScene, Sides, SurfacePiece, SurfacePieces, Viewer};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
-use belvedere_data::vector::{dot, length, sub};
+use belvedere_data::vector::{dot, length, sub, to_f32};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -102,8 +102,7 @@ pub fn protected_view(
         viewpoints.push(report);
         control.advance(1);
     }
-    #[expect(clippy::cast_possible_truncation, reason = "heights of rasters are f32")]
-    let limits = limits.into_iter().map(|limit| if limit < f64::INFINITY { limit as f32 } else { f32::NAN }).collect();
+    let limits = limits.into_iter().map(|limit| if limit < f64::INFINITY { to_f32(limit) } else { f32::NAN }).collect();
     Ok(ProtectedView { limits: Raster::from_values(grid.width, grid.height, limits)?, viewpoints })
 }
 

@@ -15,7 +15,7 @@ use crate::rows::{RowBlock, SkyObstacles, normals_of};
 use crate::targets::{Measure, Targets};
 use belvedere_data::Result;
 use belvedere_data::control::Control;
-use belvedere_data::vector::dot;
+use belvedere_data::vector::{dot, to_f32};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::LazyLock;
@@ -239,8 +239,7 @@ pub fn expected_measures(
     };
     let found: Vec<[f64; 3]> = sums.values.iter().zip(classes).enumerate().map(of_row).collect();
     let measure = |(number, (suffix, text)): (usize, &(&str, &'static str))| {
-        #[expect(clippy::cast_possible_truncation, reason = "sums are f32")]
-        let values = found.iter().map(|ends| ends[number] as f32).collect();
+        let values = found.iter().map(|ends| to_f32(ends[number])).collect();
         Measure { name: format!("{stem}_{suffix}"), values, ..sums.clone().with_description(text) }
     };
     INTERVAL_MEASURES.iter().enumerate().map(measure).collect()

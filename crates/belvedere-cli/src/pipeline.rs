@@ -24,6 +24,7 @@ use belvedere::depth::Profile;
 use belvedere::io::{ReadOptions, ReadReport, UpAxis, is_ball_file, read_balls, read_cloud, web_address};
 use belvedere::model::{BallParams, ModelParams, SceneModel};
 use belvedere::query::{BlockRule, UnprovenAs};
+use belvedere::vector::to_f32;
 use belvedere::view::{CAMERA_FOV, CAMERA_SIZE, PANORAMA_WIDTH, View, default_pixel_size, to_sun};
 use belvedere::{Bounds, Error, PointCloud};
 use std::borrow::Cow;
@@ -465,7 +466,6 @@ impl ViewChoice {
 }
 
 /// Local positions as f32 in file coordinates, which is what masbcpp's folders hold.
-#[expect(clippy::cast_possible_truncation, reason = "the layout is f32")]
 pub(crate) fn file_coordinates(cloud: &PointCloud, local: &[[f32; 3]]) -> Vec<[f32; 3]> {
-    local.iter().map(|&p| cloud.frame.to_file_coordinates(p).map(|v| v as f32)).collect()
+    local.iter().map(|&p| cloud.frame.to_file_coordinates(p).map(to_f32)).collect()
 }

@@ -18,7 +18,7 @@
 //! are this project's.
 
 use belvedere_data::model::FARTHEST;
-use belvedere_data::vector::{dot, length, sub};
+use belvedere_data::vector::{dot, length, sub, to_f32};
 use belvedere_data::{Error, Parameter, Result};
 
 /// The largest part of its radius by which a ball gives way to a target: a wire must not vanish.
@@ -117,9 +117,8 @@ impl BlockRule {
     /// [`BlockRule::min_radius`] in single precision, in which depth maps are drawn.
     #[must_use]
     #[inline]
-    #[expect(clippy::cast_possible_truncation, reason = "a length and a share")]
     pub fn min_radius_f32(&self, radius: f32) -> f32 {
-        radius - (self.shell as f32).min(SHELL_SHARE as f32 * radius)
+        radius - to_f32(self.shell).min(to_f32(SHELL_SHARE) * radius)
     }
 
     /// The radius that a ball of `radius` counts with for an end `distance` metres from its centre; between two ends

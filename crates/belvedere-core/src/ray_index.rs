@@ -13,7 +13,7 @@ pub(crate) use walk::Visit;
 
 use crate::instructions::Instructions;
 use belvedere_data::model::TreeParts;
-use belvedere_data::vector::{dot, length, sub, unit};
+use belvedere_data::vector::{dot, length, sub, to_f32, unit};
 use belvedere_data::{Error, Parameter, Result};
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
@@ -157,7 +157,7 @@ impl RayIndex {
             .iter()
             .map(|[low, high]| {
                 let local = |corner: &[f32; 3], padding: f64| -> [f32; 3] {
-                    to_f32(std::array::from_fn(|i| f64::from(corner[i]) - center[i] + padding))
+                    std::array::from_fn(|i| to_f32(f64::from(corner[i]) - center[i] + padding))
                 };
                 Aabb::new(local(low, -padding).into(), local(high, padding).into())
             })
@@ -288,8 +288,7 @@ impl RayIndex {
         for axis in 0..3 {
             let (low, high) = sides[axis];
             let half_step = 0.5 * steps[axis];
-            #[expect(clippy::cast_possible_truncation, reason = "a rounding that callers allow for")]
-            let start = (f64::from(origin[axis]) + self.center[axis]) as f32;
+            let start = to_f32(f64::from(origin[axis]) + self.center[axis]);
             for child in 0..PARTS {
                 let (low, high) = (f32::from(low[child]), f32::from(high[child]));
                 centers[axis][child] = start + half_step * (low + high);
@@ -345,7 +344,7 @@ impl RayIndex {
     pub(crate) fn from_parts(parts: TreeParts, count: usize) -> Result<Self> {
         let TreeParts { nodes, order, around: [center, half_size] } = parts;
         let nodes: Vec<CwBvhNode> = nodes.iter().map(node_of_words).collect();
-        let total_aabb = Aabb::new(to_f32(half_size.map(|v| -v)).into(), to_f32(half_size).into());
+        let total_aabb = Aabb::new(half_size.map(|v| to_f32(-v)).into(), half_size.map(to_f32).into());
         let tree = CwBvh { nodes, primitive_indices: order, total_aabb, ..CwBvh::default() };
         let index = Self { tree, center, half_size, instructions: Instructions::detect() };
         if index.is_sound(count) { Ok(index) } else { Err(damaged_tree()) }
@@ -394,8 +393,8 @@ impl RayIndex {
         if !(start <= end) {
             return None;
         }
-        let origin = to_f32(std::array::from_fn(|i| local[i] + start * ray.direction[i]));
-        let ray = TreeRay::new(origin, to_f32(ray.direction), to_f32(room), tree_reach(end - start));
+        let origin = std::array::from_fn(|i| to_f32(local[i] + start * ray.direction[i]));
+        let ray = TreeRay::new(origin, ray.direction.map(to_f32), room.map(to_f32), tree_reach(end - start));
         Some(PreparedRay { ray, start })
     }
 }
@@ -439,15 +438,9 @@ struct PreparedRay {
     start: f64,
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "the padding of the boxes exceeds the rounding")]
-fn to_f32(v: [f64; 3]) -> [f32; 3] {
-    v.map(|v| v as f32)
-}
-
 /// Returns the reach of the tree, metres, that finds every box that holds something within `range`.
-#[expect(clippy::cast_possible_truncation, reason = "rounded up on purpose")]
 fn tree_reach(range: f64) -> f32 {
-    ((range + TREE_SLACK) as f32).next_up()
+    to_f32(range + TREE_SLACK).next_up()
 }
 
 #[cfg(test)]

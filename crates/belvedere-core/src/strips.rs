@@ -5,6 +5,7 @@
 //! balls block lines of sight that pulses saw.
 
 use belvedere_data::control::Control;
+use belvedere_data::vector::to_f32;
 use belvedere_data::{PointCloud, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -137,9 +138,7 @@ pub fn move_strips(cloud: &mut PointCloud, moved: &[StripOffset]) {
     let by_line: BTreeMap<u16, f64> = moved.iter().map(|strip| (strip.line, strip.up_m)).collect();
     for (p, line) in cloud.positions.iter_mut().zip(lines) {
         if let Some(up) = by_line.get(line) {
-            #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-            let z = (f64::from(p[2]) + up) as f32;
-            p[2] = z;
+            p[2] = to_f32(f64::from(p[2]) + up);
         }
     }
 }

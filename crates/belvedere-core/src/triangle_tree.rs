@@ -2,7 +2,7 @@
 
 use crate::ray_index::{END, Ray, RayIndex};
 use belvedere_data::Result;
-use belvedere_data::vector::sub;
+use belvedere_data::vector::{sub, to_f32};
 use smallvec::SmallVec;
 
 /// Widening of boxes and edges before rays are tested exactly, metres: more than f32 errs near a packet.
@@ -141,10 +141,9 @@ fn bounds(triangles: &[Corners]) -> Option<[[f64; 3]; 2]> {
 }
 
 /// The box around a triangle, rounded outward.
-#[expect(clippy::cast_possible_truncation, reason = "rounded outward right after")]
 fn bounding_box([a, b, c]: &Corners) -> [[f32; 3]; 2] {
-    let low = std::array::from_fn(|i| (a[i].min(b[i]).min(c[i]) as f32).next_down());
-    let high = std::array::from_fn(|i| (a[i].max(b[i]).max(c[i]) as f32).next_up());
+    let low = std::array::from_fn(|i| to_f32(a[i].min(b[i]).min(c[i])).next_down());
+    let high = std::array::from_fn(|i| to_f32(a[i].max(b[i]).max(c[i])).next_up());
     [low, high]
 }
 
@@ -194,11 +193,6 @@ impl RayAxes {
         let sum = u + v + w;
         (sum != 0.0).then(|| (u * a[2] + v * b[2] + w * c[2]) * scale_z / sum)
     }
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "what is rounded is far less than the margins")]
-fn to_f32(value: f64) -> f32 {
-    value as f32
 }
 
 /// A triangle as seen along rays, with edges that run counter-clockwise.

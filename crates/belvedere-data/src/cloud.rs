@@ -1,5 +1,6 @@
 //! Point clouds: f32 positions relative to an f64 origin, with the attributes a laser file carries as columns.
 
+use crate::vector::to_f32;
 use std::path::PathBuf;
 
 use crate::crs::Crs;
@@ -284,9 +285,8 @@ impl PointCloud {
 
 /// `coordinates − origin`, subtracted in f64.
 #[must_use]
-#[expect(clippy::cast_possible_truncation, reason = "f32 relative to a near origin is the agreed representation")]
 pub fn to_local(coordinates: [f64; 3], origin: [f64; 3]) -> [f32; 3] {
-    std::array::from_fn(|i| (coordinates[i] - origin[i]) as f32)
+    std::array::from_fn(|i| to_f32(coordinates[i] - origin[i]))
 }
 
 /// Middle of the bounding box of the finite `coordinates`, rounded to whole metres so that it prints short; zero if

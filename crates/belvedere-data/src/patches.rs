@@ -2,7 +2,7 @@
 
 use crate::model::{FARTHEST, is_near};
 use crate::polygon::PolygonIndex;
-use crate::vector::{cross, length, sub};
+use crate::vector::{cross, length, sub, to_f32};
 use crate::{Error, Parameter, Result};
 
 /// Kind of surface that a patch belongs to.
@@ -162,8 +162,7 @@ impl SurfacePatches {
                 continue;
             }
             for piece in pieces.iter().filter(|piece| !holds(piece) && area(piece) > MIN_AREA) {
-                #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-                left.push(piece.map(|corner| corner.map(|v| v as f32)), kind);
+                left.push(piece.map(|corner| corner.map(to_f32)), kind);
             }
         }
         left

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::picture::Picture;
 use belvedere_data::raster::Raster;
-use belvedere_data::vector::{sub, unit};
+use belvedere_data::vector::{sub, to_f32, unit};
 use belvedere_data::view::View;
 use belvedere_data::{Error, Result};
 
@@ -181,8 +181,7 @@ impl Canvas {
                         for column in pixels(mark.x, mark.half, width) {
                             let Some((depth, color)) = shade(mark, column, row) else { continue };
                             let at = (row - first_row) * width + column;
-                            #[expect(clippy::cast_possible_truncation, reason = "pictures compare depths in f32")]
-                            let depth = depth as f32;
+                            let depth = to_f32(depth);
                             if depth < depths[at] {
                                 depths[at] = depth;
                                 rgb[at * 3..at * 3 + 3].copy_from_slice(&color);

@@ -8,6 +8,7 @@ use crate::device::{Device, DeviceKind};
 use belvedere_core::blocking::SHELL_SHARE;
 use belvedere_core::depth::{BoundsParams, ItemBuffer};
 use belvedere_data::control::Control;
+use belvedere_data::vector::to_f32;
 use belvedere_data::view::{Projection, View};
 use belvedere_data::{Error, Result};
 use bytemuck::cast_slice;
@@ -362,15 +363,15 @@ fn view_bytes(picture: &DevicePicture<'_>, [top, rows]: PixelRows, balls: &BallR
     let view = picture.view;
     let scale = scale_of(view);
     let [near, far] = picture.limits;
-    let start = picture.starts.map(|start| single(start.clamp(-ENDLESS, ENDLESS)));
+    let start = picture.starts.map(|start| to_f32(start.clamp(-ENDLESS, ENDLESS)));
     let of_bounds =
-        [start[0].next_down(), start[1].next_up(), single(picture.shell.min(ENDLESS)).next_up(), single(SHELL_SHARE)];
+        [start[0].next_down(), start[1].next_up(), to_f32(picture.shell.min(ENDLESS)).next_up(), to_f32(SHELL_SHARE)];
     let middle = view.middle();
     let [width, _] = view.size_px;
     let tiles = tiles_before([width, rows]);
-    let of_view = [scale, 1.0 / scale, near, far.min(ENDLESS)].map(single);
+    let of_view = [scale, 1.0 / scale, near, far.min(ENDLESS)].map(to_f32);
     let of_band = [balls.count, width, rows, top].map(whole);
-    let of_middle = [middle[0], middle[1] - top as f64].map(single);
+    let of_middle = [middle[0], middle[1] - top as f64].map(to_f32);
     let of_balls = [whole(balls.first), u32::from(balls.is_last)];
     let words = (of_view.map(f32::to_bits).into_iter())
         .chain(of_band)
@@ -379,11 +380,6 @@ fn view_bytes(picture: &DevicePicture<'_>, [top, rows]: PixelRows, balls: &BallR
         .chain(of_bounds.map(f32::to_bits))
         .chain(tiles.into_iter().take(LEVELS as usize).map(whole));
     words.flat_map(u32::to_le_bytes).collect()
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "as the CPU does it, or with room")]
-fn single(v: f64) -> f32 {
-    v as f32
 }
 
 /// A count that is known to be small: all are bounded by the size of buffers.

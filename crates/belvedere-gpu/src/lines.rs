@@ -6,7 +6,7 @@ use belvedere_core::query::{Ball, BallTree, Viewers};
 use belvedere_core::ray_index::{NODE_WORDS, RayIndex};
 use belvedere_data::control::Control;
 use belvedere_data::model::FARTHEST;
-use belvedere_data::vector::dot;
+use belvedere_data::vector::{dot, to_f32};
 use belvedere_data::{Error, Result};
 use bytemuck::cast_slice;
 use std::borrow::Cow;
@@ -288,14 +288,14 @@ fn scene_bytes(center: [f64; 3], size: f64, shell: f64, bias: f64) -> Vec<u8> {
         rounded[0],
         rounded[1],
         rounded[2],
-        single(shell),
+        to_f32(shell),
         rest[0],
         rest[1],
         rest[2],
-        single(WIDENING * (farthest + size)),
-        single(bias).next_down(),
-        single(bias).next_up(),
-        single(farthest),
+        to_f32(WIDENING * (farthest + size)),
+        to_f32(bias).next_down(),
+        to_f32(bias).next_up(),
+        to_f32(farthest),
     ];
     numbers.into_iter().flat_map(f32::to_le_bytes).collect()
 }
@@ -324,13 +324,8 @@ fn viewer_bytes(at: [f64; 3], kind: u32) -> [u8; VIEWER_BYTES] {
 
 /// A place as the sum of two in single precision: rounded, and the remainder.
 fn split(place: [f64; 3]) -> ([f32; 3], [f32; 3]) {
-    let rounded = place.map(single);
-    (rounded, std::array::from_fn(|axis| single(place[axis] - f64::from(rounded[axis]))))
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "the shader leaves room for what is rounded, or has it as well")]
-fn single(v: f64) -> f32 {
-    v as f32
+    let rounded = place.map(to_f32);
+    (rounded, std::array::from_fn(|axis| to_f32(place[axis] - f64::from(rounded[axis]))))
 }
 
 /// Targets as the shader reads them; the lines of sight of one that is not finite stay open.

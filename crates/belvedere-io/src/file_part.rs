@@ -11,6 +11,7 @@ use belvedere_data::cloud::Attributes;
 use belvedere_data::contradiction::FoundContradiction;
 use belvedere_data::crs::evidence::Comparison;
 use belvedere_data::crs::{Crs, CrsKind};
+use belvedere_data::vector::to_f32;
 
 /// GPS times are of no use to order pulses when a file of more points than this has only [`FEW_TIMES`] of them.
 const MANY_POINTS: usize = 1000;
@@ -352,16 +353,10 @@ fn make_unit(normals: &mut [[f32; 3]]) -> usize {
             *n = [0.0; 3];
             absent += 1;
         } else if (length - 1.0).abs() > 1e-3 {
-            *n = n.map(|c| narrow(f64::from(c) / length));
+            *n = n.map(|c| to_f32(f64::from(c) / length));
         }
     }
     absent
-}
-
-/// f64 to f32.
-#[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is meant")]
-pub(super) fn narrow(value: f64) -> f32 {
-    value as f32
 }
 
 /// A number of a file as u8: rounded, clamped to the range, zero for NaN.

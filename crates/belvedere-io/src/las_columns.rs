@@ -2,8 +2,9 @@
 
 use ::las::PointData;
 use ::las::point::Format;
+use belvedere_data::vector::to_f32;
 
-use super::file_part::{Coordinates, narrow};
+use super::file_part::Coordinates;
 use super::las_extra::{ExtraField, ExtraNormals};
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 
@@ -120,7 +121,7 @@ impl LasColumns {
             }
             if let (Some(column), Some([x, y, z])) = (normals, extra_normals) {
                 scope.spawn(move |_| {
-                    let value = |field: ExtraField, record: &[u8]| field.value(record).map_or(0.0, narrow);
+                    let value = |field: ExtraField, record: &[u8]| field.value(record).map_or(0.0, to_f32);
                     column.extend(records().map(|r| [value(x, r), value(y, r), value(z, r)]));
                 });
             }

@@ -1,8 +1,8 @@
 //! Results at points: the extra bytes of LAS and LAZ files that Belvedere wrote.
 
 use ::las::point::Format;
+use belvedere_data::vector::to_f32;
 
-use super::file_part::narrow;
 use super::las::LasFile;
 use super::las_extra::{ExtraField, described};
 use super::las_header::LasHeader;
@@ -50,7 +50,7 @@ pub fn read_point_results<'a>(source: impl Into<Source<'a>>) -> Result<PointResu
         places.extend(batch.x().zip(batch.y()).zip(batch.z()).map(|((x, y), z)| [x, y, z]));
         for record in batch.raw_bytes().chunks_exact(batch.record_len().max(1)) {
             for ((_, field), values) in fields.iter().zip(&mut values) {
-                values.push(field.value(record).map_or(f32::NAN, narrow));
+                values.push(field.value(record).map_or(f32::NAN, to_f32));
             }
         }
     }

@@ -1,8 +1,9 @@
 //! The folder layout of masbcpp: `coords.npy`, and `normals.npy` if there are normals.
 
+use belvedere_data::vector::to_f32;
 use std::path::Path;
 
-use super::file_part::{FilePart, narrow};
+use super::file_part::FilePart;
 use super::npy;
 use super::source::Source;
 use belvedere_data::{Error, Result};
@@ -23,7 +24,7 @@ pub(super) fn read(folder: &Path) -> Result<FilePart> {
                 format!("holds {} normals for {} points of {COORDINATES}", normals.rows.len(), part.coordinates.len());
             return Err(Error::malformed(&path, what));
         }
-        part.attributes.normals = Some(normals.rows.into_iter().map(|n| n.map(narrow)).collect());
+        part.attributes.normals = Some(normals.rows.into_iter().map(|n| n.map(to_f32)).collect());
     }
     Ok(part)
 }

@@ -1,5 +1,6 @@
 //! PCD (point cloud library) files: ascii, binary and binary_compressed.
 
+use belvedere_data::vector::to_f32;
 use std::io::{BufRead, Read};
 use std::path::Path;
 
@@ -235,7 +236,7 @@ fn ascii_row(line: &str, header: &PcdHeader) -> Option<Row> {
         for _ in 0..field.count {
             let value: f64 = words.next()?.parse().ok()?;
             if field.is_packed_color() {
-                let bits = if field.kind == 'F' { super::file_part::narrow(value).to_bits() } else { to_bits(value) };
+                let bits = if field.kind == 'F' { to_f32(value).to_bits() } else { to_bits(value) };
                 let [blue, green, red, _] = bits.to_le_bytes();
                 put_color(&mut row, [red, green, blue]);
             } else if let (Some(role), 1) = (field.role, field.count) {

@@ -1,9 +1,10 @@
 //! Points that come one by one with named numbers, as in text, PLY, PCD and E57 files.
 
-use super::file_part::{Coordinates, FilePart, narrow, to_u8, to_u16};
+use super::file_part::{Coordinates, FilePart, to_u8, to_u16};
 use super::read_options::RowNumbers;
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 use belvedere_data::contradiction::COLUMN_TWICE;
+use belvedere_data::vector::to_f32;
 
 /// Meaning of a number of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -220,19 +221,19 @@ impl Rows {
         }
         self.coordinates.push(row.three(POSITION));
         if self.has(&NORMAL) {
-            self.normals.push(row.three(NORMAL).map(narrow));
+            self.normals.push(row.three(NORMAL).map(to_f32));
         }
         if self.has(&COLOR) {
-            self.colors.push(row.three(COLOR).map(narrow));
+            self.colors.push(row.three(COLOR).map(to_f32));
         }
         if self.has(&[Role::Intensity]) {
-            self.intensities.push(narrow(row.get(Role::Intensity)));
+            self.intensities.push(to_f32(row.get(Role::Intensity)));
         }
         if self.has(&[Role::GpsTime]) {
             self.gps_times.push(row.get(Role::GpsTime));
         }
         if self.has(&[Role::ScanAngle]) {
-            self.scan_angles.push(narrow(row.get(Role::ScanAngle).to_radians()));
+            self.scan_angles.push(to_f32(row.get(Role::ScanAngle).to_radians()));
         }
         if self.has(&[Role::SourceId]) {
             self.source_ids.push(to_u16(row.get(Role::SourceId)));

@@ -6,6 +6,7 @@
 
 use super::read_options::UpAxis;
 use belvedere_data::sky_region::SkyRegion;
+use belvedere_data::vector::to_f32;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Maximum number of columns around, and of rows up to the zenith and down, before cells are put together in blocks:
@@ -155,9 +156,7 @@ impl ScanGrid {
     fn far_range(&self) -> Option<f32> {
         let mut ranges: Vec<f64> = self.sample.iter().map(|found| found.range).collect();
         let place = at_share(1.0 - FARTHER_SHARE, ranges.len())?;
-        #[expect(clippy::cast_possible_truncation, reason = "a range")]
-        let range = *ranges.select_nth_unstable_by(place, f64::total_cmp).1 as f32;
-        Some(range)
+        Some(to_f32(*ranges.select_nth_unstable_by(place, f64::total_cmp).1))
     }
 }
 
@@ -365,8 +364,7 @@ impl Skies {
         regions.retain(|region| number(region) != u16::MAX && units[0] == units[2]);
         for region in &mut regions {
             region.scanner = number(region);
-            #[expect(clippy::cast_possible_truncation, reason = "a range")]
-            let range = (f64::from(region.range) * units[0]) as f32;
+            let range = to_f32(f64::from(region.range) * units[0]);
             region.range = range;
         }
         let ranges = || regions.iter().map(|region| region.range);

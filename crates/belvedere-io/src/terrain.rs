@@ -5,6 +5,7 @@ use crate::source::Source;
 use crate::terrain_in_degrees::{is_like_wgs_84, projected};
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::raster::Raster;
+use belvedere_data::vector::to_f32;
 use belvedere_data::{ElevationGrid, Error, Frame, Result};
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -47,8 +48,7 @@ pub fn read_terrain<'a>(source: impl Into<Source<'a>>, frame: &Frame) -> Result<
     let system = if place.crs.kind == CrsKind::Unknown { &frame.crs } else { &place.crs };
     let [unit, _, height_unit] = system.metres_per_unit_xyz();
     let local = |height: &f32| f64::from(*height) * height_unit - frame.origin[2];
-    #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-    let heights = raster.values.values().iter().map(|height| local(height) as f32).collect();
+    let heights = raster.values.values().iter().map(|height| to_f32(local(height))).collect();
     let heights = Raster::from_values(raster.values.width(), raster.values.height(), heights)?;
     let cell = [east * unit, -down * unit];
     let [x, y] = place.upper_left;

@@ -2,6 +2,7 @@
 
 use crate::geotiff::Georeference;
 use belvedere_data::raster::Raster;
+use belvedere_data::vector::to_f32;
 use belvedere_data::{ElevationGrid, Error, Frame, Result};
 use std::path::Path;
 
@@ -78,9 +79,7 @@ pub(crate) fn projected(
             let [a, b, c, d] = corners.map(|corner| corner[axis]);
             (1.0 - t) * ((1.0 - s) * a + s * b) + t * ((1.0 - s) * c + s * d)
         });
-        #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-        let local = (bilinear(raster, at) - frame.origin[2]) as f32;
-        local
+        to_f32(bilinear(raster, at) - frame.origin[2])
     };
     let heights = Raster::from_values(width, height, (0..width * height).map(value).collect())?;
     ElevationGrid::new(heights, [low[0], high[1]], cell).map_err(|error| Error::malformed(name, error.to_string()))

@@ -4,6 +4,7 @@ use crate::colors::ramp;
 use crate::output::Output;
 use belvedere_data::crs::Crs;
 use belvedere_data::crs::text::comment_lines;
+use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Mesh, Parameter, Result};
 
 /// Colour of faces without a value.
@@ -54,8 +55,7 @@ pub fn write_mesh_values<'a>(
                     write(&(corner[axis] / metres_per_unit[axis]).to_le_bytes())?;
                 }
                 write(&color)?;
-                #[expect(clippy::cast_possible_truncation, reason = "a share needs no more digits")]
-                write(&(value as f32).to_le_bytes())?;
+                write(&to_f32(value).to_le_bytes())?;
             }
         }
         for first in (0..).step_by(3).take(faces.len()) {

@@ -13,6 +13,7 @@ use belvedere::apps::ask::{self, GivenWindow, GivenWindows, SharedObject};
 use belvedere::apps::targets::Window;
 use belvedere::apps::window_views::{SeenKind, named_columns};
 use belvedere::query::UnprovenAs;
+use belvedere::vector::to_f32;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -99,8 +100,7 @@ impl PyScene {
         let scene = Arc::clone(&self.0);
         let answers = run(py, progress, move |control| ask::ask(&scene, &question, &ask::Places::Scene, control))?;
         let found = answers.found;
-        #[expect(clippy::cast_possible_truncation, reason = "angles in degrees and square metres")]
-        let floats = |values: Vec<f64>| to_1d(py, values.into_iter().map(|v| v as f32).collect()).into_any();
+        let floats = |values: Vec<f64>| to_1d(py, values.into_iter().map(to_f32).collect()).into_any();
         let of = |value: &dyn Fn(&Window) -> f64| floats(found.windows.iter().map(value).collect());
         let mut columns: Vec<PyColumn<'py>> = vec![
             ("azimuth".to_owned(), "azimuth, degrees", floats(found.azimuths_deg())),

@@ -12,6 +12,7 @@ use belvedere_data::Result;
 use belvedere_data::contradiction::SIGHT_LEAVES_ROOM;
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
+use belvedere_data::vector::to_f32;
 use serde::{Deserialize, Serialize};
 
 /// The space that observers see, in numbers.
@@ -147,8 +148,7 @@ impl IsovistsResults {
         }
         let values = |name: &str| -> Vec<f32> {
             let column = columns.iter().find(|column| column.name == name);
-            #[expect(clippy::cast_possible_truncation, reason = "for people")]
-            column.map_or_else(Vec::new, |column| column.values.iter().map(|&v| v as f32).collect())
+            column.map_or_else(Vec::new, |column| column.values.iter().map(|&v| to_f32(v)).collect())
         };
         let count = self.isovists.len();
         let who = if count == 1 { "1 observer".to_owned() } else { format!("{count} observers") };

@@ -16,6 +16,7 @@ use belvedere_core::ground::{Ground, GroundPoints, MapGrid};
 use belvedere_core::query::{BackFaces, EarthParams, MedialScene, MeshTargetParams, SurfacePieces, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
+use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Mesh, Parameter, PointCloud, Result};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -300,8 +301,7 @@ impl Ask for LandmarkQuestion {
 /// Every number of every view; NaN for observers that cannot look.
 fn measures_of(views: &[LandmarkView]) -> Vec<Measure> {
     let measure = |of: &crate::landmark::LandmarkMeasure| {
-        #[expect(clippy::cast_possible_truncation, reason = "measures are f32")]
-        let values = views.iter().map(|view| of.of(view) as f32).collect();
+        let values = views.iter().map(|view| to_f32(of.of(view))).collect();
         Measure::new(of.name, values).with_description(of.description).with_decimals(of.decimals)
     };
     measures(views).iter().map(measure).collect()

@@ -11,6 +11,7 @@ use belvedere_core::query::{SurfacePieces, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::report::rounded;
+use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -168,9 +169,7 @@ impl Ask for ProtectedViewQuestion {
         self.sum_up(&found, &heights, grid.cell, context);
         let mut tops = found.limits;
         for top in tops.values_mut() {
-            #[expect(clippy::cast_possible_truncation, reason = "a height")]
-            let of_file = scene.frame().file_from_local([0.0, 0.0, f64::from(*top)])[2] as f32;
-            *top = of_file;
+            *top = to_f32(scene.frame().file_from_local([0.0, 0.0, f64::from(*top)])[2]);
         }
         Ok(Answers::new(ProtectedViewResults { heights, tops, ground, eyes }, Vec::new()))
     }

@@ -14,6 +14,7 @@ use crate::tree_light::TreeLight;
 use belvedere_core::query::UnprovenAs;
 use belvedere_data::control::Control;
 use belvedere_data::report::percent;
+use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 
@@ -211,8 +212,7 @@ pub(super) fn summarise(suns: &[NamedSun], measures: &[Measure], places: &str, c
             }
         }
         _ => {
-            #[expect(clippy::cast_possible_truncation, reason = "for people")]
-            let shares: Vec<f32> = measures.iter().map(|measure| share(measure) as f32).collect();
+            let shares: Vec<f32> = measures.iter().map(|measure| to_f32(share(measure))).collect();
             context.headline(format!("{} suns on {places}: lit {}", suns.len(), spread(&shares, 1, "%")));
         }
     }

@@ -158,6 +158,7 @@ fn common_offset(mut rises: Vec<f64>) -> Option<f64> {
 mod tests {
     use super::*;
     use belvedere_data::raster::Raster;
+    use belvedere_data::vector::to_f32;
 
     /// Terrain that rises by 1 m in 10 m from a level, in units of so many metres; and places on it, with as many on
     /// roofs.
@@ -181,10 +182,9 @@ mod tests {
 
     #[test]
     fn ground_of_another_level_is_said() {
-        #[expect(clippy::cast_possible_truncation, reason = "test places")]
         let ground = |rise: f64| -> Vec<[f32; 3]> {
             let at = |i: i32| [f64::from(i % 100), f64::from(i / 100)];
-            (0..10_000).map(|i| [at(i)[0] as f32, at(i)[1] as f32, (0.05 * at(i)[0] + rise) as f32]).collect()
+            (0..10_000).map(|i| [to_f32(at(i)[0]), to_f32(at(i)[1]), to_f32(0.05 * at(i)[0] + rise)]).collect()
         };
         let place = |i: i32| {
             let [x, y] = [f64::from(i % 50) * 2.0, f64::from(i / 50) * 2.0];

@@ -2,6 +2,7 @@
 
 use super::irradiation::Irradiation;
 use crate::targets::Measure;
+use belvedere_data::vector::to_f32;
 
 /// Columns of the months, January first.
 pub const MONTH_COLUMNS: [&str; 12] = [
@@ -32,9 +33,8 @@ const SHARE_DECIMALS: usize = 4;
 pub fn irradiation_measures(sums: &[Irradiation], group_count: usize) -> Vec<Measure> {
     let group_count = group_count.max(1);
     let whole: Vec<Irradiation> = sums.chunks(group_count).map(Irradiation::sum).collect();
-    #[expect(clippy::cast_possible_truncation, reason = "energies for people")]
     let column =
-        |value: &dyn Fn(&Irradiation) -> f64| -> Vec<f32> { whole.iter().map(|sum| value(sum) as f32).collect() };
+        |value: &dyn Fn(&Irradiation) -> f64| -> Vec<f32> { whole.iter().map(|sum| to_f32(value(sum))).collect() };
     let energy = |name: &str, description, values| {
         Measure::new(name, values).with_description(description).with_decimals(ENERGY_DECIMALS)
     };
@@ -49,8 +49,7 @@ pub fn irradiation_measures(sums: &[Irradiation], group_count: usize) -> Vec<Mea
     ];
     if group_count == MONTH_COLUMNS.len() {
         for (month, name) in MONTH_COLUMNS.into_iter().enumerate() {
-            #[expect(clippy::cast_possible_truncation, reason = "energies for people")]
-            let values = sums.iter().skip(month).step_by(group_count).map(|sum| sum.total() as f32).collect();
+            let values = sums.iter().skip(month).step_by(group_count).map(|sum| to_f32(sum.total())).collect();
             measures.push(energy(name, "energy of a month, kWh/m2", values));
         }
     }

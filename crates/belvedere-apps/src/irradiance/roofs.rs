@@ -7,12 +7,12 @@ use super::strings::{PlaneIrradiation, plane_irradiation};
 use crate::roof_planes::RoofPlane;
 use crate::rows::{BLOCK_BITS, Obstacles, RowBlock, fold_blocks};
 use crate::sum_errors::{Intervals, SumError, SumKind, class_of};
-use crate::targets::{TARGET_LIFT, to_f32};
+use crate::targets::TARGET_LIFT;
 use belvedere_core::query::MedialScene;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
-use belvedere_data::vector::{length, sub};
+use belvedere_data::vector::{length, sub, to_f32};
 use serde::Serialize;
 
 /// Energy of a plane over a period.
@@ -88,7 +88,7 @@ impl RoofsReport {
 /// A place above a roof at the height of its panels, local metres.
 #[must_use]
 pub fn above_roof(place: [f64; 3], normal: [f64; 3]) -> [f32; 3] {
-    to_f32([0, 1, 2].map(|i| place[i] + TARGET_LIFT * normal[i]))
+    [0, 1, 2].map(|i| to_f32(place[i] + TARGET_LIFT * normal[i]))
 }
 
 /// Returns the place at which the horizon of each of `planes` is measured, and true if obstacles of `scene` are above

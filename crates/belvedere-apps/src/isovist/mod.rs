@@ -12,6 +12,7 @@ pub use plan::PlanIsovist;
 use belvedere_core::query::MedialScene;
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
+use belvedere_data::vector::to_f32;
 use belvedere_data::view::to_sun;
 use belvedere_data::{Error, Parameter, Result};
 use leaks::{ClosedRoomParams, ClosedSurface, RangeGrid};
@@ -235,9 +236,8 @@ pub fn isovist_of(
     })
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "pictures and arrays of ranges are f32")]
 fn in_f32(ranges: &[Option<f64>]) -> Vec<f32> {
-    ranges.iter().map(|range| range.map_or(f32::INFINITY, |range| range as f32)).collect()
+    ranges.iter().map(|range| range.map_or(f32::INFINITY, to_f32)).collect()
 }
 
 /// Unit vector through the middle of a cell of the panorama.

@@ -6,7 +6,7 @@ use belvedere_core::neighbors::NeighborIndex;
 use belvedere_core::normals::Normals;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
-use belvedere_data::vector::{dot, sub};
+use belvedere_data::vector::{dot, sub, to_f32};
 
 /// Points that a plane has at least: fewer make one of anything.
 const MIN_POINTS: usize = 12;
@@ -64,8 +64,7 @@ fn absorb(
     owner: &mut [u32],
     regions: &mut [(Vec<u32>, PlaneFit)],
 ) {
-    #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
-    let reach = params.reach as f32;
+    let reach = to_f32(params.reach);
     let mut is_member = vec![false; regions.len()];
     let mut joined: Vec<(u32, u32)> = Vec::new();
     for (row, point) in (0_u32..).zip(points) {
@@ -148,8 +147,7 @@ impl Region<'_> {
     /// it.
     fn grow(&mut self, seed: u32, start: PlaneFit) -> (Vec<u32>, Option<PlaneFit>, f64) {
         let min_cosine = self.params.angle.cos();
-        #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
-        let reach = self.params.reach as f32;
+        let reach = to_f32(self.params.reach);
         let mut plane = start;
         let mut rows = vec![seed];
         self.owner[seed as usize] = self.number;

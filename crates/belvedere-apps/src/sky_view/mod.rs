@@ -9,7 +9,7 @@ use crate::sum_errors::{Intervals, Outlines, SumKind, expected_measures};
 use crate::targets::{Measure, Targets};
 use belvedere_core::query::VisibilityMatrix;
 use belvedere_data::control::Control;
-use belvedere_data::vector::dot;
+use belvedere_data::vector::{dot, to_f32};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -148,7 +148,6 @@ fn sky_shares(
             [seen[0] / PI, seen[1] / TAU]
         })
         .collect();
-    #[expect(clippy::cast_possible_truncation, reason = "shares of one")]
-    let column = |i: usize| shares.iter().map(|share| share[i] as f32).collect();
+    let column = |i: usize| shares.iter().map(|share| to_f32(share[i])).collect();
     Ok(SkyView { factors: column(0), openness: column(1), classes: Vec::new() })
 }

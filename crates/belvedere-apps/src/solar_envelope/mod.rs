@@ -23,7 +23,7 @@ use belvedere_core::ground::{Ground, MapGrid};
 use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
-use belvedere_data::vector::{dot, length};
+use belvedere_data::vector::{dot, length, to_f32};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -320,9 +320,8 @@ impl SolarEnvelope {
     fn raster(&self, value: impl Fn(&EnvelopeColumn) -> f64) -> Raster<f32> {
         let mut raster = Raster::filled(self.grid.width, self.grid.height, f32::NAN);
         for column in &self.columns {
-            #[expect(clippy::cast_possible_truncation, reason = "a height in metres")]
             if let Some(cell) = raster.values_mut().get_mut(column.footprint.cell) {
-                *cell = value(column) as f32;
+                *cell = to_f32(value(column));
             }
         }
         raster

@@ -3,6 +3,7 @@
 use crate::targets::TARGET_LIFT;
 use belvedere_core::ground::Ground;
 use belvedere_core::query::SurfacePieces;
+use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Parameter, Result};
 
 /// Maximum number of pieces of lines: every sun sweeps each over the parcel.
@@ -26,7 +27,7 @@ impl ProtectedPiece {
     /// A point.
     #[must_use]
     pub fn point(place: [f64; 3], source: u32) -> Self {
-        let sample = single([place[0], place[1], place[2] + TARGET_LIFT]);
+        let sample = [place[0], place[1], place[2] + TARGET_LIFT].map(to_f32);
         Self { corners: vec![place], normal: None, sample, source }
     }
 }
@@ -77,7 +78,7 @@ pub fn protected_line(
                     // off the ground, as other targets of the sun
                     middle[2] += TARGET_LIFT;
                     let corners = vec![from, to];
-                    pieces.push(ProtectedPiece { corners, normal: None, sample: single(middle), source });
+                    pieces.push(ProtectedPiece { corners, normal: None, sample: middle.map(to_f32), source });
                 }
                 _ => unknown_count += 1,
             }
@@ -111,9 +112,4 @@ pub fn protected_faces(surface: &SurfacePieces, lift: f64) -> Vec<ProtectedPiece
         source: piece.face,
     };
     surface.pieces.iter().map(of_piece).collect()
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-fn single(place: [f64; 3]) -> [f32; 3] {
-    place.map(|v| v as f32)
 }

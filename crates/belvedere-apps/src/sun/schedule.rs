@@ -1,7 +1,7 @@
 //! Directions that represent the suns of many days: the cost grows with the directions, not with the instants.
 
 use super::{Date, SunDay, declination};
-use belvedere_data::vector::{dot, unit};
+use belvedere_data::vector::{dot, to_f32, unit};
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -221,14 +221,13 @@ impl SunSchedule {
 }
 
 fn of_day(day: &SunDay) -> DayOfLight {
-    #[expect(clippy::cast_possible_truncation, reason = "hours of a day: f32 holds them to a hundredth of a second")]
     let steps = day
         .steps
         .iter()
         .enumerate()
         .map(|(i, step)| LightStep {
-            start: day.clock_hours(step.start) as f32,
-            hours: ((step.end - step.start) / 3600.0) as f32,
+            start: to_f32(day.clock_hours(step.start)),
+            hours: to_f32((step.end - step.start) / 3600.0),
             direction: 0,
             continues: i > 0 && step.start - day.steps[i - 1].end < 1.0,
         })

@@ -5,7 +5,7 @@ use super::{CHUNK, ROUNDING, SunHours, SunHoursParams, sun_hours};
 use crate::rows::{LineLight, RowBlock};
 use crate::sun::SunSchedule;
 use belvedere_core::query::VisibilityMatrix;
-use belvedere_data::vector::dot;
+use belvedere_data::vector::{dot, to_f32};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 
@@ -67,8 +67,7 @@ pub fn sun_hours_through_crowns(
     let params = SunHoursParams { first_direction: 0, ..*params };
     let mut hours = sun_hours(&free, &by_factor.schedule, normals, &params)?;
     let (day_count, possible) = (schedule.days.len().max(1) as f64, schedule.possible_hours());
-    #[expect(clippy::cast_possible_truncation, reason = "hours of a day and shares of one")]
-    let column = |of: &dyn Fn(&CrownSum) -> f64| sums.iter().map(|sum| of(sum) as f32).collect();
+    let column = |of: &dyn Fn(&CrownSum) -> f64| sums.iter().map(|sum| to_f32(of(sum))).collect();
     hours.hours = column(&|sum| sum.total / day_count);
     hours.share = column(&|sum| if possible > 0.0 { (sum.total / possible).min(1.0) } else { f64::NAN });
     hours.min = column(&|sum| sum.min);

@@ -11,7 +11,7 @@ pub use rules::{RuleDays, SunRule};
 
 use crate::sun::SunSchedule;
 use belvedere_core::query::VisibilityMatrix;
-use belvedere_data::vector::dot;
+use belvedere_data::vector::{dot, to_f32};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use stretches::{DayStretch, Lit, runs_of};
@@ -125,8 +125,7 @@ pub fn sun_hours(
             },
         )
         .collect();
-    #[expect(clippy::cast_possible_truncation, reason = "hours of a day and shares of one")]
-    let column = |of: &dyn Fn(&TargetSum) -> f64| sums.iter().map(|sum| of(sum) as f32).collect();
+    let column = |of: &dyn Fn(&TargetSum) -> f64| sums.iter().map(|sum| to_f32(of(sum))).collect();
     let if_lit = |sum: &TargetSum, value: f64| if sum.total > 0.0 { value } else { f64::NAN };
     Ok(SunHours {
         hours: column(&|sum| sum.total / day_count),

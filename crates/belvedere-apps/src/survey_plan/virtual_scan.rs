@@ -4,7 +4,7 @@ use super::{STATION_HEIGHT, ScannerParams};
 use belvedere_core::ground::Ground;
 use belvedere_core::pulses::FreeSegmentParams;
 use belvedere_core::query::{MedialScene, Proof};
-use belvedere_data::vector::{cross, dot, length, sub, unit};
+use belvedere_data::vector::{cross, dot, length, sub, to_f32, unit};
 use belvedere_data::view::panorama_direction;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI, TAU};
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -82,8 +82,7 @@ impl<'a> SeenCells<'a> {
 
     /// Returns the distance of a path of `range` metres at which its unseen length exceeds each level.
     fn limits(&self, eye: [f64; 3], direction: [f64; 3], range: f64) -> [f32; LEVELS.len()] {
-        #[expect(clippy::cast_possible_truncation, reason = "a range in metres")]
-        let mut limits = [range as f32; LEVELS.len()];
+        let mut limits = [to_f32(range); LEVELS.len()];
         let (mut unseen, mut level) = (0.0, 0);
         let steps = (0..).map(|step| (f64::from(step) + 0.5) * self.side).take_while(|at| *at < range);
         for at in steps {
@@ -91,9 +90,7 @@ impl<'a> SeenCells<'a> {
                 unseen += self.side;
             }
             while unseen > LEVELS[level] {
-                #[expect(clippy::cast_possible_truncation, reason = "a range in metres")]
-                let limit = (at - self.side / 2.0) as f32;
-                limits[level] = limit;
+                limits[level] = to_f32(at - self.side / 2.0);
                 level += 1;
             }
         }
@@ -212,9 +209,7 @@ impl<'a> VirtualScan<'a> {
             let direction = panorama_direction(COLUMNS, [column, row]);
             let seen = self.space.scene.seen_along(self.eye, direction, self.space.params.max_range);
             let range = seen.map(|(_, range)| range).or_else(|| self.beyond_the_model(direction));
-            #[expect(clippy::cast_possible_truncation, reason = "a range in metres")]
-            let range = range.unwrap_or(f64::INFINITY) as f32;
-            self.ranges[number] = range;
+            self.ranges[number] = to_f32(range.unwrap_or(f64::INFINITY));
         }
         self.ranges[number]
     }

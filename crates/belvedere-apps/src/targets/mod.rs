@@ -32,6 +32,7 @@ use belvedere_core::ground::Ground;
 use belvedere_core::query::{Coverage, MedialScene, SurfacePieces};
 use belvedere_data::control::Control;
 use belvedere_data::frame::Frame;
+use belvedere_data::vector::to_f32;
 use belvedere_data::{PointCloud, Result};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -83,7 +84,7 @@ impl Targets {
     /// Places in local metres, level; one that is not finite is left out.
     #[must_use]
     pub fn of_places(places: &[[f64; 3]], frame: Frame) -> Self {
-        Self::at(frame, places.iter().map(|&place| to_f32(place)).collect(), None, TargetLayout::Points)
+        Self::at(frame, places.iter().map(|place| place.map(to_f32)).collect(), None, TargetLayout::Points)
     }
 
     /// Targets at positions, (M, 3) local metres, NaN where one is left out, with normals or level.
@@ -220,12 +221,6 @@ pub fn weighted_mean(values: &[f64], weights: &[f64]) -> Option<f64> {
     let known = || values.iter().zip(weights).filter(|(value, _)| value.is_finite());
     let whole: f64 = known().map(|(_, weight)| weight).sum();
     (whole > 0.0).then(|| known().map(|(value, weight)| value * weight).sum::<f64>() / whole)
-}
-
-/// A local position as targets hold it.
-#[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-pub(crate) fn to_f32(place: [f64; 3]) -> [f32; 3] {
-    place.map(|v| v as f32)
 }
 
 #[cfg(test)]

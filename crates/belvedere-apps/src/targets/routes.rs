@@ -1,8 +1,9 @@
 //! Places along routes.
 
-use super::{TargetLayout, Targets, to_f32};
+use super::{TargetLayout, Targets};
 use crate::exposure::route_lengths;
 use belvedere_data::frame::Frame;
+use belvedere_data::vector::to_f32;
 
 /// Places along a line, in its order.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,7 +44,7 @@ impl Targets {
             groups.push(positions.len()..positions.len() + route.places.len());
             for (place, length) in route.places.iter().zip(route_lengths(&route.places)) {
                 weights.push(if place[2].is_finite() { length } else { 0.0 });
-                positions.push(to_f32(*place));
+                positions.push(place.map(to_f32));
             }
         }
         Self { weights, groups, ..Self::at(frame, positions, None, TargetLayout::Points) }

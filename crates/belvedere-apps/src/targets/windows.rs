@@ -1,9 +1,10 @@
 //! Windows as targets: planes with a size, or the faces of a mesh.
 
-use super::{Facing, MeshParams, TARGET_LIFT, TargetLayout, Targets, to_f32};
+use super::{Facing, MeshParams, TARGET_LIFT, TargetLayout, Targets};
 use crate::exposure::{plane_normal, window_places};
 use belvedere_core::query::SurfacePiece;
 use belvedere_data::frame::Frame;
+use belvedere_data::vector::to_f32;
 use belvedere_data::{Mesh, Result};
 
 /// A window as studies know it.
@@ -64,8 +65,8 @@ impl Targets {
             let (places, normal) = window.places().map_err(|error| (number, error))?;
             groups.push(positions.len()..positions.len() + places.len());
             weights.extend(places.iter().map(|_| 1.0 / places.len() as f64));
-            normals.extend(places.iter().map(|_| to_f32(normal)));
-            positions.extend(places.iter().map(|&place| to_f32(place)));
+            normals.extend(places.iter().map(|_| normal.map(to_f32)));
+            positions.extend(places.iter().map(|place| place.map(to_f32)));
         }
         Ok(Self { weights, groups, ..Self::at(frame, positions, Some(normals), TargetLayout::Points) })
     }

@@ -15,6 +15,7 @@ use belvedere_core::query::target_tree::TargetTree;
 use belvedere_core::query::{Answer, EarthParams, MedialScene, UnprovenAs, Viewer};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
+use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
@@ -164,9 +165,7 @@ pub fn cell_targets(ground: &Ground, height: f64) -> Vec<[f32; 3]> {
     let grid = ground.grid;
     let target = |(cell, &ground): (usize, &f32)| {
         let [x, y] = grid.center(cell % grid.width.max(1), cell / grid.width.max(1));
-        #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-        let target = [x as f32, y as f32, (f64::from(ground) + height) as f32];
-        target
+        [to_f32(x), to_f32(y), to_f32(f64::from(ground) + height)]
     };
     ground.heights.values().par_iter().enumerate().with_min_len(CHUNK).map(target).collect()
 }
@@ -431,8 +430,7 @@ pub fn min_visible_heights(
             let lowest = [foot[0], foot[1], foot[2] + GROUND_TOLERANCE];
             let seen = scene.min_visible_height(observer.eye, lowest, (bound - GROUND_TOLERANCE).max(0.0), earth);
             let seen = seen.map(|above| if above > 0.0 { above + GROUND_TOLERANCE } else { 0.0 });
-            #[expect(clippy::cast_possible_truncation, reason = "metres above the ground")]
-            let seen = seen.map_or(f32::INFINITY, |seen| seen as f32);
+            let seen = seen.map_or(f32::INFINITY, to_f32);
             if !(*height <= seen) {
                 *height = seen;
             }

@@ -12,7 +12,7 @@ use crate::sky_view::SkyDirections;
 use crate::targets::{Measure, Targets};
 use belvedere_core::query::{Blocker, MedialScene};
 use belvedere_data::control::Control;
-use belvedere_data::vector::dot;
+use belvedere_data::vector::{dot, to_f32};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 
@@ -136,8 +136,7 @@ pub fn leave_out_walled_up(targets: &mut Targets, scene: &MedialScene, control: 
 pub fn view_measures(views: &[WindowView], proof: Proving) -> Vec<Measure> {
     let mut measures = Vec::new();
     let mut push = |name: String, description, decimals, range, value: &dyn Fn(&WindowView) -> f64| {
-        #[expect(clippy::cast_possible_truncation, reason = "percentages and metres")]
-        let values = views.iter().map(|view| value(view) as f32).collect();
+        let values = views.iter().map(|view| to_f32(value(view))).collect();
         let measure = Measure::new(&name, values).with_description(description).with_decimals(decimals);
         measures.push(measure.with_range(range));
     };

@@ -18,6 +18,7 @@ use belvedere::medial::{CarvedParams, MedialBalls};
 use belvedere::model::{BallParams, ModelParams, OrientBy};
 use belvedere::query::{Answer, MedialScene, UnprovenAs, Viewer, Visibility};
 use belvedere::raster::Raster;
+use belvedere::vector::to_f32;
 use belvedere::view::{View, default_pixel_size, to_sun};
 use belvedere_scenes::{
     AirborneParams, PlanPlacement, Scan, TownParams, TriangleScene, Truth, extruded, scan_airborne, town,
@@ -162,9 +163,7 @@ fn write_terrain(path: &Path, town: &TriangleScene, frame: &Frame) -> Result<()>
         let outward = ((east.hypot(south) - begin) / width).clamp(0.0, 2.0);
         // valleys part the ring of hills, and smaller ones its slopes
         let ridge = 0.55 + 0.3 * (5.0 * south.atan2(east)).sin() + 0.15 * (east / 310.0).sin() * (south / 270.0).sin();
-        #[expect(clippy::cast_possible_truncation, reason = "heights of a raster are f32")]
-        let height = (plain + top * ridge * (outward * std::f64::consts::FRAC_PI_2).sin().powi(2)) as f32;
-        height
+        to_f32(plain + top * ridge * (outward * std::f64::consts::FRAC_PI_2).sin().powi(2))
     };
     let heights = (0..TERRAIN_CELLS * TERRAIN_CELLS).map(height).collect();
     let raster = Raster::from_values(TERRAIN_CELLS, TERRAIN_CELLS, heights)?;

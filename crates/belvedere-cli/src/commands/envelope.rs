@@ -19,6 +19,7 @@ use belvedere::ground::highest_points;
 use belvedere::io::{FeatureShape, ReadReport, Source, is_ball_file, is_mesh, write_mesh};
 use belvedere::model::{ModelParts, SceneModel};
 use belvedere::results::{georeference, measure_map};
+use belvedere::vector::to_f32;
 use std::io::Read;
 use std::path::Path;
 
@@ -53,9 +54,8 @@ pub(crate) fn run(arguments: &EnvelopeArguments, global: &Global) -> Result<Summ
 }
 
 /// Heights of a cloud are in the unit of its file.
-#[expect(clippy::cast_possible_truncation, reason = "a height")]
 fn in_unit(height: f32, metres_per_unit: f64) -> f32 {
-    (f64::from(height) / metres_per_unit) as f32
+    to_f32(f64::from(height) / metres_per_unit)
 }
 
 fn check_outputs(arguments: &EnvelopeArguments) -> Result<()> {

@@ -13,6 +13,7 @@ use belvedere::medial::CarvedParams;
 use belvedere::model::{BallParams, OrientedSurvey};
 use belvedere::planes::{BuildingSurfaces, PlaneParams, PointOnSurface, Surface, median_sd};
 use belvedere::report::rounded;
+use belvedere::vector::to_f32;
 use belvedere::{Frame, PointCloud};
 use serde_json::{Map, Value};
 use std::path::Path;
@@ -87,8 +88,7 @@ fn write_points(output: &Path, found: &BuildingSurfaces, cloud: &PointCloud) -> 
         Surface::Roof(number) | Surface::Wall(number) => u32::try_from(number).unwrap_or(u32::MAX),
     };
     let numbers: Vec<u32> = points.iter().map(number).collect();
-    #[expect(clippy::cast_possible_truncation, reason = "decimetres")]
-    let distances: Vec<f32> = points.iter().map(|(_, distance)| *distance as f32).collect();
+    let distances: Vec<f32> = points.iter().map(|(_, distance)| to_f32(*distance)).collect();
     let column = |name, description, values| ExtraColumn { name, description, values };
     let columns = [
         column("kind", "1 roof 2 wall", ExtraValues::U8(&kinds)),

@@ -6,7 +6,7 @@
 use super::ball_bound::{BallBound, BoundSide, margin};
 use super::outline::{ALL, outline};
 use super::tiles::{BLOCK, SplatSurface, TILE};
-use belvedere_data::vector::{cross, length};
+use belvedere_data::vector::{cross, length, to_f32};
 use belvedere_data::view::{Projection, View};
 
 /// A ball as seen from the eye.
@@ -42,21 +42,19 @@ struct Turn {
 
 impl Turn {
     /// A turn towards a ball that reaches at least as near as any direction within `angle`, radians.
-    #[expect(clippy::cast_possible_truncation, reason = "a cosine and a sine")]
     fn towards(angle: f64) -> Self {
         // a quarter turn on, everything may lie in the middle of the ball
         if angle < 1.5 {
-            Self { cos: angle.cos() as f32, sin: angle.sin() as f32 }
+            Self { cos: to_f32(angle.cos()), sin: to_f32(angle.sin()) }
         } else {
             Self { cos: -1.0, sin: 0.0 }
         }
     }
 
     /// A turn away from a ball that reaches at least as far as any direction within `angle`, radians.
-    #[expect(clippy::cast_possible_truncation, reason = "a cosine and a sine")]
     fn away(angle: f64) -> Self {
         if angle < 1.5 {
-            Self { cos: angle.cos() as f32, sin: angle.sin() as f32 }
+            Self { cos: to_f32(angle.cos()), sin: to_f32(angle.sin()) }
         } else {
             Self { cos: 0.0, sin: 1.0 }
         }
@@ -140,9 +138,8 @@ pub(super) struct Central<S> {
 }
 
 impl<S: CentralSurface> Central<S> {
-    #[expect(clippy::cast_possible_truncation, reason = "limits of depth in metres")]
     pub(super) fn new(view: &View, surface: S) -> Self {
-        let limits = surface.limits(view).map(|v| v as f32);
+        let limits = surface.limits(view).map(to_f32);
         // pixels are smallest at the corners of a perspective picture and at those of a stereographic map
         let corner = view.direction([0.0; 2]);
         let inward = view.direction([0.5; 2]);

@@ -7,6 +7,7 @@ use crate::blocking::{Ball, Profile, SLOPE, SURFACE_DEVIATION, holds_at};
 use crate::medial::{MedialBalls, NO_TOUCH};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
+use belvedere_data::vector::to_f32;
 use belvedere_data::view::{Projection, View};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
@@ -74,8 +75,7 @@ pub fn depth_map(
             control,
         ),
         (Projection::Orthographic { pixels_per_metre }, Profile::PaperCone) => {
-            #[expect(clippy::cast_possible_truncation, reason = "pixels per metre")]
-            let cone = parallel::Cone { pixels_per_metre: pixels_per_metre as f32 };
+            let cone = parallel::Cone { pixels_per_metre: to_f32(pixels_per_metre) };
             tiles::draw(&Parallel::new(view, pixels_per_metre, cone), size, count, usable, items, control)
         }
         (_, Profile::Sphere) => {
@@ -114,13 +114,12 @@ impl DepthMap {
     /// The paper's algorithm has no bias, so [`Profile::PaperCone`] has 0. In views from an eye, where pixels widen
     /// with the range, it is that of a pixel at the mean visible range. Use exact lines of sight where that matters.
     #[must_use]
-    #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
     pub fn default_depth_bias(&self) -> f32 {
         let range = if self.view.is_central() { self.mean_depth() } else { 0.0 };
         let pixel = self.view.pixel_width(range);
         let deviation = SURFACE_DEVIATION.min(pixel) * (1.0 + SLOPE * SLOPE).sqrt();
         match self.profile {
-            Profile::Sphere => (deviation + SLOPE * pixel * std::f64::consts::FRAC_1_SQRT_2) as f32,
+            Profile::Sphere => to_f32(deviation + SLOPE * pixel * std::f64::consts::FRAC_1_SQRT_2),
             Profile::PaperCone => 0.0,
         }
     }

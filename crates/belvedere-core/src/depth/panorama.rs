@@ -7,7 +7,7 @@ use crate::medial::MedialBalls;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
-use belvedere_data::vector::{cross, dot, length, sub};
+use belvedere_data::vector::{cross, dot, length, sub, to_f32};
 use belvedere_data::view::{View, panorama_direction};
 use rayon::prelude::*;
 
@@ -31,8 +31,7 @@ fn front(balls: &MedialBalls, ball: usize, eye: [f64; 3], direction: [f64; 3]) -
     let offset = sub(center.map(f64::from), eye);
     let along = dot(offset, direction);
     let beside = length(cross(offset, direction));
-    #[expect(clippy::cast_possible_truncation, reason = "a range in metres")]
-    let range = (along - (radius * radius - beside * beside).max(0.0).sqrt()) as f32;
+    let range = to_f32(along - (radius * radius - beside * beside).max(0.0).sqrt());
     (beside < radius).then_some(range)
 }
 

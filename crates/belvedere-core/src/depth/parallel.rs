@@ -2,6 +2,7 @@
 
 use super::ball_bound::{BallBound, BoundSide, margin};
 use super::tiles::{BLOCK, SplatSurface};
+use belvedere_data::vector::to_f32;
 use belvedere_data::view::View;
 
 /// A ball in view space, in the units of its [`ParallelSurface`].
@@ -41,10 +42,9 @@ pub(super) struct Parallel<S> {
 }
 
 impl<S: ParallelSurface> Parallel<S> {
-    #[expect(clippy::cast_possible_truncation, reason = "a pixel size in metres")]
     pub(super) fn new(view: &View, pixels_per_metre: f64, surface: S) -> Self {
         let units_per_pixel = match surface.units_per_metre() {
-            1.0 => (1.0 / pixels_per_metre) as f32,
+            1.0 => to_f32(1.0 / pixels_per_metre),
             _ => 1.0,
         };
         Self { view: *view, pixels_per_metre, units_per_pixel, surface }
@@ -115,9 +115,14 @@ impl<S: ParallelSurface> SplatSurface for Parallel<S> {
 pub(super) struct ParallelSphere;
 
 impl ParallelSurface for ParallelSphere {
-    #[expect(clippy::cast_possible_truncation, reason = "view coordinates relative to the picture's corner")]
     fn place(&self, x: f64, y: f64, z: f64, radius: f32, ball: u32) -> Option<ParallelSplat> {
-        (z + f64::from(radius) >= 0.0).then_some(ParallelSplat { x: x as f32, y: y as f32, z: z as f32, radius, ball })
+        (z + f64::from(radius) >= 0.0).then_some(ParallelSplat {
+            x: to_f32(x),
+            y: to_f32(y),
+            z: to_f32(z),
+            radius,
+            ball,
+        })
     }
 
     #[inline(always)]
@@ -139,14 +144,13 @@ impl ParallelSurface for Cone {
         self.pixels_per_metre
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "view coordinates relative to the picture's corner")]
     fn place(&self, x: f64, y: f64, z: f64, radius: f32, ball: u32) -> Option<ParallelSplat> {
         let s = self.pixels_per_metre;
         // the middle of the pixel that holds the centre, so that offsets to pixel centres are the paper's integers
         Some(ParallelSplat {
-            x: x.floor() as f32 + 0.5,
-            y: y.floor() as f32 + 0.5,
-            z: z as f32 * s,
+            x: to_f32(x.floor()) + 0.5,
+            y: to_f32(y.floor()) + 0.5,
+            z: to_f32(z) * s,
             radius: radius * s,
             ball,
         })
@@ -168,10 +172,9 @@ pub(super) struct ParallelBound {
 }
 
 impl ParallelBound {
-    #[expect(clippy::cast_possible_truncation, reason = "a pixel size in metres")]
     pub(super) fn new(bound: BallBound, pixels_per_metre: f64) -> Self {
         let metres_per_px = 1.0 / pixels_per_metre;
-        Self { bound, half_px: (metres_per_px * 0.500_01) as f32, metres_per_px }
+        Self { bound, half_px: to_f32(metres_per_px * 0.500_01), metres_per_px }
     }
 }
 
@@ -179,12 +182,11 @@ impl ParallelSurface for ParallelBound {
     /// A square reaches half a pixel beyond its centre.
     const BEYOND_PX: f32 = 1.0;
 
-    #[expect(clippy::cast_possible_truncation, reason = "view coordinates relative to the picture's corner")]
     fn place(&self, x: f64, y: f64, z: f64, radius: f32, ball: u32) -> Option<ParallelSplat> {
         let size = (x.abs() + y.abs()) * self.metres_per_px + z.abs();
         let whole = f64::from(radius);
         let radius = self.bound.radius(radius, size, [z - whole, z], f64::from(self.half_px))?;
-        Some(ParallelSplat { x: x as f32, y: y as f32, z: z as f32, radius, ball })
+        Some(ParallelSplat { x: to_f32(x), y: to_f32(y), z: to_f32(z), radius, ball })
     }
 
     #[inline(always)]
@@ -203,8 +205,7 @@ impl ParallelSurface for ParallelBound {
             BoundSide::Upper => {
                 let size = (splat.x.abs() + splat.y.abs()) * self.half_px * 2.0 + splat.z.abs();
                 let margin = margin(f64::from(size), f64::from(splat.radius));
-                #[expect(clippy::cast_possible_truncation, reason = "a length")]
-                let behind = self.bound.behind(splat.z, splat.radius, margin as f32);
+                let behind = self.bound.behind(splat.z, splat.radius, to_f32(margin));
                 let behind = if beside < splat.radius * splat.radius { behind } else { f32::INFINITY };
                 front(self.bound.min_radius(splat.radius)).min(behind)
             }

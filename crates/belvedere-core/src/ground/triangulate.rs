@@ -2,6 +2,7 @@
 
 use super::MapGrid;
 use belvedere_data::raster::Raster;
+use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Parameter, Result};
 use delaunator::{EMPTY, Point, triangulate};
 
@@ -79,8 +80,7 @@ fn fill(heights: &mut [f32], width: usize, grid: &MapGrid, [a, b, c]: [[f64; 3];
             let u = 1.0 - v - w;
             // a middle on an edge belongs to both triangles, also where rounding moves it off both
             if u >= -1e-9 && v >= -1e-9 && w >= -1e-9 {
-                #[expect(clippy::cast_possible_truncation, reason = "local heights are f32")]
-                let height = (u * a[2] + v * b[2] + w * c[2]) as f32;
+                let height = to_f32(u * a[2] + v * b[2] + w * c[2]);
                 if let Some(value) = heights.get_mut(row * width + column) {
                     *value = height;
                 }
@@ -103,12 +103,11 @@ mod tests {
     use belvedere_data::random::uniform;
 
     #[test]
-    #[expect(clippy::cast_possible_truncation, reason = "test places in f32")]
     fn a_plane_comes_back_and_beyond_the_hull_there_is_nothing() {
         let points: Vec<[f32; 3]> = (0..500)
             .map(|i| {
                 let (x, y) = (40.0 * uniform(1, 2 * i), 40.0 * uniform(1, 2 * i + 1));
-                [x as f32, y as f32, (0.1 * x - 0.3 * y) as f32]
+                [to_f32(x), to_f32(y), to_f32(0.1 * x - 0.3 * y)]
             })
             .collect();
         let grid = MapGrid::covering([-5.0; 2], [45.0; 2], 0.5, [0.0; 2]).unwrap();

@@ -9,6 +9,7 @@ use crate::pulses::Pulses;
 use belvedere_data::Result;
 use belvedere_data::balls::MedialBalls;
 use belvedere_data::control::{Control, Stop};
+use belvedere_data::vector::to_f32;
 use rayon::prelude::*;
 use std::f32::consts::PI;
 
@@ -229,9 +230,7 @@ pub(super) fn measure_transmission(
             return f32::NAN;
         }
         let [met, through] = near.get(cell(p)).unwrap_or_default().map(f64::from);
-        #[expect(clippy::cast_possible_truncation, reason = "a share")]
-        let share = ((through + prior * whole) / (met + prior)) as f32;
-        share
+        to_f32((through + prior * whole) / (met + prior))
     };
     let transmission = positions.par_iter().zip(kinds).map(of).collect();
     stop.check()?;

@@ -5,7 +5,7 @@ use crate::ground::{Ground, GroundParams, GroundPoints, MapGrid, ground_points};
 use belvedere_data::control::Control;
 use belvedere_data::polygon::PolygonIndex;
 use belvedere_data::raster::Raster;
-use belvedere_data::vector::{sub, unit};
+use belvedere_data::vector::{sub, to_f32, unit};
 use belvedere_data::{PointCloud, Result};
 
 /// ASPRS class of ground.
@@ -114,8 +114,7 @@ impl Clearing {
             let radius = f64::midpoint(free, too_large);
             if self.reaches_in(center_of(radius), radius) { too_large = radius } else { free = radius }
         }
-        #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
-        (free >= MIN_RADIUS).then(|| (center_of(free).map(|v| v as f32), free as f32))
+        (free >= MIN_RADIUS).then(|| (center_of(free).map(to_f32), to_f32(free)))
     }
 
     /// Balls that close the ground where no ground point is near: centres and radii.
@@ -133,8 +132,7 @@ impl Clearing {
                 return None;
             }
             let [x, y] = grid.center(column, row);
-            #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
-            Some(([x, y, height - GROUND_RADIUS].map(|v| v as f32), GROUND_RADIUS as f32))
+            Some(([x, y, height - GROUND_RADIUS].map(to_f32), to_f32(GROUND_RADIUS)))
         })
     }
 

@@ -115,12 +115,12 @@ mod tests {
     use super::*;
     use belvedere_data::Frame;
     use belvedere_data::random::uniform;
+    use belvedere_data::vector::to_f32;
 
     #[test]
     fn every_row_comes_once_and_squares_come_whole() {
         let at = |i: u64, k: u64| 200.0 * uniform(7, 2 * i + k) - 100.0;
-        #[expect(clippy::cast_possible_truncation, reason = "places of a test")]
-        let positions: Vec<[f32; 3]> = (0..5000).map(|i| [at(i, 0) as f32, at(i, 1) as f32, 0.0]).collect();
+        let positions: Vec<[f32; 3]> = (0..5000).map(|i| [to_f32(at(i, 0)), to_f32(at(i, 1)), 0.0]).collect();
         let frame = Frame { origin: [85_000.0, 446_000.0, 0.0], ..Frame::default() };
         let cloud = PointCloud { positions, frame, ..PointCloud::default() };
         let rows = rows_in_space_order(&cloud);

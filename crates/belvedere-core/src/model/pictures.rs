@@ -9,7 +9,7 @@ use crate::ray_index::Ray;
 use belvedere_data::Result;
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::raster::Raster;
-use belvedere_data::vector::{length, sub};
+use belvedere_data::vector::{length, sub, to_f32};
 use belvedere_data::view::{View, panorama_direction};
 use rayon::prelude::*;
 
@@ -88,7 +88,6 @@ impl SceneModel {
 
     /// Lets pixels show the triangles that are nearer than the balls there. Where both are about as near,
     /// `ball_depth` of the pixel and the ball gives the exact depth of the ball.
-    #[expect(clippy::cast_possible_truncation, reason = "a depth in metres")]
     fn draw_triangles(
         &self,
         depth: &mut Raster<f32>,
@@ -106,7 +105,7 @@ impl SceneModel {
             let PixelSight { mut ray, range_per_depth } = sight(pixel).filter(|_| !stop.is_set())?;
             let room = 2.0 * DEPTH_MAP_TOLERANCE * drawn.abs();
             ray.ranges[1] = ray.ranges[1].min(f64::from(drawn + room) * range_per_depth);
-            let found = (triangles.first_range(&ray)? / range_per_depth) as f32;
+            let found = to_f32(triangles.first_range(&ray)? / range_per_depth);
             let exact = || ball_depth(pixel, *shown?.get(at)?);
             let drawn = if (found - drawn).abs() <= room { exact().unwrap_or(drawn) } else { drawn };
             (found < drawn).then_some((at, found))

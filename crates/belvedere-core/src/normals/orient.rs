@@ -10,7 +10,7 @@ use super::surroundings::HighestPointGrid;
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::report::percent;
 use belvedere_data::trajectory::{ClockOffset, Trajectory};
-use belvedere_data::vector::{dot, sub};
+use belvedere_data::vector::{dot, sub, to_f32};
 use belvedere_data::{Error, Mesh, Parameter, PointCloud, Result};
 
 /// Below this |n_z| a surface counts as steep, and up says nothing: a wall with normals that are 17° wrong.
@@ -134,9 +134,8 @@ struct NormalSign {
 }
 
 impl NormalSign {
-    #[expect(clippy::cast_possible_truncation, reason = "a confidence with a sign: there is one for every point")]
     fn new(way: SignSource, outward: f64) -> Self {
-        Self { way, outward: outward as f32 }
+        Self { way, outward: to_f32(outward) }
     }
 }
 

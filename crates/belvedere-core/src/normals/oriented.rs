@@ -1,6 +1,7 @@
 //! Points with outward normals: the only cloud that medial balls can be shrunk from.
 
 use belvedere_data::crs::Crs;
+use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Parameter, Result};
 
 /// A cloud whose normals point out of the scene.
@@ -133,7 +134,6 @@ impl OrientedCloud {
 
 /// `vector` at unit length, or zero where it has no direction. A vector that already has unit length within rounding is
 /// kept bit for bit.
-#[expect(clippy::cast_possible_truncation, reason = "components of a unit vector")]
 pub(super) fn unit_or_zero(vector: [f32; 3]) -> [f32; 3] {
     let v = vector.map(f64::from);
     let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
@@ -143,5 +143,5 @@ pub(super) fn unit_or_zero(vector: [f32; 3]) -> [f32; 3] {
     if (length - 1.0).abs() < 1e-6 {
         return vector;
     }
-    v.map(|x| (x / length) as f32)
+    v.map(|x| to_f32(x / length))
 }

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::ray_index::{Ray, RayIndex};
 use belvedere_data::control::{Control, Stop};
-use belvedere_data::vector::{cross, dot, sub};
+use belvedere_data::vector::{cross, dot, sub, to_f32};
 use belvedere_data::{Mesh, Result};
 
 /// Maximum distance of a face whose normal decides about a point: generalised models leave out dormers and terraces of
@@ -53,10 +53,11 @@ impl MeshFace {
         dot(d, d).sqrt()
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "the index is wider than its boxes by more than the rounding")]
     fn bounds(&self) -> [[f32; 3]; 2] {
         let by = |pick: fn(f64, f64) -> f64| {
-            std::array::from_fn(|i| self.corners.iter().map(|corner| corner[i]).reduce(pick).unwrap_or(f64::NAN) as f32)
+            std::array::from_fn(|i| {
+                to_f32(self.corners.iter().map(|corner| corner[i]).reduce(pick).unwrap_or(f64::NAN))
+            })
         };
         [by(f64::min), by(f64::max)]
     }

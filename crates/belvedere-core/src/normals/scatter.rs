@@ -85,6 +85,7 @@ mod tests {
     use crate::neighbors::NeighborIndex;
     use belvedere_data::control::Control;
     use belvedere_data::random::uniform;
+    use belvedere_data::vector::to_f32;
 
     const NOISE: f64 = 0.02;
 
@@ -101,8 +102,7 @@ mod tests {
             for j in 0..30 {
                 let (u, v) = (f64::from(i) * 0.2, f64::from(j) * 0.2 + 0.1);
                 let (a, b) = (noise(), noise());
-                #[expect(clippy::cast_possible_truncation, reason = "a few metres")]
-                points.extend([[u, v, a], [u, b, v]].map(|place| place.map(|v| v as f32)));
+                points.extend([[u, v, a], [u, b, v]].map(|place| place.map(to_f32)));
             }
         }
         points
@@ -143,8 +143,7 @@ mod tests {
                 let sight = [u, 3.0, v];
                 let range = sight.map(|v| v * v).iter().sum::<f64>().sqrt();
                 let error = (12 * i..12 * i + 12).map(|number| uniform(5, number) - 0.5).sum::<f64>();
-                #[expect(clippy::cast_possible_truncation, reason = "a few metres")]
-                points.push(sight.map(|v| (v * (1.0 + 0.005 * error / range)) as f32));
+                points.push(sight.map(|v| to_f32(v * (1.0 + 0.005 * error / range))));
             }
             let index = NeighborIndex::new(&points, &Control::none()).unwrap();
             let (normals, scatter) =

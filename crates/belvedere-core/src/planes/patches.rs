@@ -8,6 +8,7 @@ use super::roof_planes::Roofs;
 use super::sheets::Sheet;
 use super::walls::WallLine;
 use super::{BLOCK, BuildingSurfaces, PatchKind, WallParams};
+use belvedere_data::vector::to_f32;
 
 /// Side of the cells in which it is decided whether a surface is there, metres.
 const CELL: f64 = 0.25;
@@ -89,8 +90,7 @@ impl Cover {
         for row in self.range(1, p[1] - reach, p[1] + reach) {
             for column in self.range(0, p[0] - reach, p[0] + reach) {
                 let m = self.middle(column, row);
-                #[expect(clippy::cast_possible_truncation, reason = "a distance within a roof")]
-                let square = ((m[0] - p[0]).powi(2) + (m[1] - p[1]).powi(2)) as f32;
+                let square = to_f32((m[0] - p[0]).powi(2) + (m[1] - p[1]).powi(2));
                 let distance = &mut distances[row * self.size[0] + column];
                 *distance = distance.min(square);
             }
@@ -131,9 +131,8 @@ impl Cover {
             }
         }
         let ridges: Vec<(&RidgeLine, usize)> = convex(ridges, plane).collect();
-        #[expect(clippy::cast_possible_truncation, reason = "lengths in metres")]
         let [near, beside, open] =
-            [NEAR_SPACINGS, BESIDE_SPACINGS, OPEN_SPACINGS].map(|n| (n * spacing).powi(2) as f32);
+            [NEAR_SPACINGS, BESIDE_SPACINGS, OPEN_SPACINGS].map(|n| to_f32((n * spacing).powi(2)));
         let mut counts = vec![false; size[0] * size[1]];
         for row in 0..size[1] {
             for column in 0..size[0] {
@@ -356,8 +355,7 @@ pub(super) fn append_to(
 
 /// Adds a convex polygon, counter-clockwise seen from outside, as triangles about its first corner.
 pub(super) fn fan(block: &Block, corners: &[[f64; 3]], kind: PatchKind, found: &mut BuildingSurfaces) {
-    #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-    let local = |p: [f64; 3]| block.local(p).map(|v| v as f32);
+    let local = |p: [f64; 3]| block.local(p).map(to_f32);
     let Some((&first, rest)) = corners.split_first() else { return };
     for pair in rest.windows(2) {
         found.patches.push([local(first), local(pair[0]), local(pair[1])], kind);

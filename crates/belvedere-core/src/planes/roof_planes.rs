@@ -6,7 +6,7 @@ use super::fit::{Plane, Sums};
 use crate::neighbors::NeighborIndex;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
-use belvedere_data::vector::sub;
+use belvedere_data::vector::{sub, to_f32};
 use std::collections::BTreeMap;
 
 /// Neighbours that show whether a point lies on something flat, without itself.
@@ -198,8 +198,7 @@ impl Roofs {
 impl Patchwork {
     /// Noise is at most `max_noise` metres.
     fn new(points: Vec<[f64; 3]>, max_noise: f64, control: &Control<'_>) -> Result<Self> {
-        #[expect(clippy::cast_possible_truncation, reason = "positions of a block")]
-        let places: Vec<[f32; 3]> = points.iter().map(|p| p.map(|v| v as f32)).collect();
+        let places: Vec<[f32; 3]> = points.iter().map(|p| p.map(to_f32)).collect();
         let index = NeighborIndex::new(&places, control)?;
         let mut neighbors = vec![[NONE; NEIGHBORS]; points.len()];
         let mut local = vec![Plane::default(); points.len()];

@@ -13,7 +13,7 @@ pub(crate) use proximity::come_from_the_ground;
 
 use crate::neighbors::Tangent;
 use belvedere_data::control::{Control, Stop};
-use belvedere_data::vector::{dot, sub};
+use belvedere_data::vector::{dot, sub, to_f32};
 use belvedere_data::{Error, PointCloud, Result};
 use serde::Serialize;
 use std::ops::ControlFlow;
@@ -243,8 +243,7 @@ impl FreeSegments {
                     if let Some(found) = free_segment.tangent_radius(touching, tangent.inward)
                         && found < f64::from(*radius)
                     {
-                        #[expect(clippy::cast_possible_truncation, reason = "a radius in metres")]
-                        let found = found as f32;
+                        let found = to_f32(found);
                         (*radius, *is_cut) = (found.max(0.0), true);
                     }
                 }
@@ -259,9 +258,8 @@ impl FreeSegments {
 type SegmentsByAxis = [Vec<FreeSegment>; 6];
 
 impl FreeSegment {
-    #[expect(clippy::cast_possible_truncation, reason = "local coordinates")]
     fn new(start: [f64; 3], direction: [f64; 3], length: f64) -> Self {
-        Self { start: start.map(|v| v as f32), direction: direction.map(|v| v as f32), length: length as f32, row: 0 }
+        Self { start: start.map(to_f32), direction: direction.map(to_f32), length: to_f32(length), row: 0 }
     }
 
     /// Radius of the ball of the pencil through `touching` along `inward` that this segment touches, or `None` where it

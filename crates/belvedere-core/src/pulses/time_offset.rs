@@ -167,6 +167,7 @@ mod tests {
     use crate::pulses::group;
     use belvedere_data::control::Control;
     use belvedere_data::random::uniform;
+    use belvedere_data::vector::to_f32;
     use belvedere_data::{Attributes, Frame};
 
     /// The path of a scanner: a slight curve at 1200 m, 60 m/s.
@@ -187,8 +188,7 @@ mod tests {
             // the first return 12 m above the ground, the last one on it, both to a few centimetres
             for (number, part) in [(1_u8, 1.0 - 12.0 / 1195.0), (2, 1.0)] {
                 let noise = 0.03 * (uniform(3, u64::from(number) * 1000 + u64::from(i)) - 0.5);
-                #[expect(clippy::cast_possible_truncation, reason = "positions are f32")]
-                positions.push(std::array::from_fn(|k| (scanner[k] + part * way[k] - origin[k] + noise) as f32));
+                positions.push(std::array::from_fn(|k| to_f32(scanner[k] + part * way[k] - origin[k] + noise)));
                 times.push(time);
                 numbers.push(number);
             }

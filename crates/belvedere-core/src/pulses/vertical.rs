@@ -94,14 +94,14 @@ fn cell_of(coordinate: f32, size: f32) -> i32 {
 mod tests {
     use super::*;
     use belvedere_data::random::uniform;
+    use belvedere_data::vector::to_f32;
 
     #[test]
-    #[expect(clippy::cast_possible_truncation, reason = "small numbers")]
     fn what_stands_above_hides_as_in_a_search_through_all_pairs() {
         let mut count = 0;
         let mut next = |size: f64| {
             count += 1;
-            (size * uniform(3, count)) as f32
+            to_f32(size * uniform(3, count))
         };
         let points: Vec<[f32; 3]> = (0..2000).map(|_| [next(20.0) - 10.0, next(20.0) - 10.0, next(5.0)]).collect();
         let params = VerticalParams::default();

@@ -4,7 +4,7 @@ use crate::blocking::{Ball, BlockRule};
 use crate::ray_index::{Ray, RayIndex};
 use belvedere_data::balls::{MedialBalls, NO_TOUCH};
 use belvedere_data::model::TreeParts;
-use belvedere_data::vector::length;
+use belvedere_data::vector::{length, to_f32};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -175,9 +175,7 @@ impl BallTree {
     /// Returns the margin for comparing balls with lines in f32, metres: balls that far beyond their radius are tested
     /// exactly. [`near_reach`] adds a share of the radius.
     pub(super) fn near_margin(&self) -> f32 {
-        #[expect(clippy::cast_possible_truncation, reason = "what is rounded is far less than the margin")]
-        let margin = (MARGIN + MARGIN_OF_SCENE * length(self.index.half_size())) as f32;
-        margin
+        to_f32(MARGIN + MARGIN_OF_SCENE * length(self.index.half_size()))
     }
 
     /// Returns true if a ball blocks a line of sight.

@@ -13,6 +13,7 @@ use super::{Answer, BlockedLines, MedialScene, ParallelLines, Proof, Viewer};
 use crate::medium::Medium;
 use crate::ray_index::Ray;
 use belvedere_data::control::Control;
+use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use std::sync::LazyLock;
@@ -180,9 +181,7 @@ impl Evidence {
         let past_all = f64::from(self.probability()).clamp(MIN_PROBABILITY, 1.0 - MIN_PROBABILITY);
         let dark = CROWNS_CONSTANT + CROWNS_BALLS * ((1.0 - past_all) / past_all).ln() + CROWNS_DEPTH * depth;
         let through = 1.0 / (1.0 + dark.exp());
-        #[expect(clippy::cast_possible_truncation, reason = "a probability")]
-        let lit = (f64::from(without_crowns.probability()) * through) as f32;
-        lit
+        to_f32(f64::from(without_crowns.probability()) * through)
     }
 
     /// Returns the probability that the target is visible, 0 to 1.
@@ -191,9 +190,7 @@ impl Evidence {
         let scores = &FITTED;
         let of_key = |key: ScoreKey| scores[key.term as usize][usize::from(key.is_free)][key.class];
         let sum: f64 = self.score_keys().map(of_key).sum();
-        #[expect(clippy::cast_possible_truncation, reason = "a probability")]
-        let probability = (1.0 / (1.0 + (-sum).exp())) as f32;
-        probability
+        to_f32(1.0 / (1.0 + (-sum).exp()))
     }
 }
 
@@ -325,8 +322,7 @@ impl Certainty {
     /// [`Error::InvalidParameter`] for a number that is not above 0.5 and at most 1.
     pub fn new(least: f64) -> Result<Self> {
         if least > 0.5 && least <= 1.0 {
-            #[expect(clippy::cast_possible_truncation, reason = "probabilities are f32")]
-            return Ok(Self(least as f32));
+            return Ok(Self(to_f32(least)));
         }
         Err(Error::InvalidParameter {
             parameter: Parameter::Certainty,

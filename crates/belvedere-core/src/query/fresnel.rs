@@ -287,6 +287,7 @@ mod tests {
     use belvedere_data::Mesh;
     use belvedere_data::balls::MedialBalls;
     use belvedere_data::random::uniform;
+    use belvedere_data::vector::to_f32;
 
     fn scene(balls: &[([f32; 3], f32)]) -> MedialScene {
         let balls = MedialBalls {
@@ -322,8 +323,7 @@ mod tests {
             #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
             let center: [f32; 3] =
                 std::array::from_fn(|k| (ends[0][k] + along * axis[k] + 8.0 * (random(1 + k as u64) - 0.5)) as f32);
-            #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
-            let radius = (0.2 + 3.0 * random(5)) as f32;
+            let radius = to_f32(0.2 + 3.0 * random(5));
             let found = scene(&[(center, radius)]).fresnel_clearance(ends, wave, &EarthParams::flat(), 9.0);
             // random points of the ball: none leaves less, and the best leaves hardly more. About 100 000 lie 3 cm
             // apart on the largest ball, a fiftieth of the zone and more near its ends; a ball that the line crosses

@@ -98,12 +98,12 @@ mod tests {
     use crate::medial::MedialBalls;
     use crate::query::random_targets;
     use belvedere_data::random::uniform;
+    use belvedere_data::vector::to_f32;
 
     #[test]
     fn a_map_answers_as_lines_of_sight_do() {
         let count = 400;
-        #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
-        let random = |i: u64, k: u64| uniform(4, 8 * i + k) as f32;
+        let random = |i: u64, k: u64| to_f32(uniform(4, 8 * i + k));
         let balls = MedialBalls {
             centers: (0..count).map(|i| [40.0 * random(i, 0), 40.0 * random(i, 1), 8.0 * random(i, 2)]).collect(),
             radii: (0..count).map(|i| 0.2 + 2.0 * random(i, 3)).collect(),

@@ -2,7 +2,7 @@
 
 use super::surface::{Sides, SurfacePiece, SurfacePieces};
 use super::{Answer, Viewer};
-use belvedere_data::vector::{dot, sub};
+use belvedere_data::vector::{dot, sub, to_f32};
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 
@@ -113,8 +113,7 @@ impl SurfacePiece {
     /// The place moved by `lift` metres along the normal, local metres.
     #[must_use]
     pub fn lifted_along_normal(&self, lift: f64) -> [f32; 3] {
-        #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-        std::array::from_fn(|i| (f64::from(self.place[i]) + lift * f64::from(self.normal[i])) as f32)
+        std::array::from_fn(|i| to_f32(f64::from(self.place[i]) + lift * f64::from(self.normal[i])))
     }
 }
 

@@ -3,7 +3,7 @@
 use super::MedialScene;
 use super::ball_tree::{MARGIN, near_reach};
 use crate::ray_index::{END, Ray, Visit};
-use belvedere_data::vector::{cross, dot, sub, unit};
+use belvedere_data::vector::{cross, dot, sub, to_f32, unit};
 use std::f64::consts::FRAC_PI_4;
 
 /// Radii of the two rings of lines around the line itself, metres: half a spacing and a spacing at ten pulses per m². A
@@ -194,11 +194,6 @@ impl Visit for &mut Left<'_> {
         }
         if self.free == 0 { END } else { f32::INFINITY }
     }
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "what is rounded is far less than the margins")]
-fn to_f32(value: f64) -> f32 {
-    value as f32
 }
 
 #[cfg(test)]

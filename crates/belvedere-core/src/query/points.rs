@@ -3,6 +3,7 @@
 use crate::blocking::Profile;
 use crate::depth::DepthMap;
 use belvedere_data::random;
+use belvedere_data::vector::to_f32;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -97,8 +98,7 @@ const CHUNK: usize = 16_384;
 /// paper.
 #[must_use]
 pub fn query_points(map: &DepthMap, targets: &[[f32; 3]], depth_bias: f32) -> Vec<Answer> {
-    #[expect(clippy::cast_possible_truncation, reason = "the depth map holds f32")]
-    let [near, far] = map.view.limits().map(|v| v as f32);
+    let [near, far] = map.view.limits().map(to_f32);
     // the paper's picture plane has no behind
     let min_depth = match map.profile {
         Profile::Sphere => near,
@@ -109,8 +109,7 @@ pub fn query_points(map: &DepthMap, targets: &[[f32; 3]], depth_bias: f32) -> Ve
         .with_min_len(CHUNK)
         .map(|&target| {
             let Some([x, y, z]) = map.view.project(target) else { return Answer::OutsideView };
-            #[expect(clippy::cast_possible_truncation, reason = "the depth map holds f32")]
-            let z = z as f32;
+            let z = to_f32(z);
             // beside the picture or beyond its limits, or not a number
             if !(x >= 0.0 && y >= 0.0 && z + depth_bias >= min_depth && z <= far) {
                 return Answer::OutsideView;
@@ -146,9 +145,7 @@ pub fn random_targets(low: [f32; 3], high: [f32; 3], count: usize, seed: u64) ->
             std::array::from_fn(|axis| {
                 let share = random::uniform(seed, 3 * i as u64 + axis as u64);
                 let (low, high) = (f64::from(low[axis]), f64::from(high[axis]));
-                #[expect(clippy::cast_possible_truncation, reason = "lies between two f32")]
-                let value = (low + share * (high - low)) as f32;
-                value
+                to_f32(low + share * (high - low))
             })
         })
         .collect()

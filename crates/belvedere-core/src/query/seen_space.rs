@@ -445,7 +445,7 @@ mod tests {
     use crate::pulses::FreeSegmentParams;
     use belvedere_data::control::Control;
     use belvedere_data::random::uniform;
-    use belvedere_data::vector::{dot, length, sub};
+    use belvedere_data::vector::{dot, length, sub, to_f32};
 
     #[test]
     fn boxes_are_marked_where_one_segment_is_near_to_all_corners() {
@@ -476,8 +476,7 @@ mod tests {
 
     /// Asserts that only boxes near pulses are marked, and at least a share of those, for scanners between two places.
     fn assert_boxes(scanners: [[f32; 3]; 2], min_share: f64) {
-        #[expect(clippy::cast_possible_truncation, reason = "positions are f32")]
-        let random = |i: u64, k: u64| uniform(6, 8 * i + k) as f32;
+        let random = |i: u64, k: u64| to_f32(uniform(6, 8 * i + k));
         let count = 3000;
         let returns: Vec<[f32; 3]> =
             (0..count).map(|i| [40.0 * random(i, 0) - 3.0, 40.0 * random(i, 1), 9.0 * random(i, 2).powi(3)]).collect();
@@ -545,8 +544,7 @@ mod tests {
     fn unseen_length_is_that_through_boxes_whose_middles_are_not_near() {
         const STEP: f64 = 4e-3;
         let point = |i: u64| [20.0 * uniform(41, i), 20.0 * uniform(42, i), 8.0 * uniform(43, i)];
-        #[expect(clippy::cast_possible_truncation, reason = "places of a test")]
-        let returns: Vec<[f32; 3]> = (0..400).map(|i| point(i).map(|v| v as f32)).collect();
+        let returns: Vec<[f32; 3]> = (0..400).map(|i| point(i).map(to_f32)).collect();
         let scanner = vec![[10.0, 10.0, 300.0]; returns.len()];
         let params = FreeSegmentParams::default();
         let (segments, _) = FreeSegments::new(&returns, &scanner, &params, &Control::none()).unwrap();

@@ -3,7 +3,7 @@
 use crate::neighbors::NeighborIndex;
 use belvedere_data::control::Control;
 use belvedere_data::random::uniform;
-use belvedere_data::vector::{cross, dot, length, sub, unit};
+use belvedere_data::vector::{cross, dot, length, sub, to_f32, unit};
 use belvedere_data::{Error, Mesh, Parameter, Result};
 use rayon::prelude::*;
 
@@ -81,16 +81,18 @@ impl SurfacePieces {
             if let Some(corners) = corners.filter(|corners| area_of(*corners) > 0.0) {
                 cut(corners, spacing, &mut pieces);
             }
-            let normal = corners.and_then(|[a, b, c]| unit(cross(sub(b, a), sub(c, a)))).map_or([0.0; 3], to_f32);
+            let normal = corners
+                .and_then(|[a, b, c]| unit(cross(sub(b, a), sub(c, a))))
+                .map_or([0.0; 3], |normal| normal.map(to_f32));
             let number = index_u32(face);
             let piece = move |(i, corners): (usize, [[f64; 3]; 3])| {
                 let counter = ((face as u64) << 32) | ((i as u64) << 1);
                 let place = place_on(corners, [uniform(seed, counter), uniform(seed, counter + 1)]);
                 SurfacePiece {
-                    corners: corners.map(to_f32),
-                    place: to_f32(place),
+                    corners: corners.map(|corner| corner.map(to_f32)),
+                    place: place.map(to_f32),
                     normal,
-                    area: single(area_of(corners)),
+                    area: to_f32(area_of(corners)),
                     face: number,
                 }
             };
@@ -139,10 +141,16 @@ impl SurfacePieces {
             let reach = (4.0 * area / 27.0_f64.sqrt()).sqrt();
             let corner = |turn: f64| {
                 let (sin, cos) = (turn * std::f64::consts::TAU).sin_cos();
-                to_f32(std::array::from_fn(|i| f64::from(point[i]) + reach * (cos * right[i] + sin * up[i])))
+                std::array::from_fn(|i| to_f32(f64::from(point[i]) + reach * (cos * right[i] + sin * up[i])))
             };
             let corners = [corner(0.0), corner(1.0 / 3.0), corner(2.0 / 3.0)];
-            SurfacePiece { corners, place: point, normal: to_f32(normal), area: single(area), face: index_u32(face) }
+            SurfacePiece {
+                corners,
+                place: point,
+                normal: normal.map(to_f32),
+                area: to_f32(area),
+                face: index_u32(face),
+            }
         };
         let pieces = points.par_iter().zip(normals).enumerate().map(piece).collect();
         Ok(Self { pieces, face_count: points.len(), sides: Sides::Both })
@@ -273,16 +281,6 @@ fn area_of([a, b, c]: [[f64; 3]; 3]) -> f64 {
 fn place_on([a, b, c]: [[f64; 3]; 3], [u, v]: [f64; 2]) -> [f64; 3] {
     let [u, v] = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
     std::array::from_fn(|i| a[i] + u * (b[i] - a[i]) + v * (c[i] - a[i]))
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-fn to_f32(v: [f64; 3]) -> [f32; 3] {
-    v.map(|v| v as f32)
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "an area needs no more digits")]
-fn single(area: f64) -> f32 {
-    area as f32
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "faces are numbered with 32 bits")]

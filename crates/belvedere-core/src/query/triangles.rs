@@ -8,7 +8,7 @@ use crate::ray_index::Ray;
 use crate::triangle_tree::{Corners, TriangleTree};
 use belvedere_data::model::FARTHEST;
 use belvedere_data::raster::Raster;
-use belvedere_data::vector::{cross, sub, unit};
+use belvedere_data::vector::{cross, sub, to_f32, unit};
 use belvedere_data::{Error, Mesh, Parameter, Result, SurfacePatches};
 use std::sync::Arc;
 
@@ -184,8 +184,7 @@ impl BlockingTriangles {
     pub fn raise(&self, heights: &mut Raster<f32>, grid: &MapGrid) {
         for (cell, height) in heights.values_mut().iter_mut().enumerate() {
             let Some(top) = self.top_at(grid.center(cell % grid.width, cell / grid.width)) else { continue };
-            #[expect(clippy::cast_possible_truncation, reason = "local heights are f32")]
-            let top = top as f32;
+            let top = to_f32(top);
             if !(*height >= top) {
                 *height = top;
             }

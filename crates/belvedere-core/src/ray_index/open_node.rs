@@ -1,6 +1,7 @@
 //! Nodes whose parts are tested side by side, for searches that follow more than one ray at once.
 
 use super::{NodePart, PARTS, RayIndex};
+use belvedere_data::vector::to_f32;
 use obvhs::cwbvh::node::CwBvhNode;
 use std::ops::Range;
 
@@ -27,8 +28,7 @@ impl RayIndex {
         ];
         let mut sides = [[[0.0; PARTS]; 2]; 3];
         for axis in 0..3 {
-            #[expect(clippy::cast_possible_truncation, reason = "a rounding that callers allow for")]
-            let start = (f64::from(origin[axis]) + self.center[axis]) as f32;
+            let start = to_f32(f64::from(origin[axis]) + self.center[axis]);
             for side in 0..2 {
                 for part in 0..PARTS {
                     sides[axis][side][part] = start + steps[axis] * f32::from(parts[axis][side][part]);
@@ -97,8 +97,7 @@ mod tests {
 
     #[test]
     fn an_opened_node_has_the_parts_of_the_node_and_all_their_rows() {
-        #[expect(clippy::cast_possible_truncation, reason = "boxes are f32")]
-        let random = |i: u64, k: u64| uniform(7, 8 * i + k) as f32;
+        let random = |i: u64, k: u64| to_f32(uniform(7, 8 * i + k));
         let boxes: Vec<[[f32; 3]; 2]> = (0..5000)
             .map(|i| {
                 let low = std::array::from_fn(|axis| 3000.0 + 100.0 * random(i, axis as u64));

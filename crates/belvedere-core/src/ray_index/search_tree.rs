@@ -136,6 +136,7 @@ mod tests {
     use super::super::{NodePart, RayIndex};
     use super::{BRANCHING, LARGE};
     use belvedere_data::random::uniform;
+    use belvedere_data::vector::to_f32;
 
     type BoxSides = [[f64; 3]; 2];
 
@@ -176,8 +177,7 @@ mod tests {
 
     #[test]
     fn trees_of_parts_hold_each_box_once_and_in_their_boxes() {
-        #[expect(clippy::cast_possible_truncation, reason = "boxes are f32")]
-        let random = |i: u64, k: u64| uniform(5, 8 * i + k) as f32;
+        let random = |i: u64, k: u64| to_f32(uniform(5, 8 * i + k));
         // one level of parts, and two; then boxes at one place but for one far away
         for (count, extent) in [(LARGE, 500.0), (BRANCHING * LARGE + 3, 500.0), (LARGE, 0.0)] {
             let box_of = |i: u64| {

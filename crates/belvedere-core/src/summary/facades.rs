@@ -119,6 +119,7 @@ mod tests {
     use super::*;
     use belvedere_data::cloud::Attributes;
     use belvedere_data::random::uniform;
+    use belvedere_data::vector::to_f32;
 
     /// Walls and roof of a box of 40 x 30 x 20 m, the roof with 4 points per m² and the walls with `density`, 2 cm
     /// rough.
@@ -127,9 +128,7 @@ mod tests {
         let mut number = 0;
         let mut random = || {
             number += 1;
-            #[expect(clippy::cast_possible_truncation, reason = "a number from 0 to 1")]
-            let value = uniform(4, number) as f32;
-            value
+            to_f32(uniform(4, number))
         };
         for _ in 0..4 * 40 * 30 {
             positions.push([40.0 * random(), 30.0 * random(), 20.0 + 0.02 * random()]);

@@ -180,6 +180,7 @@ fn room_along(axis: usize, positions: &[[f32; 3]], normals: &[[f32; 3]]) -> Opti
 mod tests {
     use super::*;
     use belvedere_data::random::uniform;
+    use belvedere_data::vector::to_f32;
 
     /// Points and normals of the inside of a box with the given sides, z up, on all faces alike for each square metre,
     /// and of a table on its floor.
@@ -203,8 +204,7 @@ mod tests {
             }
         }
         for i in (0..2000).filter(|_| with_table) {
-            #[expect(clippy::cast_possible_truncation, reason = "test places")]
-            let [a, b] = [20, 21].map(|seed| uniform(seed, i) as f32);
+            let [a, b] = [20, 21].map(|seed| to_f32(uniform(seed, i)));
             points.0.push([0.3 * width + a, 0.3 * depth + 0.8 * b, 0.75]);
             points.1.push([0.0, 0.0, 1.0]);
         }

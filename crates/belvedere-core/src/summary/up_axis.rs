@@ -58,12 +58,12 @@ fn extent_of(positions: &[[f32; 3]]) -> Option<[f32; 3]> {
 mod tests {
     use super::*;
     use belvedere_data::random::uniform;
+    use belvedere_data::vector::to_f32;
 
     /// Level ground of 60 by 50 m with a house of 12 by 10 m and 8 m on it, z up.
     fn house() -> PointCloud {
         let mut positions = Vec::new();
-        #[expect(clippy::cast_possible_truncation, reason = "test places in f32")]
-        let random = |seed: u64, i: u64| uniform(seed, i) as f32;
+        let random = |seed: u64, i: u64| to_f32(uniform(seed, i));
         for i in 0..12_000 {
             let [x, y] = [60.0 * random(1, i), 50.0 * random(2, i)];
             let on_house = (20.0..32.0).contains(&x) && (20.0..30.0).contains(&y);

@@ -1,9 +1,9 @@
 //! Positions of balls in a view, in double precision, with the bits that the CPU draws with.
 
-use super::{BEYOND, DevicePicture, Shows, scale_of, single};
+use super::{BEYOND, DevicePicture, Shows, scale_of};
 use belvedere_core::blocking::holds_at;
 use belvedere_core::query::Ball;
-use belvedere_data::vector::{cross, length};
+use belvedere_data::vector::{cross, length, to_f32};
 use belvedere_data::view::{Projection, View};
 use rayon::prelude::*;
 
@@ -87,7 +87,7 @@ fn place_parallel(picture: &DevicePicture<'_>, ball: Ball) -> BallPlace {
     if x.abs().max(y.abs()).max(reach) > MAX_PIXELS || depth.abs().max(radius) > MAX_LENGTH {
         return BallPlace::OfCpu;
     }
-    BallPlace::At([single(x), single(y), single(depth), ball.radius])
+    BallPlace::At([to_f32(x), to_f32(y), to_f32(depth), ball.radius])
 }
 
 fn place_central(picture: &DevicePicture<'_>, ball: Ball, min_pixel: f64) -> BallPlace {
@@ -123,6 +123,6 @@ fn place_central(picture: &DevicePicture<'_>, ball: Ball, min_pixel: f64) -> Bal
     if is_at_eye || is_at_near_limit || misplaced > 0.25 * min_pixel * edge || distance.max(radius) > MAX_LENGTH {
         return BallPlace::OfCpu;
     }
-    let [x, y, z] = center.map(single);
+    let [x, y, z] = center.map(to_f32);
     BallPlace::At([x, y, z, ball.radius])
 }

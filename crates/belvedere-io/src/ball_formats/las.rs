@@ -1,9 +1,9 @@
 //! Balls as LAS and LAZ point clouds with extra bytes.
 
 use ::las::Vlr;
+use belvedere_data::vector::to_f32;
 
 use super::{FileBall, as_cloud, index, metadata, patches};
-use crate::file_part::narrow;
 use crate::las::LasFile;
 use crate::las_extra::ExtraField;
 use crate::las_header::RecordSize;
@@ -100,10 +100,10 @@ impl BallFields {
         FileBall {
             center,
             radius: number(self.radius),
-            separation_angle: self.separation_angle.map_or(f32::NAN, |field| narrow(number(field))),
+            separation_angle: self.separation_angle.map_or(f32::NAN, |field| to_f32(number(field))),
             source: self.source.map_or(u32::MAX, |field| index(number(field))),
             touch: index(number(self.touch)),
-            transmission: self.transmission.map_or(f32::NAN, |field| narrow(number(field))),
+            transmission: self.transmission.map_or(f32::NAN, |field| to_f32(number(field))),
         }
     }
 }

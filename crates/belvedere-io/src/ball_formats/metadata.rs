@@ -1,11 +1,11 @@
 //! Metadata of ball files, as JSON.
 
+use belvedere_data::vector::to_f32;
 use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
 use super::FileBall;
-use crate::file_part::narrow;
 use belvedere_data::balls::MedialBalls;
 use belvedere_data::cloud::{centre_rounded, to_local};
 use belvedere_data::crs::{Crs, CrsKind};
@@ -93,7 +93,7 @@ pub(super) fn from_json(text: &str) -> Result<Metadata, String> {
     let named = KINDS.iter().find(|(_, name)| crs["kind"] == *name).map(|&(kind, _)| kind);
     let is_known = crs["wkt"].is_string() || crs["epsg"].is_number();
     let provenance = value["provenance"].as_object().into_iter().flatten();
-    let corner = |i: usize| three(&value["bounds"][i]).map(|corner| corner.map(narrow));
+    let corner = |i: usize| three(&value["bounds"][i]).map(|corner| corner.map(to_f32));
     Ok(Metadata {
         crs: Crs {
             wkt: crs["wkt"].as_str().map(str::to_owned),
@@ -156,7 +156,7 @@ impl Metadata {
             centre_rounded(rows.iter().map(metres))
         });
         let mut parts = self.balls(origin, rows.iter().map(|row| to_local(metres(row), origin)).collect());
-        parts.balls.radii = rows.iter().map(|row| narrow(row.radius * units[0])).collect();
+        parts.balls.radii = rows.iter().map(|row| to_f32(row.radius * units[0])).collect();
         parts.balls.separation_angles = rows.iter().map(|row| row.separation_angle).collect();
         parts.balls.source = rows.iter().map(|row| row.source).collect();
         parts.balls.touch = rows.iter().map(|row| row.touch).collect();

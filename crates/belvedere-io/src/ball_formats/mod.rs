@@ -35,6 +35,7 @@ pub(crate) use write_ply::write_ply;
 use crate::columns::{Column, ColumnValues};
 use belvedere_data::PointCloud;
 use belvedere_data::model::ModelParts;
+use belvedere_data::vector::to_f32;
 
 /// The centres as a cloud and the rest as columns, for formats that hold points. Indices are signed there, so that
 /// viewers show −1 and not four thousand million for "none".
@@ -42,8 +43,7 @@ fn as_cloud(parts: &ModelParts) -> (PointCloud, Vec<Column<'_>>) {
     let cloud =
         PointCloud { frame: parts.frame.clone(), positions: parts.balls.centers.clone(), ..PointCloud::default() };
     let unit = parts.frame.crs.metres_per_unit;
-    #[expect(clippy::cast_possible_truncation, reason = "a radius in another unit is still an f32")]
-    let radii = parts.balls.radii.iter().map(|&r| (f64::from(r) / unit) as f32).collect();
+    let radii = parts.balls.radii.iter().map(|&r| to_f32(f64::from(r) / unit)).collect();
     let signed = |indices: &[u32]| ColumnValues::I32(indices.iter().map(|&i| i.cast_signed()).collect());
     let column = |name, description, values| Column { name, description, values };
     let mut columns = vec![

@@ -1,6 +1,7 @@
 //! Surface patches in files.
 
 use belvedere_data::patches::PatchTriangle;
+use belvedere_data::vector::to_f32;
 use belvedere_data::{PatchKind, SurfacePatches};
 
 /// Begins the bytes of patches: their format.
@@ -67,8 +68,7 @@ pub(super) fn moved(patches: SurfacePatches, from: [f64; 3], to: [f64; 3]) -> Su
     if from == to {
         return patches;
     }
-    #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-    let place = |p: [f32; 3]| std::array::from_fn(|axis| (f64::from(p[axis]) + from[axis] - to[axis]) as f32);
+    let place = |p: [f32; 3]| std::array::from_fn(|axis| to_f32(f64::from(p[axis]) + from[axis] - to[axis]));
     let triangles = patches.triangles.iter().map(|triangle| triangle.map(place)).collect();
     SurfacePatches { triangles, kinds: patches.kinds }
 }

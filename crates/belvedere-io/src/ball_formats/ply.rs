@@ -1,11 +1,11 @@
 //! Balls from PLY point clouds.
 
+use belvedere_data::vector::to_f32;
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 
 use super::patches::kinds_of_codes;
 use super::write_ply::{METADATA_KEY, PATCH, PATCH_CORNERS, PATCH_KIND};
 use super::{FileBall, index, metadata};
-use crate::file_part::narrow;
 use crate::ply::{PlyFile, scalar};
 use crate::source::Input;
 use belvedere_data::cloud::to_local;
@@ -103,10 +103,10 @@ impl PropertyAccess for FileBall {
             "y" => self.center[1] = value,
             "z" => self.center[2] = value,
             "radius" => self.radius = value,
-            "separation_angle" => self.separation_angle = narrow(value),
+            "separation_angle" => self.separation_angle = to_f32(value),
             "source" => self.source = index(value),
             "touch" => self.touch = index(value),
-            "transmission" => self.transmission = narrow(value),
+            "transmission" => self.transmission = to_f32(value),
             _ => return PropertyAccessResult::Ignored,
         }
         PropertyAccessResult::Set

@@ -8,6 +8,7 @@ use belvedere::ground::{Ground, highest_points};
 use belvedere::io::{TableCells, TextRows, atomic, with_columns_read, write_table, write_tif_f32};
 use belvedere::raster::Raster;
 use belvedere::results::{ResultKind, georeference};
+use belvedere::vector::to_f32;
 use std::path::Path;
 
 /// Cells from which nothing of the landmark is seen: apart from the dark violet of a little.
@@ -66,8 +67,7 @@ fn write_measure(
     cloud: &PointCloud,
 ) -> Result<()> {
     let grid = ground.grid;
-    #[expect(clippy::cast_possible_truncation, reason = "rasters of measures are f32")]
-    let values = views.iter().map(|view| measure.of(view) as f32).collect();
+    let values = views.iter().map(|view| to_f32(measure.of(view))).collect();
     let raster = Raster::from_values(grid.width, grid.height, values)?;
     let place = georeference(&grid, &cloud.frame);
     Ok(write_tif_f32(output, &raster, Some(&place), Some(ResultKind::NO_NUMBER), Some(measure.description))?)

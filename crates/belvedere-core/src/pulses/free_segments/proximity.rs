@@ -2,7 +2,7 @@
 
 use super::tree::{SegmentAxis, SegmentNode};
 use super::{FreeSegment, FreeSegments, GAP_M};
-use belvedere_data::vector::{dot, sub, unit};
+use belvedere_data::vector::{dot, sub, to_f32, unit};
 use std::ops::ControlFlow;
 
 /// Minimum length of a piece of a line, metres, more than the padding of boxes in the tree. All free segments of a
@@ -125,9 +125,8 @@ impl FreeSegments {
     /// most `max` metres; 0 where there is none.
     #[must_use]
     pub fn clearance(&self, center: [f32; 3], max: f32) -> f32 {
-        #[expect(clippy::cast_possible_truncation, reason = "below `most`")]
         self.nearest_distance(center.map(f64::from), (max + GAP_M).into())
-            .map_or(max, |distance| (distance as f32 - GAP_M).max(0.0))
+            .map_or(max, |distance| (to_f32(distance) - GAP_M).max(0.0))
     }
 
     /// Returns an interval of the line through `origin` along the unit vector `direction` on which one segment is
@@ -162,10 +161,8 @@ impl FreeSegments {
         mut visit: impl FnMut(&[FreeSegment]) -> ControlFlow<T, f64>,
     ) -> Option<T> {
         // rounded up, and `may_enter` adds the rounding of coordinates
-        #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
-        let up = |reach: f64| (reach as f32).next_up();
-        #[expect(clippy::cast_possible_truncation, reason = "local coordinates")]
-        let center = point.map(|v| v as f32);
+        let up = |reach: f64| to_f32(reach).next_up();
+        let center = point.map(to_f32);
         if !(reach > 0.0) || !center.iter().all(|v| v.is_finite()) {
             return None;
         }

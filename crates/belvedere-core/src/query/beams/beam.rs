@@ -3,7 +3,7 @@
 use super::blockers::IndexNode;
 use super::lanes::ConvexSpace;
 use crate::query::target_tree::TargetNode;
-use belvedere_data::vector::{cross, dot, sub};
+use belvedere_data::vector::{cross, dot, sub, to_f32};
 
 /// Origin of beams.
 #[derive(Clone, Copy)]
@@ -39,9 +39,8 @@ impl Beam {
             Apex::Direction(direction) => Some(direction),
         };
         let mut beam = Self { space: ConvexSpace::all(), width: 0.0, growth: [0.0; 3] };
-        #[expect(clippy::cast_possible_truncation, reason = "widened by more than what is rounded")]
         let mut bound = |plane: usize, normal: [f64; 3], offset: f64| {
-            beam.space.set(plane, normal.map(|v| v as f32), (offset + room) as f32);
+            beam.space.set(plane, normal.map(to_f32), to_f32(offset + room));
         };
         let range = |value: &dyn Fn(&[f64; 3]) -> f64| {
             let values = corners.iter().map(value);
@@ -91,10 +90,9 @@ impl Beam {
                 }
             }
         }
-        #[expect(clippy::cast_possible_truncation, reason = "only decides which nodes are opened")]
         {
-            beam.width = start_width as f32;
-            beam.growth = growth.map(|v| v as f32);
+            beam.width = to_f32(start_width);
+            beam.growth = growth.map(to_f32);
         }
         beam
     }

@@ -12,7 +12,7 @@ use crate::query::target_tree::{LEAF, TargetNode, TargetTree};
 use crate::query::{MedialScene, Viewer};
 use crate::ray_index::{Ray, RayIndex};
 use belvedere_data::control::Control;
-use belvedere_data::vector::{dot, sub};
+use belvedere_data::vector::{dot, sub, to_f32};
 use belvedere_data::{Error, Result};
 use std::ops::Range;
 
@@ -105,8 +105,7 @@ impl<'a> TreeSweep<'a> {
         let mut lists = Lists::default();
         let index = self.scene.tree().index();
         if let Some(root) = index.root() {
-            #[expect(clippy::cast_possible_truncation, reason = "beams are widened by more than what is rounded")]
-            let side = |axis: usize, sign: f64| (index.center()[axis] + sign * index.half_size()[axis]) as f32;
+            let side = |axis: usize, sign: f64| to_f32(index.center()[axis] + sign * index.half_size()[axis]);
             let sides = std::array::from_fn(|axis| [side(axis, -1.0), side(axis, 1.0)]);
             lists.nodes.push(IndexNode { sides, number: root });
         }
@@ -419,12 +418,8 @@ impl<'a> TreeSweep<'a> {
     /// The first ball of these blocks that blocks a line of sight; each is first tested with the fast bounds of `K`.
     #[inline(always)]
     fn blocked_among<K: Kernels>(&self, ray: &Ray, balls: &[BallBlock]) -> Option<u32> {
-        #[expect(clippy::cast_possible_truncation, reason = "balls count as larger by more than what is rounded")]
-        let line = HalfLine {
-            origin: ray.origin.map(|v| v as f32),
-            direction: ray.direction.map(|v| v as f32),
-            room: self.room as f32,
-        };
+        let line =
+            HalfLine { origin: ray.origin.map(to_f32), direction: ray.direction.map(to_f32), room: to_f32(self.room) };
         for block in balls {
             for lane in K::near_line(&block.columns, &line) {
                 if self.scene.front(block.row[lane] as usize, ray).is_some() {

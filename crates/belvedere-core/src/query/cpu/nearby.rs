@@ -3,6 +3,7 @@
 use crate::blocking::{Ball, Cover};
 use crate::query::ball_tree::BallTree;
 use crate::ray_index::{NodePart, PARTS, Ray};
+use belvedere_data::vector::to_f32;
 
 /// Distance to the sides of a target, and above it, up to which balls count as near, metres. Beyond, rising rays have
 /// left the surface of the target.
@@ -84,10 +85,9 @@ impl Nearby {
         }
         let Cover { towards, cosine, highest } = tree.rule().cover(ball, target);
         if highest > -f64::from(ROUNDING) {
-            #[expect(clippy::cast_possible_truncation, reason = "tests allow for it")]
             let [x, y, z, cosine, highest] =
                 [towards[0], towards[1], towards[2], cosine - f64::from(ROUNDING), highest + f64::from(ROUNDING)]
-                    .map(|v| v as f32);
+                    .map(to_f32);
             self.taken.push(([x, y, z, cosine], highest, row));
         }
     }
@@ -115,8 +115,7 @@ impl Nearby {
     /// Returns true if a ball near the target blocks `ray`.
     #[inline]
     pub(super) fn blocks(&self, tree: &BallTree, ray: &Ray) -> bool {
-        #[expect(clippy::cast_possible_truncation, reason = "the cosine allows for it")]
-        let [x, y, z] = ray.direction.map(|v| v as f32);
+        let [x, y, z] = ray.direction.map(to_f32);
         let reaching = self.covers.iter().take_while(|(_, highest)| *highest >= z);
         reaching.zip(self.rows.chunks(LANES)).any(|(([cx, cy, cz, cosine], _), rows)| {
             let meets: [bool; LANES] =

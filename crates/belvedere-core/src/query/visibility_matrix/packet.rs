@@ -5,7 +5,7 @@
 
 use super::super::ball_tree::{BallTree, MARGIN, near_reach};
 use crate::ray_index::{END, Ray, Visit};
-use belvedere_data::vector::{cross, dot, sub, unit};
+use belvedere_data::vector::{cross, dot, sub, to_f32, unit};
 
 /// Maximum number of lines of a packet.
 pub(super) const LANES: usize = 8;
@@ -145,11 +145,6 @@ impl Visit for Search<'_, '_> {
         }
         if self.left == 0 { END } else { f32::INFINITY }
     }
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "what is rounded is far less than the margins")]
-fn to_f32(value: f64) -> f32 {
-    value as f32
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ mod pulse_grid;
 use crate::pulses::scanner_report::FoundStation;
 use belvedere_data::cloud::to_local;
 use belvedere_data::control::Control;
+use belvedere_data::vector::to_f32;
 use belvedere_data::{PointCloud, Result};
 use floor_holes::floor_holes;
 use pulse_grid::{StationFit, crowding, filled_share, fit};
@@ -235,9 +236,7 @@ fn seen_from(points: &[[f32; 3]], stations: &[StationFit], control: &Control<'_>
             let level = x.hypot(y);
             let column = count_of(y.atan2(x).rem_euclid(TAU) / side).min(size[0]) - 1;
             let row = count_of((z.atan2(level) + FRAC_PI_2) / side).min(size[1]) - 1;
-            #[expect(clippy::cast_possible_truncation, reason = "a range of some hundred metres")]
-            let range = level.hypot(z) as f32;
-            (row * size[0] + column, range)
+            (row * size[0] + column, to_f32(level.hypot(z)))
         };
         points.par_iter().for_each(|p| {
             let (cell, range) = seen(p);
