@@ -56,7 +56,7 @@ fn a_model_is_what_the_stages_make_one_after_the_other() {
     let attributes = &clean.attributes;
     let input = CarvedInput {
         oriented: &oriented,
-        measured: oriented.positions(),
+        measured: &clean.positions,
         index: &index,
         attributes,
         free_segments: &free_segments,
