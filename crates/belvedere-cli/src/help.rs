@@ -117,7 +117,7 @@ const RARE: &[&str] = &[
 ];
 /// The same of commands with many flags.
 const RARE_IN: &[(&str, &[&str])] = &[
-    ("shadow", &["certain", "film", "self", "target-height"]),
+    ("shadow", &["certain", "film", "location", "self", "target-height"]),
     ("sun-hours", &["target-height"]),
     ("irradiance", &["min-cells", "target-height"]),
     ("cameras", &["existing", "pixels", "target-height", "tilt"]),

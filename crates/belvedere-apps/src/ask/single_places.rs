@@ -57,12 +57,20 @@ pub fn position_on_map(given: [f64; 2], crs: &Crs, bounds: [[f64; 2]; 2]) -> Res
     let [latitude, longitude] = given;
     let mut way_out = "on the points of the cloud";
     if latitude.abs() <= 90.0 && longitude.abs() <= 180.0 {
-        let projected = crs.geographic_projection()?.project(latitude.to_radians(), longitude.to_radians())?;
-        let place = projected.map(|v| v / crs.metres_per_unit);
-        if is_inside(&place) {
+        let projection = crs.geographic_projection()?;
+        let projected = |latitude: f64, longitude: f64| {
+            let place = projection.project(latitude.to_radians(), longitude.to_radians()).ok()?;
+            Some(place.map(|v| v / crs.metres_per_unit)).filter(is_inside)
+        };
+        if let Some(place) = projected(latitude, longitude) {
             return Ok(place);
         }
-        way_out = "on the points of the cloud, as latitude and longitude in degrees, or in the coordinates of the file";
+        way_out = match projected(longitude, latitude) {
+            Some(_) => "latitude before longitude: these are swapped",
+            None => {
+                "on the points of the cloud, as latitude and longitude in degrees, or in the coordinates of the file"
+            }
+        };
     }
     let [[west, south], [east, north]] = bounds;
     Err(Error::InvalidParameter {
@@ -224,6 +232,7 @@ mod tests {
         for wrong in [[136_000.0, 455_000.0], [5.387_2, 52.155_2], [f64::NAN, 0.0]] {
             let error = position_on_map(wrong, &crs, bounds).unwrap_err().to_string();
             assert!(error.contains("154000, 462000"), "{error}");
+            assert_eq!(error.contains("swapped"), wrong[1] == 52.155_2, "{error}");
         }
         // without a reference system, small coordinates are those of the file
         let unknown = Crs::default();

@@ -47,7 +47,7 @@ fn a_device_gives_the_results_of_the_cpu_and_is_named() {
             ("sky-view balls.npz --ground cloud=field.laz --cell 2", "tif"),
             ("sun-hours balls.npz --ground cloud=field.laz --date 2026-03-21 --cell 2", "tif"),
             ("shadow balls.npz --ground cloud=field.laz --sun 160,35 --cell 0.5", "tif"),
-            ("viewshed balls.npz --ground cloud=field.laz --observer 85020,446020 --cell 1", "tif"),
+            ("viewshed balls.npz --ground cloud=field.laz --observer 85020,446020 --cell 0.5", "tif"),
             ("depth-map balls.npz --sun 160,35", "npy"),
         ] {
             let of_cpu = place.summary(&format!("{command} --device cpu -o cpu.{output}"));
