@@ -192,10 +192,10 @@ impl CrownLight {
 
 impl CrownLight {
     /// The factors of seasons, without those of which neither a date nor a choice says what leaves are.
-    pub fn factors_asked(self, seasons: impl IntoIterator<Item = Option<Season>>) -> impl Iterator<Item = f64> {
+    pub fn known_factors(self, seasons: impl IntoIterator<Item = Option<Season>>) -> impl Iterator<Item = f64> {
         let (Self::Share { leaves, .. } | Self::Measured { leaves, .. }) = self;
-        let is_asked = move |season: &Option<Season>| leaves.foliage(*season).is_some();
-        seasons.into_iter().filter(is_asked).map(move |season| self.factor(season))
+        let is_known = move |season: &Option<Season>| leaves.foliage(*season).is_some();
+        seasons.into_iter().filter(is_known).map(move |season| self.factor(season))
     }
 }
 

@@ -361,7 +361,7 @@ impl Plan {
         let mut factors = Vec::new();
         for question in &questions {
             let prepared = question.prepare(self.trees, &mut context, control)?;
-            factors.extend(self.trees.map(|crowns| prepared.factors_asked(crowns)).unwrap_or_default());
+            factors.extend(self.trees.map(|crowns| prepared.known_factors(crowns)).unwrap_or_default());
         }
         context.add(self.trees.and_then(|crowns| remark_on_leaves(crowns, factors)));
         questions.iter().try_for_each(|question| question.check_pulses(self.can_prove()))?;

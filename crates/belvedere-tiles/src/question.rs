@@ -134,14 +134,14 @@ pub(crate) enum LightQuestion {
 }
 
 impl PreparedQuestion {
-    /// Factors of crowns in the seasons that it asks for ([`CrownLight::factors_asked`]).
-    pub(crate) fn factors_asked(&self, crowns: CrownLight) -> Vec<f64> {
+    /// Factors of crowns in the seasons that it asks for ([`CrownLight::known_factors`]).
+    pub(crate) fn known_factors(&self, crowns: CrownLight) -> Vec<f64> {
         let on = |plan: &SunPlan, site: &Site| {
-            crowns.factors_asked(plan.dates().map(|date| Some(Season::on(date, site)))).collect()
+            crowns.known_factors(plan.dates().map(|date| Some(Season::on(date, site)))).collect()
         };
         match self {
-            Self::Light(LightQuestion::Shadow(sun)) => crowns.factors_asked([sun.season]).collect(),
-            Self::Light(LightQuestion::Sky(..)) => crowns.factors_asked([None]).collect(),
+            Self::Light(LightQuestion::Shadow(sun)) => crowns.known_factors([sun.season]).collect(),
+            Self::Light(LightQuestion::Sky(..)) => crowns.known_factors([None]).collect(),
             Self::Light(LightQuestion::SunHours { plan, site, .. } | LightQuestion::SunRule { plan, site }) => {
                 on(plan, site)
             }

@@ -1,4 +1,4 @@
-//! Remarks: facts that a user must know to read an answer correctly, and further notes.
+//! Remarks: warnings that a user must know to read an answer correctly, and further notes.
 
 use belvedere_data::contradiction::{FoundContradiction, Outcome};
 use belvedere_data::report::percent;

@@ -130,7 +130,7 @@ impl Ask for ShadowQuestion {
         let seasons = kinds.iter().map(|sun| sun.season);
         let trees = (&self.trees, seasons.clone().flatten().next().map(|season| season.latitude), unproven);
         let light = Light::resolve(places, &directions, trees, scene, context, control)?;
-        context.add(light.crowns().and_then(|crowns| remark_on_leaves(crowns, crowns.factors_asked(seasons))));
+        context.add(light.crowns().and_then(|crowns| remark_on_leaves(crowns, crowns.known_factors(seasons))));
         let mut lit = control.stage("testing sun", light.steps(), || {
             scene_shadow(light.obstacles(), &light.targets, &kinds, self.edges, control)
         })?;

@@ -77,7 +77,7 @@ impl Ask for SkyViewQuestion {
         let sky = self.sky.directions()?;
         let trees = (&self.trees, None, UnprovenAs::Visible);
         let light = Light::resolve(places, &sky.directions, trees, scene, context, control)?;
-        context.add(light.crowns().and_then(|crowns| remark_on_leaves(crowns, crowns.factors_asked([None]))));
+        context.add(light.crowns().and_then(|crowns| remark_on_leaves(crowns, crowns.known_factors([None]))));
         let seen = control.stage("testing sky", light.steps(), || {
             scene_sky_view(light.obstacles(), &light.targets, &sky, Intervals::wanted(self.interval), control)
         })?;

@@ -145,7 +145,7 @@ impl Ask for SunHoursQuestion {
         let trees = (&self.trees, Some(site.latitude), UnprovenAs::Visible);
         let light = Light::resolve(places, plan.directions(), trees, scene, context, control)?;
         let seasons = plan.dates().map(|date| Some(Season::on(date, &site)));
-        context.add(light.crowns().and_then(|crowns| remark_on_leaves(crowns, crowns.factors_asked(seasons))));
+        context.add(light.crowns().and_then(|crowns| remark_on_leaves(crowns, crowns.known_factors(seasons))));
         let targets = &light.targets;
         let sums = control.stage("testing sun", light.steps(), || {
             let intervals = Intervals::wanted(has_interval);

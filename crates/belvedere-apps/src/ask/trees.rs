@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ThroughTrees {
-    /// What pulses measured, where they did, with the leaves of the day asked for; none where they did not.
+    /// The transmission measured by pulses, with the leaves of the date of the question; none without measurements.
     Measured(Leaves),
     /// As measured; refused where nothing was.
     Pulses(Leaves),
@@ -37,8 +37,8 @@ impl ThroughTrees {
         matches!(self, Self::Seasons(_) | Self::Share(_))
     }
 
-    /// What crowns let through, where pulses measured that or not; `None` where trees are opaque. `density` is how dense
-    /// crowns were then ([`density_at`]), where that is known.
+    /// Returns the transmission of crowns, measured or assumed; `None` for opaque trees. `density` is that of the crowns
+    /// at the time ([`density_at`]), where that is known.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a share out of range, and for pulses that measured nothing.
@@ -102,8 +102,8 @@ pub fn density_at(days: &FlightDays, latitude: Option<f64>, whereabouts: &Wherea
     measured_density(days, latitude.or_else(by_system)?)
 }
 
-/// What to know of the leaves of crowns that were measured, where a question asks for them in these seasons
-/// ([`CrownLight::factors_asked`]).
+/// Returns a remark on the leaves of measured crowns in the seasons of a question
+/// ([`CrownLight::known_factors`]).
 pub fn remark_on_leaves(crowns: CrownLight, factors: impl IntoIterator<Item = f64>) -> Option<Remark> {
     let CrownLight::Measured { density, .. } = crowns else { return None };
     let mut factors = factors.into_iter();
@@ -117,7 +117,7 @@ pub fn remark_on_leaves(crowns: CrownLight, factors: impl IntoIterator<Item = f6
     let [happened, shadows] = if other > 1.0 { ["come out", "dark"] } else { ["fallen", "light"] };
     let text = format!(
         "crowns are taken to be {factor} times as dense as they were measured, since leaves have {happened}; evergreen \
-         trees are not told apart, and their shadows are too {shadows}"
+         trees are not separated, and their shadows are too {shadows}"
     );
     Some(Remark::note("leaves-unlike-measured", text).with("factor", factor))
 }

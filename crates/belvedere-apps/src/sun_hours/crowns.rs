@@ -75,8 +75,8 @@ pub fn sun_hours_through_crowns(
     Ok(hours)
 }
 
-/// Days of a schedule with a copy of the directions for each factor of a day: the same sun may be free on one day and not
-/// on another.
+/// Days of a schedule with a copy of the directions for each factor of a day: the same sun may be free on one day and
+/// not on another.
 struct DaysByFactor {
     /// Different factors.
     factors: Vec<f64>,

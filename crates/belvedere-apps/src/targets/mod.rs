@@ -38,8 +38,8 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Default distance of targets from the ground, roof, facade or window that they lie on, metres. It is twice the noise
-/// of usual airborne surveys, and the height of the rails of panels. Points of surfaces lie up to a few centimetres below
-/// the balls around them.
+/// of usual airborne surveys, and the height of the rails of panels. Points of surfaces lie up to a few centimetres
+/// below the balls around them.
 pub const TARGET_LIFT: f64 = 0.1;
 /// Targets handed to a thread at once.
 const CHUNK: usize = 1024;

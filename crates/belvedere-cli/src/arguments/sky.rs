@@ -86,7 +86,7 @@ pub(crate) struct SkyPlacesChoice {
     ///
     /// Without Z it is --target-height above the ground, or above the roof that covers it. The answer is printed, of
     /// sun hours with the interval that holds the truth in nine of ten cases; -o is not needed.
-    #[arg(long, value_name = "PLACE", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
     pub(crate) at: Vec<MapPosition>,
 }
 

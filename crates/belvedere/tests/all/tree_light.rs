@@ -145,7 +145,7 @@ fn crowns_measured_bare_are_denser_in_leaf_by_what_leaves_take_of_the_light() {
     let crowns = |density, leaves| CrownLight::Measured { leaves, density, shadows: CrownShadows::Answers };
     let on = |day_of_year| Some(Season { day_of_year, latitude: north });
     let of_winter = crowns(density(&[winter], north), Leaves::ByDate);
-    // as flown in winter and where no date is asked for, and by leaves in summer
+    // as flown in winter and without a date, and by leaves in summer
     assert_eq!([on(41), None, on(172)].map(|season| of_winter.factor(season)), [1.0, 1.0, 1.0 / bare]);
     let of_summer = crowns(density(&[summer], north), Leaves::ByDate);
     assert_eq!([on(41), None, on(172)].map(|season| of_summer.factor(season)), [bare, 1.0, 1.0]);
@@ -160,7 +160,7 @@ fn a_remark_says_what_became_of_leaves() {
     let crowns = |density, leaves| CrownLight::Measured { leaves, density, shadows: CrownShadows::Answers };
     let in_june = Some(Season { day_of_year: 172, latitude: 0.9 });
     let key =
-        |crowns: CrownLight, season| remark_on_leaves(crowns, crowns.factors_asked([season])).map(|remark| remark.key);
+        |crowns: CrownLight, season| remark_on_leaves(crowns, crowns.known_factors([season])).map(|remark| remark.key);
     let unlike = Some("leaves-unlike-measured");
     assert_eq!(key(crowns(Some(0.2), Leaves::ByDate), in_june), unlike);
     assert_eq!(key(crowns(Some(1.0), Leaves::ByDate), in_june), None);
@@ -168,7 +168,7 @@ fn a_remark_says_what_became_of_leaves() {
     assert_eq!(key(crowns(None, Leaves::ByDate), in_june), Some("leaves-not-known"));
     assert_eq!(key(crowns(None, Leaves::ByDate), None), None);
     let denser = crowns(Some(0.25), Leaves::ByDate);
-    let remark = remark_on_leaves(denser, denser.factors_asked([in_june])).unwrap();
+    let remark = remark_on_leaves(denser, denser.known_factors([in_june])).unwrap();
     assert!(remark.text.contains("4 times as dense") && remark.text.contains("too dark"), "{}", remark.text);
 }
 

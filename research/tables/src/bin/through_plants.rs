@@ -7,9 +7,9 @@
 //!
 //! prints a table of docs/methods/tree-light.md. `pulse` keeps out a tenth of the pulses, `line` whole flight lines,
 //! one after the other. A pulse that was kept out and runs through crowns of the model has a truth: the share of its
-//! returns that lie behind all plants, on the ground, within half a metre above it, or on roofs. Predicted are 0 or 1 by balls, which are opaque; 0.03
-//! where balls of plants stand in the way (`seasons` without a medium); and exp(−τ) of the medium. A pulse that ends in
-//! a plant is followed to the ground.
+//! returns that lie behind all plants, on the ground, within half a metre above it, or on roofs. Predicted are 0 or 1
+//! by balls, which are opaque; 0.03 where balls of plants stand in the way (`seasons` without a medium); and exp(−τ) of
+//! the medium. A pulse that ends in a plant is followed to the ground.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
 use belvedere::control::Control;
