@@ -188,8 +188,8 @@ impl Outlines {
     }
 
     /// The class of each target of a block, whose first columns are these directions and whose crowns have a
-    /// [`factor`](crate::tree_light::CrownLight::factor), by which of the targets are inside obstacles. A target that is
-    /// turned away from a direction by its normal does not see it.
+    /// [`factor`](crate::tree_light::CrownLight::factor), by which of the targets are inside obstacles. A target that
+    /// is turned away from a direction by its normal does not see it.
     ///
     /// # Errors
     /// Those of [`RowBlock::free_lines`].

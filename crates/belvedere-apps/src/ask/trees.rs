@@ -37,8 +37,8 @@ impl ThroughTrees {
         matches!(self, Self::Seasons(_) | Self::Share(_))
     }
 
-    /// Returns the transmission of crowns, measured or assumed; `None` for opaque trees. `density` is that of the crowns
-    /// at the time ([`density_at`]), where that is known.
+    /// Returns the transmission of crowns, measured or assumed; `None` for opaque trees. `density` is that of the
+    /// crowns at the time ([`density_at`]), where that is known.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a share out of range, and for pulses that measured nothing.

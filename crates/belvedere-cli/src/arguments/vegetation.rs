@@ -10,8 +10,8 @@ pub(crate) struct ThroughTreesArguments {
     /// Light that passes through tree crowns: measured, none, seasons, pulses, or a number from 0 to 1
     ///
     /// measured: as far as laser pulses passed each cubic metre of the crown, and none where that is not known; a place
-    /// behind crowns is lit where half or more passes, and sums count the share. Leaves are those of the date of
-    /// the question: crowns measured without leaves are five times as dense in leaf. none: crowns are solid. seasons: as
+    /// behind crowns is lit where half or more passes, and sums count the share. Leaves are those of the date of the
+    /// question: crowns measured without leaves are five times as dense in leaf. none: crowns are solid. seasons: as
     /// measured, and shadow is a share of light; 0.03 in leaf and 0.5 without leaves where nothing was measured
     /// (Konarska et al. 2014). pulses: as measured, and an error where nothing was. A number: this share, through any
     /// crown.
