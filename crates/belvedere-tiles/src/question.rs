@@ -134,7 +134,7 @@ pub(crate) enum LightQuestion {
 }
 
 impl PreparedQuestion {
-    /// Factors of crowns in the seasons that it asks for ([`CrownLight::known_factors`]).
+    /// Factors of crowns in the seasons of the question ([`CrownLight::known_factors`]).
     pub(crate) fn known_factors(&self, crowns: CrownLight) -> Vec<f64> {
         let on = |plan: &SunPlan, site: &Site| {
             crowns.known_factors(plan.dates().map(|date| Some(Season::on(date, site)))).collect()

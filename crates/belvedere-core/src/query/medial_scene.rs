@@ -96,7 +96,7 @@ impl MedialScene {
         self.prepared.get_or_make(|| self.backend.prepare(&self.tree)).map(AsRef::as_ref)
     }
 
-    /// The same balls, with proven and unproven lines of sight told apart.
+    /// The same balls, with proven and unproven lines of sight separated.
     #[must_use]
     pub fn with_pulses(mut self, proof: Proof) -> Self {
         self.proof = Some(proof);
