@@ -229,10 +229,12 @@ mod tests {
         let by_degrees = position_on_map([52.155_174_40, 5.387_206_21], &crs, bounds).unwrap();
         assert!((by_degrees[0] - 155_000.0).abs() < 0.5 && (by_degrees[1] - 463_000.0).abs() < 0.5, "{by_degrees:?}");
         assert_eq!(position_on_map([155_100.0, 463_200.0], &crs, bounds).unwrap(), [155_100.0, 463_200.0]);
-        for wrong in [[136_000.0, 455_000.0], [5.387_2, 52.155_2], [f64::NAN, 0.0]] {
+        for (wrong, is_swapped) in
+            [([136_000.0, 455_000.0], false), ([5.387_2, 52.155_2], true), ([f64::NAN, 0.0], false)]
+        {
             let error = position_on_map(wrong, &crs, bounds).unwrap_err().to_string();
             assert!(error.contains("154000, 462000"), "{error}");
-            assert_eq!(error.contains("swapped"), wrong[1] == 52.155_2, "{error}");
+            assert_eq!(error.contains("swapped"), is_swapped, "{error}");
         }
         // without a reference system, small coordinates are those of the file
         let unknown = Crs::default();
