@@ -157,7 +157,7 @@ pub enum CrownLight {
     },
 }
 
-/// What shadows behind crowns that were measured are.
+/// Kind of the shadows behind measured crowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CrownShadows {
@@ -210,8 +210,8 @@ pub fn crown_density(foliage: Foliage) -> f64 {
     }
 }
 
-/// How dense crowns were on the days on which they were measured at a latitude, radians: the mean [`crown_density`] of
-/// the points; `None` where no day is known.
+/// Returns the density of crowns on the days of measurement at a latitude, radians: the mean [`crown_density`] of the
+/// points; `None` if no day is known.
 #[must_use]
 pub fn measured_density(days: &FlightDays, latitude: f64) -> Option<f64> {
     let dated = days.iter().filter_map(|(date, points)| Some((Date::parse(date).ok()?.day_of_year(), points as f64)));

@@ -419,8 +419,8 @@ impl Plan {
         self.statistics.know_crowns()
     }
 
-    /// How dense crowns were on the days of the survey, at a latitude, radians, or else where its reference system puts
-    /// it; `None` where the days or the place are not known.
+    /// Returns the density of crowns on the days of the survey, at a latitude, radians, or else at the place of its
+    /// reference system; `None` if the days or the place are not known.
     ///
     /// # Errors
     /// Those of [`Plan::frame`].

@@ -37,7 +37,7 @@ pub(crate) struct LoadingState {
     /// Remarks on the files and the scene, shown beside every answer.
     pub(crate) remarks: Vec<Value>,
     pub(crate) failure: Option<String>,
-    /// How the cloud is read, where the page may choose otherwise.
+    /// Up axis and unit of the cloud, if the page may choose others.
     pub(crate) reading: Option<ReadingChoice>,
     /// A choice of the page that is not read yet.
     requested: Option<ReadingChoice>,
@@ -117,7 +117,7 @@ impl Loading {
         true
     }
 
-    /// What the page chose, once.
+    /// Takes the choice of the page, once.
     #[must_use]
     pub fn take_requested_reading(&self) -> Option<ReadingChoice> {
         self.state().requested.take()

@@ -1,9 +1,9 @@
-//! How a cloud is read that does not say it: the axis that is up and the unit, as somebody chooses on the page.
+//! Choice of the up axis and the unit of a cloud that does not name them, made on the page.
 
 use crate::plans::quoted;
 use serde::{Deserialize, Serialize};
 
-/// What somebody chose where the files do not tell. By default z is up, and the unit is that of the files, or metres.
+/// The choice for files that name neither. By default z is up, and the unit is that of the files, or metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]

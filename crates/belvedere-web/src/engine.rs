@@ -49,7 +49,7 @@ pub struct OpenRequest {
     /// Reference system of files that name none, such as `EPSG:7415`.
     #[serde(default)]
     pub crs: Option<String>,
-    /// How files are read that do not say it.
+    /// Up axis and unit of files that do not name them.
     #[serde(default)]
     pub reading: ReadingChoice,
     /// Only points between these corners of the map are read: west, south, east, north in the coordinates of the file,

@@ -275,7 +275,7 @@ pub struct TreesSection {
     /// First and last day on which they were measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     crowns_measured: Option<[String; 2]>,
-    /// How dense they were then, as a share of what they are in leaf.
+    /// Density of the crowns at that time, as a share of that in leaf.
     #[serde(skip_serializing_if = "Option::is_none")]
     density_when_measured: Option<f64>,
 }

@@ -18,7 +18,7 @@ use serde::Serialize;
 const MAX_SENTENCES: usize = 5;
 /// Figures of a sentence.
 const MAX_FIGURES: usize = 5;
-/// How far beside a cloud a place may lie, metres: as far as targets are taken.
+/// Maximum distance of a place from the box of the points, metres: that of targets of a scene.
 const MARGIN: f64 = 1.0;
 
 /// A single place of a question.
@@ -26,11 +26,11 @@ const MARGIN: f64 = 1.0;
 pub struct PlaceSection {
     /// Position in the coordinates of the file; the height is NaN where none is known.
     pub position: [f64; 3],
-    /// What the height was taken from.
+    /// Source of the height.
     pub height_from: HeightFrom,
 }
 
-/// What the height of a place was taken from.
+/// Source of the height of a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum HeightFrom {

@@ -51,7 +51,7 @@ impl Light {
         Ok(Self { targets, near_edge, blockers, trees })
     }
 
-    /// What crowns let through; `None` where they are opaque.
+    /// Returns the transmission of crowns; `None` for opaque ones.
     pub(super) fn crowns(&self) -> Option<CrownLight> {
         self.trees.as_ref().map(|trees| trees.crowns)
     }

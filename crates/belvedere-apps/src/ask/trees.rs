@@ -17,21 +17,20 @@ use serde::{Deserialize, Serialize};
 pub enum ThroughTrees {
     /// The transmission measured by pulses, with the leaves of the date of the question; none without measurements.
     Measured(Leaves),
-    /// As measured; refused where nothing was.
+    /// The measured transmission; an error without measurements.
     Pulses(Leaves),
     /// None: crowns are solid balls. Default.
     #[default]
     Opaque,
-    /// As measured, and shadows are shares of light; 0.03 and 0.5 of the light ([`Transmissivity::default`]) where
-    /// nothing was measured. Crowns that were measured on an unknown day count as measured in leaf.
+    /// The measured transmission, with shadows as shares of light; without measurements 0.03 and 0.5
+    /// ([`Transmissivity::default`]). Crowns measured on an unknown day count as measured in leaf.
     Seasons(Leaves),
     /// This share, 0 to 1, through any crown.
     Share(f64),
 }
 
 impl ThroughTrees {
-    /// Whether answers are shares of light because of trees. What pulses measured is a yes or no, and a share beside
-    /// it.
+    /// Returns true if trees make answers shares of light. Measured crowns give a yes or no, and a share beside it.
     #[must_use]
     pub fn is_light(&self) -> bool {
         matches!(self, Self::Seasons(_) | Self::Share(_))
@@ -91,8 +90,8 @@ impl ThroughTrees {
     }
 }
 
-/// How dense crowns were on the days of a survey ([`measured_density`]), at a latitude, radians, or else where its
-/// reference system puts it; `None` where the days or the place are not known.
+/// Returns the density of crowns on the days of a survey ([`measured_density`]), at a latitude, radians, or else at the
+/// place of its reference system; `None` if the days or the place are not known.
 #[must_use]
 pub fn density_at(days: &FlightDays, latitude: Option<f64>, whereabouts: &Whereabouts<'_>) -> Option<f64> {
     let by_system = || {

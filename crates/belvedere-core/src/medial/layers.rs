@@ -23,7 +23,7 @@ pub(super) struct Layers {
     side: f32,
     /// Cells along half the side of a block.
     cells_of_half_block: i64,
-    /// How far the local origin lies from the corner of its half block, and above a step of voxels, metres.
+    /// Offset of the local origin from the corner of its half block, and from the voxel side below it, metres.
     shift: [f32; 3],
     /// Number of the first cell east and north of that corner.
     first_cell: Cell,

@@ -14,7 +14,7 @@ pub struct FlightDays {
 }
 
 impl FlightDays {
-    /// Those of points with these attributes: GPS times tell a day where they count from 1980, and not from the
+    /// Counts the days of points with these attributes. GPS times name a day if they count from 1980, not from the
     /// beginning of a week.
     #[must_use]
     pub fn of(attributes: &Attributes) -> Self {
@@ -27,7 +27,7 @@ impl FlightDays {
         Self { points: days.into_iter().map(|(day, points)| (day_in_words(day), points)).collect() }
     }
 
-    /// Whether no day is known.
+    /// Returns true if no day is known.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
@@ -38,12 +38,12 @@ impl FlightDays {
         self.points.iter().map(|(date, &points)| (date.as_str(), points))
     }
 
-    /// As it is kept in the provenance of a model.
+    /// Writes the days as text for the provenance of a model.
     pub(super) fn to_text(&self) -> Option<String> {
         serde_json::to_string(self).ok()
     }
 
-    /// What [`FlightDays::to_text`] made; no day for what is none.
+    /// Reads the text of [`FlightDays::to_text`]; no days for other text.
     pub(super) fn from_text(text: &str) -> Self {
         serde_json::from_str(text).unwrap_or_default()
     }

@@ -79,7 +79,7 @@ const LOOKS_UP: [&str; 2] = ["axis_that_looks_up", "y"];
 /// Key of the survey findings in the provenance of a model.
 const FINDINGS: &str = "survey_findings";
 
-/// Where the provenance of a model keeps the days of the flight.
+/// Key of the days of the flight in the provenance of a model.
 const FLIGHT_DAYS: &str = "flight_days";
 
 impl SceneModel {

@@ -43,7 +43,7 @@ pub struct SurveyStatistics {
     /// Offsets of the heights of flight lines.
     #[serde(default)]
     pub strips: Vec<StripOffset>,
-    /// When its points were measured, by a sample of them.
+    /// Days on which its points were measured, by a sample of them.
     #[serde(default)]
     pub flight_days: FlightDays,
 }
