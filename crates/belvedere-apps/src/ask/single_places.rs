@@ -57,8 +57,10 @@ pub fn position_on_map(given: [f64; 2], crs: &Crs, bounds: [[f64; 2]; 2]) -> Res
     let [latitude, longitude] = given;
     let mut way_out = "on the points of the cloud";
     if latitude.abs() <= 90.0 && longitude.abs() <= 180.0 {
-        let projection = crs.geographic_projection()?;
+        crs.geographic_projection()?;
+        // a projection keeps the step between datums of its first place: each try has one of its own
         let projected = |latitude: f64, longitude: f64| {
+            let projection = crs.geographic_projection().ok()?;
             let place = projection.project(latitude.to_radians(), longitude.to_radians()).ok()?;
             Some(place.map(|v| v / crs.metres_per_unit)).filter(is_inside)
         };
