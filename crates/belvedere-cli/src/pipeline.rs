@@ -303,6 +303,7 @@ fn refuse_flags_of_clouds(arguments: &SceneInput, parameters: &BallParameters, p
         ("--bounds", arguments.input.bounds.is_some()),
         ("--lines", !arguments.input.flight_lines.is_empty()),
         ("--dates", arguments.input.dates.is_some()),
+        ("--flown", arguments.input.flown.is_some()),
         ("--only-classes", !arguments.input.only_classes.is_empty()),
         ("--orient", arguments.balls.orient.is_some()),
         ("--trees", arguments.balls.trees.is_some()),

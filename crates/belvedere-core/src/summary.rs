@@ -3,6 +3,7 @@
 mod facades;
 mod room;
 mod survey;
+mod unit;
 mod up_axis;
 
 use belvedere_data::Bounds;
@@ -12,8 +13,8 @@ use belvedere_data::control::Control;
 use std::collections::BTreeMap;
 
 pub use facades::{FacadeSummary, Walls};
-pub use room::unit_contradiction_of;
 pub use survey::SurveyKind;
+pub use unit::unit_contradiction_of;
 pub use up_axis::{cloud_looks_y_up, looks_y_up};
 
 /// Counts and ranges of a cloud.

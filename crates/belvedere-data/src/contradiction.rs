@@ -155,6 +155,24 @@ contradictions! {
     /// Clouds without a reference system are taken as metres.
     UNIT_OF_ROOM = "unit-of-room":
         "metres, as the unit of a cloud without a reference system", "height of a room from floor to ceiling", 9.0 "m", Warned;
+    /// The same outdoors: surveys with points so far apart show no walls.
+    UNIT_OF_SURVEY = "unit-of-survey":
+        "metres, as the unit of a cloud without a reference system", "distance between points of a cloud that shows upright surfaces", 5.0 "m", Warned;
+    /// Longitude and latitude as x and y: a survey in a cell of a map.
+    COORDINATES_IN_DEGREES = "coordinates-in-degrees":
+        "metres, as the unit of a cloud without a reference system", "width and depth of a cloud that is twenty times as high", 0.05 "m", Warned;
+    /// Writers that fill one of the two columns only.
+    RETURN_NUMBERS = "return-numbers":
+        "return numbers of points", "number of returns of their pulses", 0.01 "of the points", Warned;
+    /// Writers that keep the encoding of the header and change the times, or the other way round.
+    GPS_TIME_EPOCH = "gps-time-epoch":
+        "epoch of GPS times in a header", "GPS times, which no week has", 1_209_600.0 "s", Noted;
+    /// Days that a user gives for files that know their own.
+    FLIGHT_DAY = "flight-day":
+        "day of the flight", "GPS times that name their day", 31.0 "days", Warned;
+    /// Clocks of another continent.
+    CLOCK_OF_ZONE = "clock-of-zone":
+        "offset of a time or a zone from UTC", "mean solar time of the place", 4.0 "hours; UTC is taken anywhere", Warned;
     /// Trajectories in UTC beside clouds in GPS time.
     TRAJECTORY_TIME = "trajectory-time":
         "times of a trajectory", "directions of pulses with several returns", 0.3 "s", Warned;

@@ -7,6 +7,9 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// Rows from which on a table all of whose azimuths lie within 0 to 2π is one in radians: a table in degrees has rows
 /// of other azimuths then.
 const MIN_ROWS: usize = 3;
+/// Lowest and highest elevation of a table, degrees, from which on both are angles from the zenith: no terrain is that
+/// steep all around.
+const MIN_ZENITH_ANGLES: [f64; 2] = [45.0, 80.0];
 /// Rounding of azimuths in tables, degrees.
 const ROUNDING: f64 = 0.01;
 
@@ -57,7 +60,8 @@ impl HorizonProfile {
     /// # Errors
     /// - Errors of [`HorizonProfile::new`].
     /// - [`Error::InvalidParameter`] for azimuths beyond a full circle, such as those in gon, for azimuths that look
-    ///   like radians, and for a table without half of the circle ([`HORIZON_ANGLES`]).
+    ///   like radians, for elevations that look like angles from the zenith, and for a table without half of the circle
+    ///   ([`HORIZON_ANGLES`]).
     pub fn of_degrees(rows: &[[f64; 2]]) -> Result<Self> {
         let profile = Self::new(rows.iter().map(|row| row.map(f64::to_radians)))?;
         let refused =
@@ -66,7 +70,11 @@ impl HorizonProfile {
             let values = || rows.iter().map(|row| row[column]);
             [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
         };
-        let ([west, east], [_, steepest]) = (ends(0), ends(1));
+        let ([west, east], [lowest, steepest]) = (ends(0), ends(1));
+        if lowest >= MIN_ZENITH_ANGLES[0] && steepest >= MIN_ZENITH_ANGLES[1] {
+            let value = format!("elevations from {lowest} to {steepest}, which look like angles from the zenith");
+            return refused(value, "in degrees above the level: subtract them from 90");
+        }
         if west < -180.0 - ROUNDING || east > 360.0 + ROUNDING {
             let value = format!("azimuths from {west} to {east}");
             return refused(value, "in degrees, from -180 or 0 to a full circle; 400 gon are 360 degrees");
@@ -139,6 +147,7 @@ mod tests {
             (all_around(10.0, 400.0 / 360.0), "gon"),
             (vec![[0.0, 5.0], [90.0, 5.0], [180.0, 5.0], [400.0, 5.0]], "gon"),
             (vec![[0.0, 5.0], [-270.0, 5.0], [180.0, 5.0]], "full circle"),
+            (vec![[0.0, 88.0], [90.0, 81.0], [180.0, 62.0], [270.0, 89.5]], "zenith"),
             (vec![[77.0, 5.0]], "1 rows"),
             (vec![[10.0, 5.0], [60.0, 5.0], [120.0, 3.0]], "250 degrees apart"),
         ] {

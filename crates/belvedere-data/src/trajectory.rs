@@ -12,6 +12,8 @@ pub const MAX_GAP_S: f64 = 2.0;
 
 /// Seconds in a GPS week.
 pub const WEEK_S: f64 = 604_800.0;
+/// Greatest time that is seconds of a week: flights that pass midnight on Saturday count on.
+pub const LONGEST_WEEK_S: f64 = 2.0 * WEEK_S;
 
 /// Difference between GPS time and adjusted standard GPS time, seconds.
 pub const ADJUSTED_STANDARD_S: f64 = 1e9;

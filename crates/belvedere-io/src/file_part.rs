@@ -8,7 +8,7 @@ use super::sky::Skies;
 use super::source::SystemBeside;
 use belvedere_data::Result;
 use belvedere_data::cloud::Attributes;
-use belvedere_data::contradiction::FoundContradiction;
+use belvedere_data::contradiction::{FoundContradiction, RETURN_NUMBERS};
 use belvedere_data::crs::evidence::Comparison;
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::vector::to_f32;
@@ -245,7 +245,14 @@ impl FilePart {
                 notes.push(format!("{zero} points have return number 0"));
             }
             if beyond > 0 {
-                notes.push(format!("{beyond} points have a return number above their number of returns"));
+                let text = format!("{beyond} points have a return number above their number of returns");
+                let share = beyond as f64 / numbers.len() as f64;
+                if RETURN_NUMBERS.is_exceeded_by(share) {
+                    let text = format!("{text}: their pulses are not known, and prove nothing");
+                    self.report.contradictions.push(RETURN_NUMBERS.found(text).with("points", beyond as f64));
+                } else {
+                    notes.push(text);
+                }
             }
         }
         if let Some(normals) = &mut attributes.normals {

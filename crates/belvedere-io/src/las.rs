@@ -12,6 +12,7 @@ use ::las::{PointData, PointDataBuilder, Transform, Vector};
 
 use super::copc::{self, ChunkPlace, CopcNodes};
 use super::file_part::{Coordinates, FilePart};
+use super::gps_epoch::GpsEpoch;
 use super::las_columns::{LasColumns, UnreadFields};
 use super::las_extra::{ExtraField, ExtraNormals, find_columns, find_extra_normals};
 use super::las_header::{COPC, LasHeader, RecordSize, read_header};
@@ -258,6 +259,8 @@ pub(super) fn read(source: Source<'_>, reading: &Reading<'_>) -> Result<FilePart
         }
         let unread;
         (part.coordinates, part.attributes, unread) = columns.finish();
+        points.gps_epoch.apply(&mut part.attributes);
+        points.gps_epoch.contradictions().for_each(|found| part.contradict(found));
         part.other_attributes.extend(unread.in_words());
         return check_bounds(part, points.bounds, points.scale);
     }
@@ -273,6 +276,7 @@ pub(super) fn read(source: Source<'_>, reading: &Reading<'_>) -> Result<FilePart
             rows.extend(batch.rows);
         }
     }
+    points.gps_epoch.contradictions().for_each(|found| part.contradict(found));
     points.passed_over.report(&mut part);
     part.other_attributes.extend(points.unread.in_words());
     check_bounds(part, points.bounds, points.scale)
@@ -367,7 +371,7 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
     let wanted = selection.as_ref().filter(|_| reading.options.row_numbers == RowNumbers::Dropped);
     let wanted = wanted.and_then(Selection::file_box);
     let (likely, format, scale, offset) = (announced.min(source.size), source.format, header.scale, header.offset);
-    let (bounds, adjusted_gps_time) = (header.bounds, header.adjusted_gps_time);
+    let (bounds, gps_epoch) = (header.bounds, GpsEpoch::new(header.gps_time_kind(), reading.options.flown));
     let mut passed_over = PassedOver::default();
     let batches = match wanted {
         Some(wanted) => {
@@ -387,7 +391,7 @@ pub(super) fn open<'a>(mut source: Source<'a>, reading: &Reading<'_>) -> Result<
         scale,
         offset,
         bounds,
-        adjusted_gps_time,
+        gps_epoch,
         normals,
         selection,
         passed_over,
@@ -405,7 +409,7 @@ pub(super) struct LasPoints<'a> {
     scale: [f64; 3],
     offset: [f64; 3],
     bounds: [[f64; 2]; 3],
-    adjusted_gps_time: bool,
+    gps_epoch: GpsEpoch,
     normals: Option<ExtraNormals>,
     selection: Option<Selection>,
     /// Number of points that the header and the size of the file make likely.
@@ -425,7 +429,7 @@ pub(super) struct SomePoints {
 
 impl LasPoints<'_> {
     fn columns(&self, capacity: usize) -> LasColumns {
-        LasColumns::new(&self.format, self.scale, self.offset, self.adjusted_gps_time, self.normals, capacity)
+        LasColumns::new(&self.format, self.scale, self.offset, self.normals, capacity)
     }
 
     /// The next points that `reading` requests, possibly none of a batch, or `None` at the end.
@@ -438,7 +442,8 @@ impl LasPoints<'_> {
         reading.control.advance(count);
         let first_row = self.next_row;
         self.next_row += count as u64;
-        let (coordinates, attributes, unread) = columns.finish();
+        let (coordinates, mut attributes, unread) = columns.finish();
+        self.gps_epoch.apply(&mut attributes);
         self.unread.add(unread);
         let Some(selection) = &self.selection else {
             return Ok(Some(SomePoints { coordinates, attributes, rows: (first_row..self.next_row).collect() }));
@@ -517,7 +522,7 @@ pub struct LasHead {
     pub bounds: [[f64; 3]; 2],
     /// Reference system; of kind unknown where the file names none.
     pub crs: Crs,
-    /// Epoch of GPS times; `None` for points without them.
+    /// Epoch of GPS times by the header; `None` for points without them.
     pub gps_times: Option<GpsTimeKind>,
     /// True if points name the channel of their scanner: point formats 6 to 10.
     pub has_channels: bool,
@@ -544,7 +549,7 @@ pub fn read_las_head<'a>(source: impl Into<Source<'a>>) -> Result<LasHead> {
     }
     let mut part = FilePart::new(&file.name, "");
     find_crs(&mut part, header, beside, header.middle());
-    let kind = if header.adjusted_gps_time { GpsTimeKind::AdjustedStandard } else { GpsTimeKind::SecondsOfWeek };
+    let kind = header.gps_time_kind();
     Ok(LasHead {
         points: file.points_in_file(),
         missing_points: header.points - file.points_in_file(),

@@ -51,7 +51,6 @@ impl LasColumns {
         format: &Format,
         scale: [f64; 3],
         offset: [f64; 3],
-        adjusted_gps_time: bool,
         extra_normals: Option<ExtraNormals>,
         capacity: usize,
     ) -> Self {
@@ -60,7 +59,7 @@ impl LasColumns {
             normals: extra_normals.map(|_| Vec::with_capacity(capacity)),
             classification: Some(Vec::with_capacity(capacity)),
             gps_time: format.has_gps_time.then(|| Vec::with_capacity(capacity)),
-            gps_time_kind: if adjusted_gps_time { GpsTimeKind::AdjustedStandard } else { GpsTimeKind::SecondsOfWeek },
+            gps_time_kind: GpsTimeKind::default(),
             return_number: Some(Vec::with_capacity(capacity)),
             return_count: Some(Vec::with_capacity(capacity)),
             scan_angle: Some(Vec::with_capacity(capacity)),

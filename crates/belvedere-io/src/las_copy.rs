@@ -345,7 +345,7 @@ impl RecordCopy<'_> {
     fn check(&self, file: &CopiedFile<'_>, batch: &PointData, chosen: &[usize], first: usize) -> Result<()> {
         let changed = || Error::malformed(file.path, "has other points than when it was read");
         let header = &file.header;
-        let mut columns = LasColumns::new(&file.format, header.scale, header.offset, header.adjusted_gps_time, None, 0);
+        let mut columns = LasColumns::new(&file.format, header.scale, header.offset, None, 0);
         columns.append(batch);
         let (coordinates, attributes, _) = columns.finish();
         let indices: Option<Vec<u32>> = chosen.iter().map(|&row| u32::try_from(row).ok()).collect();

@@ -7,7 +7,7 @@ use std::io::{Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
 
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, GpsTimeKind, Result};
 
 /// Part of the header that is needed to read the points.
 pub(super) struct LasHeader {
@@ -80,6 +80,11 @@ impl RecordSize {
 }
 
 impl LasHeader {
+    /// Epoch of GPS times that the header states.
+    pub(super) fn gps_time_kind(&self) -> GpsTimeKind {
+        if self.adjusted_gps_time { GpsTimeKind::AdjustedStandard } else { GpsTimeKind::SecondsOfWeek }
+    }
+
     /// The middle of the bounds on the map, in the unit of the file.
     pub(super) fn middle(&self) -> [f64; 2] {
         [0, 1].map(|axis| f64::midpoint(self.bounds[axis][0], self.bounds[axis][1]))

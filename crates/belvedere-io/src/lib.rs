@@ -39,6 +39,8 @@ mod geotiff;
 mod geotiff_cog;
 #[cfg(feature = "tiff")]
 mod geotiff_read;
+#[cfg(feature = "las")]
+mod gps_epoch;
 mod horizon_profile;
 #[cfg(feature = "las")]
 mod las;

@@ -35,6 +35,9 @@ pub struct ReadOptions {
     pub lines: Option<Vec<u16>>,
     /// Only points that were measured from one day to another, both included, in UTC, are read. Default: all.
     pub dates: Option<[CalendarDay; 2]>,
+    /// Day of the flight of LAS files whose GPS times are seconds of a week: these get the times of that week. Default:
+    /// the day is not known.
+    pub flown: Option<CalendarDay>,
     /// True to give the row of each point in its file. Default: false.
     pub row_numbers: RowNumbers,
     /// Axis of the files that is up. Default: z.
@@ -146,7 +149,14 @@ impl ReadOptions {
         self
     }
 
-    /// The same for the points of some days only, from the first to the last.
+    /// The same with the day of the flight of files whose GPS times are seconds of a week.
+    #[must_use]
+    pub fn with_flown(mut self, day: CalendarDay) -> Self {
+        self.flown = Some(day);
+        self
+    }
+
+    /// The same for the points of some days only, the first and the last included, in UTC.
     #[must_use]
     pub fn with_dates(mut self, dates: [CalendarDay; 2]) -> Self {
         self.dates = Some(dates);

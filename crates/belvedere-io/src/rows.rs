@@ -4,6 +4,7 @@ use super::file_part::{Coordinates, FilePart, to_u8, to_u16};
 use super::read_options::RowNumbers;
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 use belvedere_data::contradiction::COLUMN_TWICE;
+use belvedere_data::trajectory::LONGEST_WEEK_S;
 use belvedere_data::vector::to_f32;
 
 /// Meaning of a number of a point.
@@ -30,9 +31,6 @@ pub(super) enum Role {
 }
 
 const ROLES: usize = Role::Flags as usize + 1;
-
-/// Flights that pass midnight on Saturday may count on, but not for another week.
-const LONGEST_WEEK: f64 = 2.0 * 604_800.0;
 
 /// The numbers of one point, by role.
 #[derive(Clone, Copy, Debug)]
@@ -265,7 +263,7 @@ impl Rows {
         });
         let intensity = has(Role::Intensity).then(|| to_16_bit(part, "intensities", &self.intensities));
         // Only LAS files say what their times count from; a time that no week has can only be the other kind.
-        let in_a_week = |time: &f64| !time.is_finite() || (0.0..=LONGEST_WEEK).contains(time);
+        let in_a_week = |time: &f64| !time.is_finite() || (0.0..=LONGEST_WEEK_S).contains(time);
         let gps_time_kind = if self.gps_times.iter().all(in_a_week) {
             GpsTimeKind::SecondsOfWeek
         } else {

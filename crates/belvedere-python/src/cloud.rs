@@ -9,6 +9,7 @@ use belvedere::apps::ask::remark_on_left_out;
 use belvedere::cloud::{CloudFile, CloudFiles, FileRows};
 use belvedere::io::{ReadOptions, Source, UpAxis, Within, read_cloud, write_cloud};
 use belvedere::sky_region::SkyRegion;
+use belvedere::weather::CalendarDay;
 use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyOSError;
@@ -100,7 +101,7 @@ impl Seek for PythonFile<'_> {
 
 /// The cloud of some inputs, and the report on reading it as JSON.
 #[pyfunction]
-#[pyo3(signature = (inputs, crs, crs_override, up, skip_distant, bounds, classes, progress))]
+#[pyo3(signature = (inputs, crs, crs_override, up, skip_distant, bounds, classes, flown, progress))]
 #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
 pub(crate) fn read(
     py: Python<'_>,
@@ -111,6 +112,7 @@ pub(crate) fn read(
     skip_distant: bool,
     bounds: Option<[[f64; 3]; 2]>,
     classes: Option<Vec<u8>>,
+    flown: Option<String>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Cloud, String)> {
     let up = match up {
@@ -128,6 +130,13 @@ pub(crate) fn read(
     }
     options.within = bounds.map(|[low, high]| Within::File { low, high });
     options.classes = classes;
+    options.flown = match flown {
+        Some(text) => {
+            let day = CalendarDay::parse(&text);
+            Some(day.ok_or_else(|| wrong("flown", &format!("'{text}'"), "give a date such as '2014-02-03'"))?)
+        }
+        None => None,
+    };
     let (cloud, report) = run(py, progress, move |control| {
         let sources = inputs.iter().map(PyInput::source);
         control.stage("reading", 0, || read_cloud(sources, &options, control))

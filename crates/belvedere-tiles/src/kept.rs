@@ -25,6 +25,7 @@ impl Plan {
             plan.program == params.program
                 && plan.crs == params.crs
                 && plan.insistence() == params.crs_against_files
+                && plan.flown() == params.flown
                 && plan.inputs.iter().map(|input| &input.path).eq(&files)
         };
         if let Some(plan) = Self::read(folder).ok().filter(is_of_these) {

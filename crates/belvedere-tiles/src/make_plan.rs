@@ -12,6 +12,7 @@ use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{Insistence, LasHead, cloud_sources};
 use belvedere::model::{ModelParams, SurveyStatistics};
+use belvedere::weather::CalendarDay;
 use belvedere::{Error, Parameter, Result};
 use std::path::{Path, PathBuf};
 
@@ -32,6 +33,8 @@ pub struct PlanParams {
     pub crs: Option<String>,
     /// Whether it holds against the files and their coordinates. Default: contradictions are errors.
     pub crs_against_files: Insistence,
+    /// Day of the flight of files whose GPS times are seconds of a week. Default: not known.
+    pub flown: Option<CalendarDay>,
     /// Side of a tile, metres. Default 512: a multiple of the blocks of 64 m, so that no point is looked at for
     /// nothing.
     pub tile_size: f64,
@@ -52,6 +55,7 @@ impl Default for PlanParams {
             clouds: Vec::new(),
             crs: None,
             crs_against_files: Insistence::Refuse,
+            flown: None,
             tile_size: 512.0,
             cells: CellSizes::default(),
             places: Vec::new(),
@@ -79,7 +83,7 @@ impl Plan {
         let points = inputs.iter().map(|file| file.points).sum();
         let local = |v: [f64; 3]| [v[0] - frame.origin[0], v[1] - frame.origin[1]];
         let area = MapArea { low: local(low), high: local(high) };
-        let options = window::options(params.crs.as_deref(), params.crs_against_files, frame.to_frame()?);
+        let options = window::options(params.crs.as_deref(), params.crs_against_files, params.flown, frame.to_frame()?);
         let found = control.stage("surveying", usize::try_from(points).unwrap_or(0), || {
             survey(&files, &options, columns, points, &area, control)
         })?;
@@ -98,6 +102,7 @@ impl Plan {
             inputs,
             crs: params.crs.clone(),
             crs_override: params.crs_against_files == Insistence::Insist,
+            flown: params.flown.map(|day| day.to_string()),
             columns,
             tile_size: params.tile_size,
             cells: params.cells.clone(),

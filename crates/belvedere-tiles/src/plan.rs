@@ -22,6 +22,7 @@ use belvedere::model::{ClearedArea, ModelParams, SurveyStatistics};
 use belvedere::query::Coverage;
 use belvedere::results::ResultKind;
 use belvedere::shown::Address;
+use belvedere::weather::CalendarDay;
 use belvedere::{Bounds, Error, Frame, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -46,6 +47,9 @@ pub struct Plan {
     /// Whether it holds against the files.
     #[serde(default, skip_serializing_if = "is_false")]
     pub(crate) crs_override: bool,
+    /// Day of the flight that was given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) flown: Option<String>,
     pub(crate) frame: PlanFrame,
     pub(crate) columns: PointColumns,
     /// Side of a tile, metres.
@@ -131,6 +135,11 @@ impl Plan {
     /// Whether the reference system that was given holds against the files.
     pub(crate) fn insistence(&self) -> Insistence {
         if self.crs_override { Insistence::Insist } else { Insistence::Refuse }
+    }
+
+    /// Day of the flight that was given.
+    pub(crate) fn flown(&self) -> Option<CalendarDay> {
+        self.flown.as_deref().and_then(CalendarDay::parse)
     }
 
     /// Reads the plan of a run.

@@ -6,6 +6,7 @@ use crate::plan::Plan;
 use crate::survey::is_counted;
 use belvedere::control::Control;
 use belvedere::io::{Insistence, ReadOptions, Within, read_batches};
+use belvedere::weather::CalendarDay;
 use belvedere::{Error, Frame, PointCloud, Result};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -36,8 +37,8 @@ pub(crate) fn each_batch(
     if files.is_empty() {
         return Ok(());
     }
-    let options =
-        options(plan.crs.as_deref(), plan.insistence(), plan.frame()?).with_points_within(Within::Local(column));
+    let options = options(plan.crs.as_deref(), plan.insistence(), plan.flown(), plan.frame()?)
+        .with_points_within(Within::Local(column));
     for batch in read_batches(files, &options, control)? {
         take(batch?.cloud);
     }
@@ -75,8 +76,14 @@ pub(crate) fn check_counts(plan: &Plan, cloud: &PointCloud, area: &MapArea) -> R
     Ok(())
 }
 
-pub(crate) fn options(crs: Option<&str>, insistence: Insistence, frame: Frame) -> ReadOptions {
-    let options = ReadOptions::new().with_frame(frame);
+pub(crate) fn options(
+    crs: Option<&str>,
+    insistence: Insistence,
+    flown: Option<CalendarDay>,
+    frame: Frame,
+) -> ReadOptions {
+    let mut options = ReadOptions::new().with_frame(frame);
+    options.flown = flown;
     match (crs, insistence) {
         (Some(crs), Insistence::Refuse) => options.with_crs(crs),
         (Some(crs), Insistence::Insist) => options.with_crs(crs).insisting_on_crs(),

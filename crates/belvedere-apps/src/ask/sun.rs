@@ -11,6 +11,7 @@ use crate::sun::{
 };
 use crate::sun_hours::RuleDays;
 use crate::tree_light::Season;
+use belvedere_data::contradiction::CLOCK_OF_ZONE;
 use belvedere_data::crs::evidence::{CONTRADICTION_DISTANCE, distance_in_words, distance_on_earth, place_in_words};
 use belvedere_data::frame::{Bounds, Frame};
 use belvedere_data::report::rounded;
@@ -164,6 +165,30 @@ pub fn remark_on_sun(site: Option<Site>, [azimuth, elevation]: [f64; 2]) -> Opti
     })
 }
 
+/// Seconds of an hour, and of 15 degrees of longitude.
+const HOUR: f64 = 3600.0;
+/// An instant at which zones are compared with places, Unix seconds: summer time adds an hour, which the tolerance has
+/// room for.
+const COMPARED_AT: f64 = 1_767_225_600.0;
+
+/// A warning that clocks are those of another part of the earth than `site`.
+pub(super) fn remark_on_clock(zone: &Zone, site: &Site) -> Option<Remark> {
+    let hours = zone.offset_at(COMPARED_AT) / HOUR;
+    let by_sun = site.longitude.to_degrees() / 15.0;
+    // clocks of a day later or earlier show the same sun
+    let difference = (hours - by_sun + 12.0).rem_euclid(24.0) - 12.0;
+    if hours == 0.0 || !CLOCK_OF_ZONE.is_exceeded_by(difference) {
+        return None;
+    }
+    let text = format!(
+        "clocks of {} are {hours:+} hours from UTC, and the sun of the place {:+.1}: they are of another part of the \
+         earth, and the sun stands where it does at that time; give the zone of the place",
+        zone.name(),
+        by_sun
+    );
+    Remark::of_contradiction(CLOCK_OF_ZONE.found(text).with("hours", rounded(difference, 1)))
+}
+
 fn refused<T>(parameter: Parameter, value: impl Into<String>, expected: &'static str) -> Result<T> {
     Err(Error::InvalidParameter { parameter, value: value.into(), expected })
 }
@@ -247,6 +272,7 @@ impl SunPlace {
         }));
         context.add(North::True.of(whereabouts.convergence_at(whereabouts.middle())).remark());
         context.report.location = Some(LocationSection::of(&found));
+        context.add(self.given_zone()?.and_then(|zone| remark_on_clock(&zone, &found.0)));
         Ok(found.0)
     }
 
@@ -438,6 +464,9 @@ impl Suns {
     ) -> Result<Vec<NamedSun>> {
         let site = place.site_at(whereabouts, context, None)?;
         let zone = place.zone_at(&site, self.times())?;
+        if place.zone.is_none() {
+            context.add(remark_on_clock(&zone, &site));
+        }
         let instants = match self {
             Self::Days(days) => days.instants(place, &site, &zone)?,
             _ => self.times().map(|time| place.instant(time)).collect::<Result<_>>()?,

@@ -19,6 +19,19 @@ pub fn remarks_on_survey(findings: &SurveyFindings, frame: &Frame) -> Vec<Remark
                     shadow and hide nothing; use the file with all classes";
         Remark::warning("ground-points-only", text)
     });
+    let level = findings.is_level.then(|| {
+        let text = "all points have one height: nothing throws a shadow or hides anything; heights were lost in an \
+                    export, look for a file with them";
+        Remark::warning("heights-are-equal", text)
+    });
+    let swapped = findings.ground_on_top.map(|share| {
+        let percent = rounded(100.0 * share, 0);
+        let text = format!(
+            "in {percent} % of the cells with ground and buildings or plants the ground (class 2) lies above these: \
+             classes are swapped; give the classes of the file their meaning first, or leave them out"
+        );
+        Remark::warning("ground-above-buildings", text).with("percent", percent)
+    });
     let trajectory = findings.trajectory_miss_deg.map(|angle| {
         let text = format!(
             "pulses with several returns point {angle}\u{b0} past the trajectory: it is of another flight, or its \
@@ -27,7 +40,7 @@ pub fn remarks_on_survey(findings: &SurveyFindings, frame: &Frame) -> Vec<Remark
         );
         Remark::warning("trajectory-contradicted", text).with("angle_deg", angle)
     });
-    strips.into_iter().chain(surveys).chain(ground).chain(trajectory).collect()
+    strips.into_iter().chain(surveys).chain(ground).chain(level).chain(swapped).chain(trajectory).collect()
 }
 
 fn remark_on_strips(strips: &StripReport) -> Option<Remark> {

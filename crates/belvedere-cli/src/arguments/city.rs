@@ -1,9 +1,11 @@
 //! Flags of runs over whole cities.
 
+use super::scene::day;
 use super::{
     AreaChoice, ClearSkyChoice, FarTerrainArguments, MapPosition, NorthArguments, Numbers, RadiationModel, SunPeriod,
     SunPlaceArguments, ThroughTreesArguments, above_zero, at_least_one, height, known_crs,
 };
+use belvedere::weather::CalendarDay;
 use belvedere_tiles::Topic;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
@@ -44,6 +46,9 @@ pub(crate) struct CityPlan {
     /// Use --crs whatever the files and the coordinates say
     #[arg(long, requires = "crs", hide_short_help = true)]
     pub(crate) crs_override: bool,
+    /// Day of the flight, such as 2014-02-03, for files whose GPS times are seconds of a week
+    #[arg(long, value_name = "DATE", value_parser = day, hide_short_help = true)]
+    pub(crate) flown: Option<CalendarDay>,
     /// A sun direction for a shadow map: azimuth clockwise from true north and elevation, in degrees; repeatable
     ///
     /// See --grid-north.

@@ -62,6 +62,11 @@ pub(crate) struct CloudInput {
     /// Files must have GPS times that tell the day, not seconds of a week.
     #[arg(long, value_name = "DATES", value_parser = dates, help_heading = "Scene", hide_short_help = true)]
     pub(crate) dates: Option<Dates>,
+    /// Day of the flight, such as 2014-02-03, for files whose GPS times are seconds of a week
+    ///
+    /// Crowns that pulses measured (--trees measured) are then as dense as the leaves of the question's day make them.
+    #[arg(long, value_name = "DATE", value_parser = day, help_heading = "Scene", hide_short_help = true)]
+    pub(crate) flown: Option<CalendarDay>,
     /// Read only the points of some ASPRS classes, such as 2,6
     #[arg(long, value_name = "CLASS,...", value_delimiter = ',', help_heading = "Scene", hide_short_help = true)]
     pub(crate) only_classes: Vec<u8>,
@@ -70,6 +75,11 @@ pub(crate) struct CloudInput {
 /// The first and the last day of those that are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Dates(pub(crate) [CalendarDay; 2]);
+
+/// A date as it is typed.
+pub(crate) fn day(text: &str) -> Result<CalendarDay, String> {
+    CalendarDay::parse(text).ok_or_else(|| "give a date such as 2014-02-03".to_owned())
+}
 
 /// Dates as they are typed.
 fn dates(text: &str) -> Result<Dates, String> {
@@ -139,6 +149,7 @@ impl CloudInput {
         if let Some(Dates(dates)) = self.dates {
             options = options.with_dates(dates);
         }
+        options.flown = self.flown;
         if !self.only_classes.is_empty() {
             options = options.with_classes(self.only_classes.clone());
         }

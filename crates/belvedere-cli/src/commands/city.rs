@@ -43,6 +43,7 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
         clouds: arguments.clouds.clone(),
         crs: arguments.crs.clone(),
         crs_against_files: if arguments.crs_override { Insistence::Insist } else { Insistence::Refuse },
+        flown: arguments.flown,
         tile_size: arguments.tile_size,
         cells: questions::cells(arguments)?,
         places: arguments.observers.iter().filter(|place| place.1.is_none()).map(|place| place.0).collect(),

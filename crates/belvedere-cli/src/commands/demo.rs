@@ -64,6 +64,7 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
         bounds: None,
         flight_lines: Vec::new(),
         dates: None,
+        flown: None,
         only_classes: Vec::new(),
     };
     let cloud = pipeline::read(&input, &mut run)?;

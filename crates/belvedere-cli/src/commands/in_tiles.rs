@@ -117,6 +117,7 @@ impl<'a> TypedCells<'a> {
             clouds: input.clouds.clone(),
             crs: input.crs.clone(),
             crs_against_files: if input.crs_override { Insistence::Insist } else { Insistence::Refuse },
+            flown: input.flown,
             program: city::PROGRAM.to_owned(),
             ..PlanParams::default()
         };

@@ -8,7 +8,7 @@ use anyhow::Result;
 use belvedere::apps::ask;
 use belvedere::crs::CrsKind;
 use belvedere::io::{FileReport, is_ball_file, read_balls, read_cloud};
-use belvedere::model::ModelParts;
+use belvedere::model::{ModelParts, SurveyFindings};
 use belvedere::planes::{BuildingOutlines, median_sd};
 use belvedere::pulses::{FoundBy, LocateParams, Means, ScannerReport, locate};
 use belvedere::summary::{CloudSummary, FacadeSummary, SurveyKind, cloud_looks_y_up, unit_contradiction_of};
@@ -38,6 +38,7 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
         let unit = run.stage("looking for the unit", 0, |control| unit_contradiction_of(&cloud.positions, control))?;
         summary.remarks(unit.and_then(ask::Remark::of_contradiction));
     }
+    summary.remarks(ask::remarks_on_survey(&SurveyFindings::of_cloud(&cloud), &cloud.frame));
     let statistics = run.stage("counting points", 0, |control| CloudSummary::of(&cloud, control))?;
     let (positions, scanner) = match run.stage("estimating scanner positions", 0, |control| {
         locate(&cloud, &Means::Automatic, &LocateParams::default(), control)

@@ -183,3 +183,55 @@ fn terrain_at_another_level_than_the_cloud_is_said_with_its_offset() {
     let remark = remarks.iter().find(|remark| remark["key"] == "terrain-heights-differ").unwrap();
     assert_eq!(remark["numbers"]["offset_m"].as_f64(), Some(10.0), "{remark}");
 }
+
+#[test]
+fn info_says_what_answers_say_of_the_survey() {
+    let test = "info_says_what_answers_say_of_the_survey";
+    let said = ["surveys-apart", "ground-points-only"];
+    let inputs = [
+        ("96-two-surveys-years-apart", "folder", Some(said[0])),
+        ("97-ground-points-only", "ground_only.laz", Some(said[1])),
+        ("base", "base_s.laz", None),
+    ];
+    for (name, input, key) in inputs {
+        let Some(folder) = quirk(test, name) else { return };
+        let summary = Workplace::new().summary_with("info", &[folder.join(input).to_str().unwrap()]);
+        for own in said {
+            assert_eq!(has(&summary, own), Some(own) == key, "{name}: {summary}");
+        }
+    }
+}
+
+#[test]
+fn clocks_of_another_continent_are_said() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    // at 5 degrees east the sun is 0.4 hours ahead of UTC
+    let times = [
+        ("2026-06-21T12:00 --zone Europe/Amsterdam", false),
+        ("2026-06-21T12:00Z", false),
+        ("2026-06-21T12:00+04:00", false),
+        ("2026-06-21T12:00-08:00", true),
+        ("2026-06-21T18:00 --zone America/Los_Angeles", true),
+        ("2026-06-21T12:00 --zone Asia/Tokyo", true),
+    ];
+    for (time, is_said) in times {
+        let summary = place.summary(&format!("shadow house.laz --time {time} --cell 2 -o a.tif"));
+        assert_eq!(has(&summary, "clock-of-zone"), is_said, "{time}: {summary}");
+    }
+}
+
+#[test]
+fn a_town_in_millimetres_is_said_by_info_and_by_answers() {
+    let place = Workplace::new();
+    let mut plain = house_in_a_field();
+    plain.frame.crs = Crs::default();
+    for (scale, is_said) in [(1.0_f32, false), (1000.0, true)] {
+        let mut scaled = plain.clone();
+        scaled.positions.iter_mut().flatten().for_each(|v| *v *= scale);
+        place.write_cloud("town.laz", &scaled);
+        for question in ["info town.laz", "balls town.laz -o b.npz"] {
+            assert_eq!(has(&place.summary(question), "unit-of-survey"), is_said, "{scale} {question}");
+        }
+    }
+}

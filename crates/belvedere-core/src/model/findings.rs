@@ -1,7 +1,8 @@
-//! Properties of a survey that answers should mention: lines that do not fit, surveys years apart, ground points only.
+//! Properties of a survey that answers should mention: lines that do not fit, surveys years apart, ground points only,
+//! swapped classes.
 
 use crate::strips::{StripOffset, StripReport};
-use belvedere_data::weather::{CalendarDay, date_of_unix_day};
+use belvedere_data::weather::date_of_unix_day;
 use belvedere_data::{Attributes, GpsTimeKind, PointCloud};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -21,6 +22,13 @@ pub struct SurveyFindings {
     /// True if all points are ground or water, as in files that are sold for terrain models.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_ground_only: bool,
+    /// True if all points have one height, as exports of a map have.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_level: bool,
+    /// Share of the cells with ground in which all ground lies above points of buildings or plants, where that is
+    /// more than surveys have.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ground_on_top: Option<f64>,
     /// Median angle between pulses with several returns and their direction by the trajectory, degrees, where that is
     /// more than any trajectory of the same flight errs by.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -64,12 +72,28 @@ const MIN_POINTS: u32 = 3;
 const MIN_CHANGE: f64 = 2.0;
 /// Neighbouring cells that must have changed as well: an edge changes with every flight.
 const MIN_CHANGED_ABOUT: usize = 3;
+/// Fewest points whose equal heights are no survey: noise of centimetres is in each.
+const MIN_LEVEL_POINTS: usize = 1000;
+/// Distance of ground above other classes, metres, and the share of cells from which on classes are swapped. Surveys
+/// of towns have less than 1 %, beside bridges and cellars.
+const MIN_ON_TOP: f32 = 1.0;
+const MIN_ON_TOP_SHARE: f64 = 0.2;
+/// Fewest cells with both.
+const MIN_ON_TOP_CELLS: usize = 20;
 
 impl SurveyFindings {
     /// Finds the surveys and changes of a cloud. Its strips are compared elsewhere.
-    pub(super) fn of_cloud(cloud: &PointCloud) -> Self {
+    #[must_use]
+    pub fn of_cloud(cloud: &PointCloud) -> Self {
         let (surveys, change) = dated(cloud);
-        Self { surveys, change, is_ground_only: is_ground_only(&cloud.attributes), ..Self::default() }
+        Self {
+            surveys,
+            change,
+            is_ground_only: is_ground_only(&cloud.attributes),
+            is_level: is_level(&cloud.positions),
+            ground_on_top: ground_on_top(cloud),
+            ..Self::default()
+        }
     }
 
     /// Returns true if there are no findings.
@@ -101,6 +125,37 @@ fn is_ground_only(attributes: &Attributes) -> bool {
     classes.len() >= MIN_GROUND_POINTS
         && classes.contains(&2)
         && classes.iter().all(|class| matches!(class, 2 | 7..=9 | 18 | 20 | 40 | 41))
+}
+
+/// Returns true if all of many points have one height.
+fn is_level(positions: &[[f32; 3]]) -> bool {
+    positions.len() >= MIN_LEVEL_POINTS && positions.iter().all(|p| p[2] == positions[0][2])
+}
+
+/// Share of the cells with ground, and with buildings or plants, whose ground lies above these.
+fn ground_on_top(cloud: &PointCloud) -> Option<f64> {
+    let classes = cloud.attributes.classification.as_deref()?;
+    let mut cells: BTreeMap<[i32; 2], [f32; 2]> = BTreeMap::new();
+    for (p, class) in cloud.positions.iter().zip(classes) {
+        let side = match class {
+            2 => 0,
+            3..=6 => 1,
+            _ => continue,
+        };
+        let lowest = &mut cells.entry(cell_of(*p)).or_insert([f32::INFINITY; 2])[side];
+        *lowest = lowest.min(p[2]);
+    }
+    cells.retain(|_, lowest| lowest.iter().all(|height| height.is_finite()));
+    let on_top = cells.values().filter(|[ground, other]| ground - other >= MIN_ON_TOP).count();
+    let share = on_top as f64 / cells.len().max(1) as f64;
+    (cells.len() >= MIN_ON_TOP_CELLS && share >= MIN_ON_TOP_SHARE).then_some(share)
+}
+
+/// Cell of a position in which surveys and classes are compared.
+fn cell_of(position: [f32; 3]) -> [i32; 2] {
+    #[expect(clippy::cast_possible_truncation, reason = "cells of a cloud, and saturating")]
+    let cell = [0, 1].map(|i| (f64::from(position[i]) / CELL).floor() as i32);
+    cell
 }
 
 /// Day of a GPS time, days since 1970.
@@ -157,8 +212,7 @@ fn is_dated(attributes: &Attributes) -> bool {
 }
 
 pub(super) fn day_in_words(day: i64) -> String {
-    let date = date_of_unix_day(day).map(|CalendarDay { year, month, day }| format!("{year:04}-{month:02}-{day:02}"));
-    date.unwrap_or_else(|| format!("day {day}"))
+    date_of_unix_day(day).map_or_else(|| format!("day {day}"), |date| date.to_string())
 }
 
 /// Finds the place where the highest points up to one day and those from another day on differ, without plants and
@@ -171,9 +225,7 @@ fn change(cloud: &PointCloud, times: &[f64], [until, from]: [i64; 2]) -> Option<
         if classes.get(row).is_some_and(|class| matches!(class, 3..=5 | 7 | 9 | 18)) {
             continue;
         }
-        #[expect(clippy::cast_possible_truncation, reason = "cells of a cloud, and saturating")]
-        let cell = [0, 1].map(|i| (f64::from(p[i]) / CELL).floor() as i32);
-        let of_cell = cells.entry(cell).or_insert([(0, f32::NEG_INFINITY); 2]);
+        let of_cell = cells.entry(cell_of(*p)).or_insert([(0, f32::NEG_INFINITY); 2]);
         let (count, highest) = &mut of_cell[usize::from(day >= from)];
         (*count, *highest) = (*count + 1, highest.max(p[2]));
     }
@@ -256,5 +308,26 @@ mod tests {
         assert!(SurveyFindings::of_cloud(&cloud).is_ground_only);
         cloud.attributes.classification = Some(vec![1; cloud.len()]);
         assert!(!SurveyFindings::of_cloud(&cloud).is_ground_only);
+    }
+
+    #[test]
+    fn one_height_and_swapped_classes_are_said() {
+        let mut cloud = surveys();
+        cloud.attributes.gps_time = None;
+        assert!(SurveyFindings::of_cloud(&cloud).is_empty());
+        // a second layer of points below the hut, as ground, and their classes swapped
+        let below: Vec<[f32; 3]> = cloud.positions.iter().filter(|p| p[2] > 0.0).map(|p| [p[0], p[1], 0.0]).collect();
+        let classes = cloud.attributes.classification.as_mut().unwrap();
+        classes.extend(below.iter().map(|_| 2));
+        cloud.positions.extend(below);
+        cloud.attributes =
+            Attributes { classification: cloud.attributes.classification.take(), ..Attributes::default() };
+        assert!(SurveyFindings::of_cloud(&cloud).is_empty());
+        let classes = cloud.attributes.classification.as_mut().unwrap();
+        classes.iter_mut().for_each(|class| *class = 8 - *class);
+        assert_eq!(SurveyFindings::of_cloud(&cloud).ground_on_top, Some(1.0));
+        cloud.positions.iter_mut().for_each(|p| p[2] = 7.0);
+        let level = SurveyFindings::of_cloud(&cloud);
+        assert!(level.is_level && level.ground_on_top.is_none());
     }
 }

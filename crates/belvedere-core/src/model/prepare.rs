@@ -114,8 +114,7 @@ impl OrientedSurvey {
         frame.crs.kind == CrsKind::Unknown && looks_y_up(self.oriented.positions(), self.oriented.normals())
     }
 
-    /// Returns the contradiction between the height of a room and the unit, metres by assumption for a cloud without a
-    /// reference system.
+    /// Returns the contradiction between the cloud and metres, the unit by assumption without a reference system.
     ///
     /// # Errors
     /// Those of [`unit_contradiction_of`].

@@ -1,10 +1,7 @@
 //! Rooms: floor and ceiling tell which axis is up, and their distance the unit of a cloud without a reference system.
 
-use crate::neighbors::NeighborIndex;
-use crate::normals::estimate::{Neighborhood, estimate};
+use belvedere_data::Bounds;
 use belvedere_data::contradiction::{FoundContradiction, UNIT_OF_ROOM};
-use belvedere_data::control::Control;
-use belvedere_data::{Bounds, Result};
 
 /// A normal is along an axis where its component is more than this: within 14°.
 pub(super) const ALONG: f32 = 0.97;
@@ -91,7 +88,7 @@ fn unit_of_room(positions: &[[f32; 3]], normals: &[[f32; 3]]) -> Option<f64> {
 
 /// Returns the contradiction between the height of a room and the unit, metres by assumption for a cloud without a
 /// reference system.
-fn unit_contradiction(positions: &[[f32; 3]], normals: &[[f32; 3]]) -> Option<FoundContradiction> {
+pub(super) fn unit_of_room_contradiction(positions: &[[f32; 3]], normals: &[[f32; 3]]) -> Option<FoundContradiction> {
     let unit = unit_of_room(positions, normals)?;
     let name = if unit < UNITS[0] { "millimetres" } else { "centimetres" };
     let text = format!(
@@ -101,20 +98,10 @@ fn unit_contradiction(positions: &[[f32; 3]], normals: &[[f32; 3]]) -> Option<Fo
     Some(UNIT_OF_ROOM.found(text).with("metres_per_unit", unit))
 }
 
-/// The same of a cloud, (N, 3), whose normals are not known: those of a model are none where points are far apart.
-///
-/// # Errors
-/// Those of [`NeighborIndex::new`] and [`estimate`].
-pub fn unit_contradiction_of(positions: &[[f32; 3]], control: &Control<'_>) -> Result<Option<FoundContradiction>> {
-    let Some(Bounds { low, high }) = Bounds::around(positions.iter().copied()) else { return Ok(None) };
-    // normals are worth their time where a height can be that of a room; noise lies beyond floor and ceiling
+/// Whether a height of the cloud can be that of a room in another unit; noise lies beyond floor and ceiling.
+pub(super) fn may_be_room(Bounds { low, high }: &Bounds) -> bool {
     let may_be = |axis: usize| [1.0, 0.9].into_iter().any(|share| unit_of(share * (high[axis] - low[axis])).is_some());
-    if ![1, 2].into_iter().any(may_be) {
-        return Ok(None);
-    }
-    let index = NeighborIndex::new(positions, control)?;
-    let normals = estimate(positions, &index, Neighborhood::default(), control)?;
-    Ok(unit_contradiction(positions, &normals.vectors))
+    [1, 2].into_iter().any(may_be)
 }
 
 fn unit_of(height: f32) -> Option<f64> {

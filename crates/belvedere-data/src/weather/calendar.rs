@@ -23,6 +23,15 @@ impl CalendarDay {
             .then_some(date)
     }
 
+    /// Reads a date such as 2021-04-29; `None` for other text.
+    #[must_use]
+    pub fn parse(text: &str) -> Option<Self> {
+        let mut parts = text.trim().splitn(3, '-');
+        let year = parts.next()?.parse().ok()?;
+        let mut number = || parts.next()?.parse().ok();
+        Self::new(year, number()?, number()?)
+    }
+
     fn days_of_month(self) -> u8 {
         let is_leap = self.year % 4 == 0 && (self.year % 100 != 0 || self.year % 400 == 0);
         match self.month {
@@ -30,6 +39,12 @@ impl CalendarDay {
             4 | 6 | 9 | 11 => 30,
             _ => 31,
         }
+    }
+}
+
+impl std::fmt::Display for CalendarDay {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:04}-{:02}-{:02}", self.year, self.month, self.day)
     }
 }
 

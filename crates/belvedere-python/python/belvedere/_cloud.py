@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import json
 import os
 import warnings
@@ -223,6 +224,7 @@ def read(
     name: str | None = None,
     bounds: npt.ArrayLike | None = None,
     classes: Iterable[int] | None = None,
+    flown: datetime.date | str | None = None,
     progress: Progress = None,
 ) -> Cloud:
     """Reads a point cloud, or the points of it in a box.
@@ -249,6 +251,9 @@ def read(
         open file on a server (``fsspec``).
     classes : iterable of int, optional
         Only points of these ASPRS classes are read.
+    flown : datetime.date or str, optional
+        Day of the flight, such as ``"2014-02-03"``, for LAS files whose GPS times are seconds of a week. It tells the
+        leaves of crowns that pulses measured.
     progress : bool or callable, optional
         True shows a bar; a function is called with stage, items done and items in all, and stops the work by raising.
 
@@ -284,7 +289,8 @@ def read(
     wanted = None if classes is None else class_numbers(classes)
     inputs = [native_source(one, name, in_parts=box is not None) for one in sources]
     options = (crs, bool(crs_override), up, bool(skip_distant))
-    core, text = _core.read(inputs, *options, box, wanted, reporter(progress))
+    day = None if flown is None else str(flown)[:10]
+    core, text = _core.read(inputs, *options, box, wanted, day, reporter(progress))
     report = json.loads(text)
     for note in _notes(report):
         _warn(note)

@@ -284,6 +284,7 @@ def read(
     skip_distant: bool,
     bounds: list[list[float]] | None,
     classes: list[int] | None,
+    flown: str | None,
     progress: _Progress,
 ) -> tuple[Cloud, str]: ...
 def simulate(preset: str, extent: float | None, density: float | None, seed: int) -> dict[str, npt.NDArray[Any]]: ...
