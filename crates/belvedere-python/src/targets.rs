@@ -1,8 +1,8 @@
 //! Targets of questions: cells of a grid, points, a cloud, or the faces of a mesh.
 
-use crate::arrays::{PositionArray, fixed_rows, to_1d};
+use crate::arrays::{PositionArray, fixed_rows, to_1d, to_2d};
 use crate::cloud::Cloud;
-use crate::errors::wrong;
+use crate::errors::{exception, wrong};
 use crate::mesh::{Faces, rows_of};
 use crate::remarks::remarks_of;
 use belvedere::apps::ask::{self, Remark};
@@ -11,7 +11,7 @@ use belvedere::ground::{GroundPoints, MapGrid};
 use belvedere::io::Georeference;
 use belvedere::results::{FaceRows, georeference};
 use belvedere::{Frame, Mesh};
-use numpy::PyReadonlyArray2;
+use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -21,6 +21,7 @@ use std::sync::Arc;
 #[pyo3(from_item_all)]
 pub(crate) struct RequestedTargets<'py> {
     places: Option<PositionArray<'py>>,
+    on_map: Option<Vec<[f64; 3]>>,
     cloud: Option<Py<Cloud>>,
     faces: Option<Faces>,
     normals: Option<PyReadonlyArray2<'py, f32>>,
@@ -69,6 +70,11 @@ impl RequestedTargets<'_> {
             check(positions.len())?;
             return of(ask::Places::Points(positions, normals));
         }
+        if let Some(places) = &self.on_map {
+            let places = places.iter().map(|&[x, y, z]| ([x, y], Some(z).filter(|z| !z.is_nan())));
+            let places = ask::standing_on_map(places, self.height, scene).map_err(exception)?;
+            return of(ask::Places::At(places, ground_points(self.ground.as_deref())?));
+        }
         if let Some(cloud) = &self.cloud {
             let cloud = Arc::clone(&cloud.borrow(py).0);
             check(cloud.len())?;
@@ -106,9 +112,14 @@ pub(crate) type MeasureColumn<'py> = (String, &'static str, Bound<'py, PyAny>, b
 /// Name, description and values.
 pub(crate) type PyColumn<'py> = (String, &'static str, Bound<'py, PyAny>);
 /// Columns of measures; then the grid where targets are cells; or, where they are the faces of a mesh, only their rows;
-/// then remarks.
-pub(crate) type TargetResults<'py> =
-    (Vec<MeasureColumn<'py>>, Option<Grid>, Option<Bound<'py, PyDict>>, Vec<Bound<'py, PyDict>>);
+/// then remarks; then the places of targets that were given on the map, (N, 3), in the coordinates of the file.
+pub(crate) type TargetResults<'py> = (
+    Vec<MeasureColumn<'py>>,
+    Option<Grid>,
+    Option<Bound<'py, PyDict>>,
+    Vec<Bound<'py, PyDict>>,
+    Option<Bound<'py, PyArray2<f64>>>,
+);
 
 impl Chosen {
     /// Measures of the targets as Python takes them.
@@ -122,13 +133,18 @@ impl Chosen {
         let remarks = remarks_of(py, remarks)?;
         if let (Some(mesh), Some(surface)) = (&self.mesh, targets.surface()) {
             let rows = rows_of(py, FaceRows::of_measures(mesh, surface, &measures))?;
-            return Ok((Vec::new(), None, Some(rows), remarks));
+            return Ok((Vec::new(), None, Some(rows), remarks, None));
         }
         let column = |measure: Measure| {
             let is_answer = measure.kind == ResultKind::Answer;
             (measure.name, measure.description, to_1d(py, measure.values).into_any(), is_answer)
         };
         let grid = targets.ground().map(|ground| grid_of(&ground.grid, &targets.frame));
-        Ok((measures.into_iter().map(column).collect(), grid, None, remarks))
+        let in_file = |p: &[f32; 3]| targets.frame.file_from_local(p.map(f64::from));
+        let places = match self.places {
+            ask::Places::At(..) => Some(to_2d(py, &targets.positions.iter().map(in_file).collect::<Vec<_>>())?),
+            _ => None,
+        };
+        Ok((measures.into_iter().map(column).collect(), grid, None, remarks, places))
     }
 }

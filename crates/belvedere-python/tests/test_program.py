@@ -566,3 +566,21 @@ def test_plans_are_not_lost_without_a_word(scene, folder):
         planned.save(folder / "planned.npz")
     with pytest.raises(TypeError, match="cannot be pickled"):
         pickle.dumps(planned)
+
+
+def test_places_on_the_map(scene, ask_program, folder, standing):
+    x, y = standing
+    summary = ask_program("sun-hours", "tile.laz", "--at", f"{x},{y}", "--date", "2026-06-21", "-o", "place.csv")
+    table = scene.sun_hours(date="2026-06-21", targets=(x, y), interval=True)
+    # the program prints millimetres
+    np.testing.assert_allclose(table.places[0], summary["at"][0]["position"], atol=6e-4)
+    printed = np.genfromtxt(folder / "place.csv", delimiter=",", names=True)
+    for name in ("sun_hours", "hours_low", "hours_high"):
+        # and hours to four digits
+        assert float(printed[name]) == pytest.approx(table[name][0], abs=6e-5)
+    same = scene.sun_hours(date="2026-06-21", targets=[(x, y), (x, y)], interval=True)
+    assert list(same["sun_hours"]) == [table["sun_hours"][0]] * 2
+    higher = scene.sky_view(targets=(x, y), target_height=30)
+    assert higher["sky_view_factor"][0] > scene.sky_view(targets=(x, y))["sky_view_factor"][0]
+    with pytest.raises(belvedere.BelvedereError, match="must be on the points"):
+        scene.sun_hours(date="2026-06-21", targets=(x + 5000, y))

@@ -347,6 +347,7 @@ def test_a_cloud_is_saved_with_what_its_file_holds(cloud, tile, folder):
     rich.header.vlrs.append(laspy.VLR("MyCompany", 7, "of a test", b"flight 12"))
     rich.header.vlrs.extend(own.header.vlrs.get_by_id("LASF_Projection"))
     rich.header.global_encoding.wkt = True
+    rich.header.global_encoding.gps_time_type = own.header.global_encoding.gps_time_type
     rich.add_extra_dim(laspy.ExtraBytesParams("Amplitude", "uint16"))
     rich.x, rich.y, rich.z, rich.gps_time = own.x, own.y, own.z, own.gps_time
     rich.classification, rich.return_number, rich.number_of_returns = own.classification, *np.ones((2, len(own)), int)

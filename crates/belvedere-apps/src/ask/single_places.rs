@@ -85,6 +85,29 @@ pub fn position_on_map(given: [f64; 2], crs: &Crs, bounds: [[f64; 2]; 2]) -> Res
     })
 }
 
+/// Returns places on the map, each with its height where that is known, as single places of a scene that stand `height`
+/// metres above what is below.
+///
+/// # Errors
+/// Those of [`position_on_map`].
+pub fn standing_on_map(
+    places: impl IntoIterator<Item = ([f64; 2], Option<f64>)>,
+    height: Option<f64>,
+    scene: &Scene,
+) -> Result<Vec<Standing>> {
+    let frame = scene.frame();
+    let (low, high) = scene.model().bounds().on_map();
+    let bounds = [low, high].map(|[x, y]| {
+        let [x, y, _] = frame.file_from_local([x, y, 0.0]);
+        [x, y]
+    });
+    let one = |(place, given): ([f64; 2], Option<f64>)| {
+        let [x, y] = position_on_map(place, &frame.crs, bounds)?;
+        Ok(Standing { place: frame.local_from_file([x, y, given.unwrap_or(f64::NAN)]), height })
+    };
+    places.into_iter().map(one).collect()
+}
+
 /// Local metres of `places`. One without a height lies above the ground, or above what covers the ground there.
 pub(super) fn positions(
     places: &[Standing],

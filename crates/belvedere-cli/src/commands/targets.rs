@@ -7,7 +7,7 @@ use crate::pipeline::mesh_in;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{GridCells, OnTargets, Places, Remark, Scene, Standing, Turned, position_on_map};
+use belvedere::apps::ask::{GridCells, OnTargets, Places, Remark, Scene, Turned, position_on_map, standing_on_map};
 use belvedere::apps::targets::{CellLevel, Facing, Measure, MeshParams};
 use belvedere::crs::Crs;
 use belvedere::figures::{Picture, write_png};
@@ -132,26 +132,12 @@ impl SkyPlaces {
         Ok(())
     }
 
-    /// Single places, local metres.
-    fn standing(&self, scene: &Scene) -> Result<Vec<Standing>> {
-        let frame = scene.frame();
-        let (low, high) = scene.model().bounds().on_map();
-        let bounds = [low, high].map(|[x, y]| {
-            let [x, y, _] = frame.file_from_local([x, y, 0.0]);
-            [x, y]
-        });
-        let one = |&MapPosition(place, height): &MapPosition| {
-            let [x, y] = position_on_map(place, &frame.crs, bounds)?;
-            let place = frame.local_from_file([x, y, height.unwrap_or(f64::NAN)]);
-            Ok(Standing { place, height: self.height.map(f64::from) })
-        };
-        self.places.at.iter().map(one).collect()
-    }
-
     /// The places that were typed, and what they are taken from.
     pub(crate) fn places(&self, scene: &Scene, run: &mut CommandContext) -> Result<(Places, TargetSource)> {
         if !self.places.at.is_empty() {
-            return Ok((Places::At(self.standing(scene)?, self.ground.points()), TargetSource::Single));
+            let typed = self.places.at.iter().map(|place| (place.0, place.1));
+            let places = standing_on_map(typed, self.height.map(f64::from), scene)?;
+            return Ok((Places::At(places, self.ground.points()), TargetSource::Single));
         }
         let Some(path) = &self.places.targets else {
             if self.places.own {

@@ -9,7 +9,13 @@ _Progress = Callable[[str, int, int], object] | None
 _Grid = tuple[int, int, Sequence[float]]
 _Columns = list[tuple[str, str, npt.NDArray[Any]]]
 _Remarks = list[dict[str, Any]]
-_Results = tuple[list[tuple[str, str, npt.NDArray[Any], bool]], _Grid | None, dict[str, Any] | None, _Remarks]
+_Results = tuple[
+    list[tuple[str, str, npt.NDArray[Any], bool]],
+    _Grid | None,
+    dict[str, Any] | None,
+    _Remarks,
+    npt.NDArray[np.float64] | None,
+]
 _CrsState = tuple[str | None, int | None, int | None, float, float, int, str | None]
 
 __all__ = ["NO_VALUE", "Cloud", "Crs", "Mesh", "Scene", "__version__", "devices", "read", "simulate", "write_geotiff"]

@@ -123,7 +123,7 @@ class Energy:
         )
         results = self._core.irradiance(
             radiation,
-            wanted(targets, normals, _cells(cell, target_height, surface, ground)),
+            wanted(targets, normals, _cells(cell, target_height, surface, ground), may_lack_heights=True),
             {"share": through_trees, "leaves": leaves},
             reporter(progress),
         )

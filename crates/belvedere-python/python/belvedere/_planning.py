@@ -125,7 +125,7 @@ class Planning:
         places = None if observers is None else map_places(observers, "observers", _OBSERVERS)
         columns, grid, given = self._core.landmark(what, places, looking, unproven, probability, reporter(progress))
         if places is None:
-            return measures(([(*column, False) for column in columns], grid, None, given), self._core.crs, None)
+            return measures(([(*column, False) for column in columns], grid, None, given, None), self._core.crs, None)
         table = Table({name: values for name, _, values in columns}, places=places, crs=self._core.crs.text)
         table.remarks = warned(given)
         return table

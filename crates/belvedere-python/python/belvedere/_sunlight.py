@@ -65,9 +65,10 @@ class Sunlight:
             Azimuth, clockwise from true north, and elevation of the sun, degrees. Several give several results.
         time : datetime, pandas Timestamp, ISO text, or several, optional
             When, in place of `sun`; with a time zone.
-        targets : array_like, shape (N, 3), Cloud, or Mesh, optional
-            Places in the coordinates of the file, or the faces of a mesh. Without any, the cells of a grid over the
-            scene.
+        targets : array_like, shape (N, 3), (N, 2) or (2,), Cloud, or Mesh, optional
+            Places in the coordinates of the file, or the faces of a mesh. Places without a height stand on the ground,
+            or on the roof that covers it; two numbers may be latitude and longitude, degrees. Without any, the cells
+            of a grid over the scene.
         normals : array_like, shape (N, 3), optional
             Unit vectors that targets face; what the sun meets from behind is in shadow.
         cell : float, optional
@@ -126,6 +127,7 @@ class Sunlight:
             targets,
             normals,
             _cells(cell, target_height, surface, ground),
+            may_lack_heights=True,
         )
         results = self._core.shadow(
             suns,
@@ -142,7 +144,7 @@ class Sunlight:
 
     def _lit(self, results: Results, targets: Targets, is_sure: bool) -> Any:
         """The share of one sun."""
-        columns, grid, faces, given = results
+        columns, grid, faces, given, _ = results
         if grid is None and faces is None and not is_sure:
             warned(given)
             return columns[0][2]
@@ -245,7 +247,7 @@ class Sunlight:
             days,
             as_list(rule),
             _place(location, zone=zone, sun_elevation=sun_elevation, air=air),
-            wanted(targets, normals, _cells(cell, target_height, surface, ground)),
+            wanted(targets, normals, _cells(cell, target_height, surface, ground), may_lack_heights=True),
             {"share": through_trees, "leaves": leaves},
             interval,
             reporter(progress),
@@ -301,7 +303,7 @@ class Sunlight:
         results = self._core.sky_view(
             directions,
             patches,
-            wanted(targets, normals, _cells(cell, target_height, surface, ground)),
+            wanted(targets, normals, _cells(cell, target_height, surface, ground), may_lack_heights=True),
             {"share": through_trees, "leaves": None},
             interval,
             reporter(progress),

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from . import _core
 from ._cloud import Cloud
 from ._errors import wrong
-from ._inputs import Places, check_finite, places
+from ._inputs import Places, check_finite, map_places, places
 from ._mesh import Mesh
 from ._raster import Raster, Rasters
 from ._remarks import warned
@@ -32,9 +32,20 @@ class Cells(TypedDict, total=False):
     ground: str | None
 
 
-def wanted(targets: Targets, normals: npt.ArrayLike | None, cells: Cells) -> dict[str, Any]:
+def wanted(
+    targets: Targets, normals: npt.ArrayLike | None, cells: Cells, may_lack_heights: bool = False
+) -> dict[str, Any]:
     """Targets as the native part takes them."""
-    if targets is not None:
+    on_map = None
+    if may_lack_heights and targets is not None and not isinstance(targets, (Cloud, Mesh)):
+        on_map = _on_map(targets)
+    if on_map is not None:
+        for name in ("cell", "surface"):
+            if cells.get(name):
+                raise wrong(name, cells.get(name), "it applies only to a grid; leave out targets, or leave this out")
+        if normals is not None:
+            raise wrong("normals", "given", "places without a height are level; give x, y and z, or leave this out")
+    elif targets is not None:
         for name in ("cell", "target_height", "ground"):
             if cells.get(name) is not None:
                 raise wrong(name, cells.get(name), "it applies only to a grid; leave out targets, or leave this out")
@@ -51,7 +62,10 @@ def wanted(targets: Targets, normals: npt.ArrayLike | None, cells: Cells) -> dic
         if not np.isfinite(turned).all():
             raise wrong("normals", "not finite", "give unit vectors of shape (N, 3)")
     return {
-        "places": None if targets is None or isinstance(targets, (Cloud, Mesh)) else places(targets, "targets"),
+        "places": None
+        if targets is None or on_map is not None or isinstance(targets, (Cloud, Mesh))
+        else places(targets, "targets"),
+        "on_map": None if on_map is None else on_map.tolist(),
         "cloud": targets._core if isinstance(targets, Cloud) else None,
         "faces": targets._faces if isinstance(targets, Mesh) else None,
         "normals": turned,
@@ -60,6 +74,17 @@ def wanted(targets: Targets, normals: npt.ArrayLike | None, cells: Cells) -> dic
         "height": cells.get("target_height"),
         "ground": cells.get("ground"),
     }
+
+
+def _on_map(targets: Places) -> npt.NDArray[np.float64] | None:
+    """Rows of x, y and an unknown height, or of latitude and longitude; None for places with heights."""
+    try:
+        shape = np.shape(targets)
+    except ValueError:
+        return None
+    if len(shape) not in (1, 2) or shape[-1] != 2 or shape[0] == 0:
+        return None
+    return map_places(targets, "targets", "give x and y, latitude and longitude in degrees, or x, y and z")
 
 
 Grid = tuple[int, int, Sequence[float]]
@@ -71,15 +96,20 @@ def raster(values: npt.NDArray[Any], grid: Grid, crs: _core.Crs, **named: Any) -
     return Raster(values.reshape(height, width), (a, b, c, d, e, f), crs, **named)
 
 
-#: Columns of measures, and the grid where targets are cells; for a mesh only the rows of its faces; then remarks.
+#: Columns of measures, and the grid where targets are cells; for a mesh only the rows of its faces; then remarks, and
+#: the places of targets that were given on the map.
 Results = tuple[
-    list[tuple[str, str, npt.NDArray[Any], bool]], Union[Grid, None], Union[dict[str, Any], None], list[dict[str, Any]]
+    list[tuple[str, str, npt.NDArray[Any], bool]],
+    Union[Grid, None],
+    Union[dict[str, Any], None],
+    list[dict[str, Any]],
+    Union[npt.NDArray[np.float64], None],
 ]
 
 
 def measures(results: Results, crs: _core.Crs, targets: Targets) -> RastersOrTable:
     """Measures as rasters where targets are cells, and as a table elsewhere."""
-    columns, grid, faces, given = results
+    columns, grid, faces, given, on_map = results
     remarks = warned(given)
     if faces is not None:
         table = face_table(faces)
@@ -94,7 +124,11 @@ def measures(results: Results, crs: _core.Crs, targets: Targets) -> RastersOrTab
         for one in made.values():
             one.remarks = remarks
         return Rasters(made)
-    table = Table({name: values for name, _, values, _ in columns}, places=coordinates(targets), crs=crs.text)
+    table = Table(
+        {name: values for name, _, values, _ in columns},
+        places=coordinates(targets) if on_map is None else on_map,
+        crs=crs.text,
+    )
     table.remarks = remarks
     return table
 
