@@ -201,7 +201,10 @@ pub(super) fn summarise(suns: &[NamedSun], measures: &[Measure], places: &str, c
     let share = |measure: &Measure| measure.statistics().map_or(f64::NAN, |found| 100.0 * found.mean);
     match (suns, measures) {
         ([sun], [lit, rest @ ..]) => {
-            context.headline(format!("{}: {:.1} % lit of {places}", sun.title, share(lit)));
+            context.headline(match lit.statistics() {
+                Some(_) => format!("{}: {:.1} % lit of {places}", sun.title, share(lit)),
+                None => format!("{}: no answer for {places}", sun.title),
+            });
             if let [doubts] = rest {
                 let count = |measure: &Measure| measure.values.iter().filter(|&&value| value > 0.0).count();
                 let (unproven, lit) = (count(doubts), count(lit));

@@ -108,7 +108,7 @@ pub fn remark_on_leaves(crowns: CrownLight, factors: impl IntoIterator<Item = f6
     let mut factors = factors.into_iter();
     if density.is_none() {
         let text = "the days on which crowns were measured are not known: they hold back as much light as they did \
-                    then, whatever the season";
+                    then, whatever the season; give the day of the flight with --flown";
         return factors.next().map(|_| Remark::note("leaves-not-known", text));
     }
     let other = factors.max_by(|a, b| a.ln().abs().total_cmp(&b.ln().abs())).filter(|factor| *factor != 1.0)?;
