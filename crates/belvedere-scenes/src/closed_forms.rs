@@ -1,6 +1,6 @@
-//! Scenes whose shadows and views of the sky are known as formulas.
+//! Scenes whose shadows and sky view factors are known as formulas.
 //!
-//! All lie about the origin on a level square of ground at height 0, 2 km wide.
+//! All scenes lie about the origin on a level square of ground at height 0, 2 km wide.
 //!
 //! ```
 //! use belvedere_scenes::{Truth, closed_forms::box_on_plane};
@@ -16,14 +16,14 @@ use std::f64::consts::{PI, TAU};
 use crate::scene::{Material, ObjectPart, TriangleScene};
 use crate::solids::{Overhang, PlanPlacement, RidgedProfile, WingCourse, extruded, prism, swept, winged};
 
-/// Half the side of the ground, metres: holds the shadow of 17 m at an elevation of 1°.
+/// Half the side of the ground, metres. It contains the shadow of a height of 17 m at an elevation of 1°.
 const GROUND_HALF_SIDE: f64 = 1000.0;
-/// How far solids that stand on the ground reach below it, metres.
+/// Depth of solids on the ground below it, metres.
 const BURIED: f64 = 1.0;
 
 const UPRIGHT: PlanPlacement = PlanPlacement { origin: [0.0; 2], angle: 0.0 };
 
-/// Level ground and one solid on or above it.
+/// Returns level ground with a solid on or above it.
 fn on_plane(name: &str, parts: &[ObjectPart]) -> TriangleScene {
     let corners = UPRIGHT.rectangle(2.0 * GROUND_HALF_SIDE, 2.0 * GROUND_HALF_SIDE);
     let mut ground = ObjectPart { vertices: corners.map(|[x, y]| [x, y, 0.0]).to_vec(), ..ObjectPart::default() };
@@ -34,17 +34,18 @@ fn on_plane(name: &str, parts: &[ObjectPart]) -> TriangleScene {
     scene
 }
 
-/// Sphere of `radius` metres about (0, 0, `centre_height`).
+/// Returns a sphere of `radius` metres about (0, 0, `centre_height`).
 ///
-/// Its vertices lie on the sphere, its facets inside it by `tolerance` metres at most, which costs about 10 · `radius`
-/// / `tolerance` triangles; tolerances from 1e-8 to half of the radius are kept to. For the sun at elevation e its
-/// shadow on the ground is an ellipse with the semi-axes `radius` across and `radius` / sin e along the light, its
-/// middle `centre_height` / tan e away from the sun; the shadow of the mesh lies within, by no more than `tolerance` /
-/// sin e.
+/// Its vertices lie on the sphere, and its facets at most `tolerance` metres inside it. This takes about 10 · `radius`
+/// / `tolerance` triangles. Tolerances are limited to between 1e-8 and 0.5 of the radius.
+///
+/// For the sun at elevation e, the shadow on the ground is an ellipse. Its semi-axes are `radius` across and `radius` /
+/// sin e along the light, and its middle is `centre_height` / tan e away from the sun. The shadow of the mesh lies
+/// within, by no more than `tolerance` / sin e.
 #[must_use]
 pub fn sphere_over_plane(radius: f64, centre_height: f64, tolerance: f64) -> TriangleScene {
-    // A facet lies below the sphere by r (1 − cos ρ) for its angular circumradius ρ; the widest are half squares of
-    // side π / rows at the equator, ρ = π / (√2 rows).
+    // A facet lies below the sphere by r (1 − cos ρ) for its angular circumradius ρ. The widest facets are half squares
+    // of side π / rows at the equator, ρ = π / (√2 rows).
     let reach = (1.0 - (tolerance / radius).clamp(1e-8, 0.5)).acos();
     let rows = crate::town::street_furniture::pieces(PI, reach * 2.0_f64.sqrt()).max(4);
     let columns = 2 * rows;
@@ -76,17 +77,17 @@ pub fn sphere_over_plane(radius: f64, centre_height: f64, tolerance: f64) -> Tri
     on_plane("sphere", &[part])
 }
 
-/// Level slab of `size` (x, y) metres that hovers with its underside at height `underside`.
+/// Returns a level slab of `size` (x, y) metres that hovers with its underside at height `underside`.
 ///
-/// Its shadow is the convex hull of the rectangle moved away from the sun by `underside` / tan e and by (`underside` +
-/// `thickness`) / tan e.
+/// Its shadow is the convex hull of two moved rectangles. They are moved away from the sun by `underside` / tan e and
+/// by (`underside` + `thickness`) / tan e.
 #[must_use]
 pub fn slab_over_plane(size: [f64; 2], underside: f64, thickness: f64) -> TriangleScene {
     let footprint = UPRIGHT.rectangle(size[0], size[1]);
     on_plane("slab", &[prism(&footprint, underside, underside + thickness, Material::Slab)])
 }
 
-/// Box of `size` (x, y) metres and `height` that stands on the ground.
+/// Returns a box of `size` (x, y) metres and `height` that stands on the ground.
 ///
 /// Its shadow, with the ground beneath, is the convex hull of the rectangle and the rectangle moved away from the sun
 /// by `height` / tan e.
@@ -95,16 +96,17 @@ pub fn box_on_plane(size: [f64; 2], height: f64) -> TriangleScene {
     on_plane("building 1", &[extruded(&UPRIGHT.rectangle(size[0], size[1]), -BURIED, height)])
 }
 
-/// Street canyon along x: the faces of its walls at y = ± `width` / 2, `height` metres high, `length` metres long.
+/// Returns a street canyon along x: the faces of its walls at y = ± `width` / 2, `height` metres high, `length` metres
+/// long.
 ///
-/// Endless, the cosine-weighted view of the sky from its floor is (cos β₁ + cos β₂) / 2, where β are the elevations of
-/// the two eaves; from a wall at height h it is (1 − sin γ) / 2 with γ that of the opposite eaves. From the middle, the
+/// For an endless canyon, the sky view factor of the floor is (cos β₁ + cos β₂) / 2, with the elevations β of the two
+/// eaves. For a wall at height h it is (1 − sin γ) / 2, with the elevation γ of the opposite eaves. For the middle, the
 /// open ends add less than `width` · `height`² / `length`³.
 ///
 /// # Source
 /// Johnson & Watson 1984, "The determination of view-factors in urban canyons", J. Climate Appl. Meteor. 23. The ends:
-/// past the end of a wall the sky reaches from elevation 2 `height` / `length` at most down to 0, over an angle of 2
-/// `width` / `length` to either side; sin² integrated over both.
+/// past the end of a wall the sky reaches from elevation 2 `height` / `length` at most down to 0. It covers an angle of
+/// 2 `width` / `length` to either side; sin² is integrated over both.
 #[must_use]
 pub fn canyon(width: f64, height: f64, length: f64) -> TriangleScene {
     let thickness = 10.0;
@@ -115,11 +117,12 @@ pub fn canyon(width: f64, height: f64, length: f64) -> TriangleScene {
     on_plane("building 1", &walls)
 }
 
-/// Round basin of `radius` metres, its edge at `horizon_elevation` (radians) seen from its middle on the ground.
+/// Returns a round basin of `radius` metres, with its edge at `horizon_elevation` (radians) seen from its middle on the
+/// ground.
 ///
-/// From there the cosine-weighted view of the sky is cos² of that elevation, and the share of the sky's solid angle 1 −
-/// sin of it. The edge is a polygon of 720 sides with its corners on the circle; midway between corners its elevation
-/// is greater by less than 5e-6.
+/// From there the sky view factor is cos² of that elevation, and the share of the sky's solid angle is 1 − sin of it.
+/// The edge is a polygon of 720 sides with its corners on the circle. Midway between corners its elevation is greater
+/// by less than 5e-6.
 #[must_use]
 pub fn basin(radius: f64, horizon_elevation: f64) -> TriangleScene {
     let sides = 720;
@@ -137,11 +140,11 @@ pub fn basin(radius: f64, horizon_elevation: f64) -> TriangleScene {
     on_plane("basin", &[wall])
 }
 
-/// Straight stairs that rise towards +x: `step_count` steps of `tread` by `rise` metres, `width` metres across about y
-/// = 0, the first riser at x = 0. The top step ends upright.
+/// Returns straight stairs that rise towards +x: `step_count` steps of `tread` by `rise` metres, `width` metres across
+/// about y = 0. The first riser is at x = 0. The top step ends upright.
 ///
-/// With the sun beyond the top, at elevation e and its azimuth turned by α from +x, each riser shades the tread before
-/// it over a length of `rise` · cos α / tan e, up to the whole tread.
+/// The sun is beyond the top, at elevation e and with its azimuth turned by α from +x. Each riser then shades the tread
+/// in front of it over a length of `rise` · cos α / tan e, up to the whole tread.
 #[must_use]
 pub fn stairs(step_count: u32, tread: f64, rise: f64, width: f64) -> TriangleScene {
     let end = f64::from(step_count) * tread;

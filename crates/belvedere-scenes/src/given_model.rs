@@ -1,11 +1,11 @@
-//! Scenes made of somebody's mesh, whose materials have to be guessed.
+//! Scenes from given meshes, whose materials are guessed.
 
 use crate::scene::{Material, TriangleScene};
 use crate::truth::Truth;
 use crate::vector::{add, scale};
 use rayon::prelude::*;
 
-/// Beginnings of object names, lower case, that say what a thing is.
+/// Beginnings of object names, in lower case, with the material of the object.
 const NAMED: [(&str, Material); 12] = [
     ("terrain", Material::Terrain),
     ("ground", Material::Terrain),
@@ -20,15 +20,17 @@ const NAMED: [(&str, Material); 12] = [
     ("wire", Material::Wire),
     ("canopy", Material::Slab),
 ];
-/// Below this |n_z| a surface is a wall: it is steeper than 60°.
+/// Absolute vertical component of the unit normal below which a surface is a wall: steeper than 60°.
 const STEEP: f64 = 0.5;
 
 impl TriangleScene {
-    /// A scene of the triangles of a mesh: `vertices`, (V, 3), absolute, metres; `triangles`, (T, 3), counter-clockwise
-    /// seen from outside; `objects`, (T), indices into `object_names`, empty where the mesh knows no objects.
+    /// Returns a scene of the triangles of a mesh. `vertices`, (V, 3), are absolute, metres. `triangles`, (T, 3), are
+    /// counter-clockwise seen from outside. `objects`, (T), are indices into `object_names`, or empty for a mesh
+    /// without objects.
     ///
-    /// Materials follow the name of an object where it begins with a word such as `terrain`, `tree` or `bridge`;
-    /// otherwise steep triangles are facades, gentle ones with another surface below them roofs, and the rest terrain.
+    /// Materials follow the name of an object that begins with a word such as `terrain`, `tree` or `bridge`. Otherwise
+    /// steep triangles are facades, gentle triangles with another surface below them are roofs, and the rest is
+    /// terrain.
     #[must_use]
     pub fn from_model(
         vertices: Vec<[f64; 3]>,
@@ -84,7 +86,7 @@ mod tests {
         for material in [Material::Terrain, Material::Roof, Material::Facade] {
             let right = of(material).filter(|(k, g)| k == g).count();
             let all = of(material).count();
-            // floors of houses, which count as facades, lie level over nothing
+            // Floors of houses, which count as facades, lie level over no other surface.
             assert!(right as f64 > 0.8 * all as f64, "{material:?}: {right} of {all}");
         }
         let named = TriangleScene::from_model(known.vertices, known.triangles, known.objects, known.object_names);

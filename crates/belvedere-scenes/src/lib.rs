@@ -1,10 +1,10 @@
 //! Simulated towns with exact meshes, and simulated laser scans of them.
 //!
-//! Tests and demonstrations need scenes whose answers are known. This crate makes a town out of triangles ([`town`],
-//! from a description or a [`Preset`]) or a scene with a formula ([`closed_forms`]), generalises it to the blocks of a
-//! city model ([`blocks`]), answers exactly what blocks what in it ([`Truth`]), knows what is worth asking
-//! ([`QuerySite`]), and scans it from the air ([`scan_airborne`]), from tripods ([`scan_terrestrial`]) or from a car
-//! ([`scan_mobile`]). It knows no other crate of the project: what comes out are plain columns and meshes.
+//! Tests and demonstrations need scenes with known answers. This crate makes a town of triangles ([`town`], from a
+//! description or a [`Preset`]) or a scene with a formula ([`closed_forms`]). It generalises the scene to the blocks of
+//! a city model ([`blocks`]) and computes exact visibility in it ([`Truth`]). It draws targets and observers for tests
+//! ([`QuerySite`]). It scans the scene from the air ([`scan_airborne`]), from tripods ([`scan_terrestrial`]) or from a
+//! car ([`scan_mobile`]). The crate depends on no other crate of the project; its outputs are plain columns and meshes.
 //!
 //! ```
 //! use belvedere_scenes::{AirborneParams, TownParams, Truth, scan_airborne, town};
@@ -18,8 +18,8 @@
 //! ```
 //!
 //! Coordinates are absolute everywhere: metres, f64, x east, y north, z up, in a projected frame such as the Dutch
-//! national grid. Everything follows from the parameters alone, seeds included, with the same bits for any number of
-//! threads; between platforms the last bits may differ where the mathematical library does.
+//! national grid. All results depend only on the parameters, including seeds, with the same bits for any number of
+//! threads. Between platforms the last bits may differ, because mathematical libraries do.
 
 pub mod closed_forms;
 mod formats;

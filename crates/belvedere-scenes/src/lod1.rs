@@ -1,4 +1,4 @@
-//! A town as 3D city models have it: upright blocks over footprints, nothing else.
+//! LoD1 model of a town, as in 3D city models: upright blocks over footprints and no other shapes.
 
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
@@ -6,27 +6,30 @@ use std::ops::Range;
 use crate::scene::{Material, ObjectPart, TriangleScene, index_u32};
 use crate::vector::{cross, length, sub};
 
-/// Share of the roof that lies below the top of a block.
+/// Share of the roof area that lies below the top of a block.
 ///
 /// # Source
 /// 3D BAG (Peters et al. 2022, "Automated 3D reconstruction of LoD2 and LoD1 models for all 10 million buildings of the
 /// Netherlands", PE&RS 88(3)): its LoD1.2 and 1.3 blocks end at the 70th percentile of the roof.
 const ROOF_SHARE: f64 = 0.7;
-/// Faces that look down at least this steeply (cosine) belong to the footprint.
+/// Minimum cosine between a face's normal and straight down for a face of the footprint.
 const DOWNWARD: f64 = 0.5;
-/// Side of the cells in which the ground is looked up, metres.
+/// Side of the cells for look-ups of the ground, metres.
 const CELL: f64 = 8.0;
 
-/// The same scene generalised to LoD1: the terrain, and for each part of a building that stands on the ground the prism
-/// over its footprint, from its bottom to the height that 70 % of its roof lies below (by area seen from above, eaves
-/// included; dormers and what else has a roof and sits on the footprint counts with it, and so does the roof beneath).
+/// Returns the scene generalised to LoD1: the terrain, and a prism for each part of a building that stands on the
+/// ground.
 ///
-/// A building is what has faces of [`Material::Roof`]. What does not stand in the ground, overhangs the walls or is no
-/// building is left out: balconies, decks, canopies, bridges, trees, cars, fences, masts, wires. Floors over arcades
-/// belong to the footprint. Objects keep their names; those of which nothing is left are left out. Without terrain,
-/// every part with a roof counts as standing on the ground.
+/// A prism stands on the footprint of its part. It rises from the bottom of the part to the height that 70 % of the
+/// roof area lies below. The area is seen from above and includes eaves. Dormers and other parts with a roof on the
+/// footprint count too, and so does the roof beneath them.
 ///
-/// Needs [`TriangleScene::parts`]; without them each object counts as one part.
+/// A building is an object with faces of [`Material::Roof`]. Parts that do not stand in the ground, overhanging parts
+/// and other objects are left out: balconies, decks, canopies, bridges, trees, cars, fences, masts, wires. Floors over
+/// arcades belong to the footprint. Objects keep their names; objects without remaining parts are left out. Without
+/// terrain, every part with a roof counts as standing on the ground.
+///
+/// The function needs [`TriangleScene::parts`]; without them each object counts as one part.
 #[must_use]
 pub fn blocks(scene: &TriangleScene) -> TriangleScene {
     let ground = TerrainLookup::new(scene);
@@ -72,7 +75,7 @@ pub fn blocks(scene: &TriangleScene) -> TriangleScene {
     generalised
 }
 
-/// The triangles of `range` as a part of their own.
+/// Copies the triangles of `range` into a new part.
 fn copy(scene: &TriangleScene, range: Range<usize>) -> ObjectPart {
     let mut part = ObjectPart::default();
     let mut vertices = HashMap::new();
@@ -93,13 +96,13 @@ fn copy(scene: &TriangleScene, range: Range<usize>) -> ObjectPart {
     part
 }
 
-/// Corners of triangle `t` where it is roof that the sky sees.
+/// Returns the corners of triangle `t` if it is roof and faces upward.
 fn roof_corners(scene: &TriangleScene, t: usize) -> Option<[[f64; 3]; 3]> {
     let corners = scene.corners(t).filter(|_| scene.materials.get(t) == Some(&Material::Roof))?;
     (upward_area(&corners) > 0.0).then_some(corners)
 }
 
-/// Area seen from above in m², negative for faces that look down.
+/// Returns the area seen from above, m²; negative for faces that look down.
 fn upward_area([a, b, c]: &[[f64; 3]; 3]) -> f64 {
     ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0
 }
@@ -108,7 +111,8 @@ fn centroid(corners: &[[f64; 3]; 3]) -> [f64; 2] {
     [0, 1].map(|axis| corners.iter().map(|corner| corner[axis]).sum::<f64>() / 3.0)
 }
 
-/// Height in metres that the given share of the triangles lies below, by area seen from above; NaN without triangles.
+/// Returns the height below which the given share of the triangles lies, metres, by area seen from above. NaN without
+/// triangles.
 fn height_below_which(triangles: &[[[f64; 3]; 3]], share: f64) -> f64 {
     let heights = || triangles.iter().flatten().map(|corner| corner[2]);
     let (mut low, mut high) = (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
@@ -122,7 +126,7 @@ fn height_below_which(triangles: &[[[f64; 3]; 3]], share: f64) -> f64 {
     high
 }
 
-/// Share of a triangle that lies below `height`.
+/// Returns the share of a triangle that lies below `height`.
 fn share_below(corners: &[[f64; 3]; 3], height: f64) -> f64 {
     let mut z = corners.map(|corner| corner[2]);
     z.sort_unstable_by(f64::total_cmp);
@@ -137,16 +141,16 @@ fn share_below(corners: &[[f64; 3]; 3], height: f64) -> f64 {
     }
 }
 
-/// Outline of a part on the ground, cut into triangles.
+/// Outline of a part on the ground, divided into triangles.
 struct PartOutline {
     points: Vec<[f64; 2]>,
-    /// Clockwise seen from above, as the floor they come from.
+    /// Corners of the triangles, clockwise seen from above, as in the floor that they come from.
     triangles: Vec<[usize; 3]>,
 }
 
 impl PartOutline {
-    /// From the faces of a part that look down, but for roofs, whose undersides are eaves. Where they meet above each
-    /// other, as the floor of an arcade and its ceiling do, their corners are the same numbers and count as one.
+    /// Collects the faces of a part that look down, except roofs, whose undersides are eaves. Faces may meet above each
+    /// other, as the floor and the ceiling of an arcade. Corners at the same place on the map then count as one.
     fn new(scene: &TriangleScene, range: Range<usize>) -> Self {
         let mut numbers: HashMap<[u64; 2], usize> = HashMap::new();
         let mut footprint = Self { points: Vec::new(), triangles: Vec::new() };
@@ -173,7 +177,7 @@ impl PartOutline {
         })
     }
 
-    /// Closed prism over the footprint. The sides stand on the edges that no second triangle shares.
+    /// Returns a closed prism over the footprint. The sides stand on the edges that no second triangle shares.
     fn prism(&self, bottom: f64, top: f64) -> ObjectPart {
         let mut part = ObjectPart::default();
         let count = self.points.len();
@@ -196,12 +200,12 @@ impl PartOutline {
     }
 }
 
-/// Positive where `point` lies on the left of the line from `from` to `to`.
+/// Returns a positive number if `point` lies to the left of the line from `from` to `to`.
 fn left_of(from: [f64; 2], to: [f64; 2], point: [f64; 2]) -> f64 {
     (to[0] - from[0]) * (point[1] - from[1]) - (to[1] - from[1]) * (point[0] - from[0])
 }
 
-/// The terrain of a scene, looked up by position.
+/// Terrain of a scene, with look-ups by position.
 struct TerrainLookup<'a> {
     scene: &'a TriangleScene,
     cells: HashMap<[i64; 2], Vec<u32>>,
@@ -226,7 +230,7 @@ impl<'a> TerrainLookup<'a> {
         Self { scene, cells }
     }
 
-    /// Height of the ground below or above a point, or `None` where there is none.
+    /// Returns the height of the ground below or above a point; `None` for a point without ground.
     fn height(&self, [x, y, _]: [f64; 3]) -> Option<f64> {
         let here = self.cells.get(&[cell(x), cell(y)])?;
         here.iter().find_map(|&t| {

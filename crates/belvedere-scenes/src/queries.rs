@@ -1,4 +1,4 @@
-//! Sets of targets whose visibility is worth asking for, and the viewers to ask from.
+//! Sets of targets and viewers for tests of visibility.
 
 use crate::random::Random;
 use crate::scene::{Material, TriangleScene};
@@ -6,32 +6,32 @@ use crate::truth::{CONTACT, Truth};
 use crate::vector::{add_scaled, cross, dot, length, scale, sub, unit};
 use rayon::prelude::*;
 
-/// A kind of target.
+/// Kind of target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum QuerySet {
-    /// Anywhere in a box: the experiment of Peters, Ledoux & Biljecki 2015. It flatters every method, because what lies
-    /// within the ground or a building is blocked anyway.
+    /// Random points in a box: the experiment of Peters, Ledoux & Biljecki 2015. It flatters every method, because
+    /// points within the ground or a building are blocked anyway.
     Volume,
-    /// As [`QuerySet::Volume`], but in free air.
+    /// Random points as in [`QuerySet::Volume`], but in free air.
     Air,
-    /// 1.5 m above the ground, in free air: chests of people, under decks and crowns too.
+    /// Points 1.5 m above the ground, in free air: chests of people, also under decks and crowns.
     Pedestrians,
-    /// 0.1 m above the ground, in free air.
+    /// Points 0.1 m above the ground, in free air.
     Ground,
-    /// 0.1 m above roofs; not below their eaves or beside them.
+    /// Points 0.1 m above roofs; not below their eaves or beside them.
     Roofs,
-    /// 0.1 m outside walls; not above chimneys, and not at parapets.
+    /// Points 0.1 m outside walls; not above chimneys, and not at parapets.
     Facades,
-    /// Eyes 1.6 m above the ground that look at each other, as many pairs in each class of length.
+    /// Pairs of eyes 1.6 m above the ground that look at each other, equally many in each class of length.
     LinesOfSight,
 }
 
 impl QuerySet {
-    /// Every kind.
+    /// All kinds.
     pub const ALL: [Self; 7] =
         [Self::Volume, Self::Air, Self::Pedestrians, Self::Ground, Self::Roofs, Self::Facades, Self::LinesOfSight];
 
-    /// Short name for tables.
+    /// Returns the short name for tables.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -51,31 +51,32 @@ const CHEST: f64 = 1.5;
 const EYE: f64 = 1.6;
 const ABOVE_ROOF: f64 = 6.0;
 const OFF_SURFACE: f64 = 0.1;
-/// How far a return may lie from the surface it came from, along its line, metres: ten times the usual noise.
+/// Maximum distance of a return from its surface along its line, metres: ten times the usual noise.
 const RETURN_DEVIATION: f64 = 0.3;
-/// Distance outside a surface of the point for which its visibility is computed, metres.
+/// Distance outside a surface of the point whose visibility is computed, metres.
 const OUTSIDE: f64 = 0.03;
-/// A surface is a wall where the upward part of its normal is less than this either way, and a roof where it is more
-/// than this: roofs may be steep, the sides of their eaves are upright.
+/// Limits of the upward component of the unit normal, without unit. A wall has an absolute value below `STEEP`, a roof
+/// a value above `LEVEL`. Roofs may be steep, but the sides of their eaves are upright.
 const STEEP: f64 = 0.5;
 const LEVEL: f64 = 0.05;
-/// Bounds of the classes of length that lines of sight are drawn in, metres.
+/// Bounds of the classes of length of lines of sight, metres.
 const SIGHT_LENGTHS: [f64; 5] = [5.0, 25.0, 50.0, 100.0, 200.0];
-/// Least distance between two surfaces that a ray crosses for both to count, metres: an edge or a doubled face is one.
+/// Minimum distance between two surfaces on a ray that count separately, metres. An edge or a doubled face counts as
+/// one.
 const SAME_SURFACE: f64 = 1e-4;
-/// Crossings after which a ray is given up; no place has so many floors.
+/// Maximum number of crossings of a ray; no place has so many floors.
 const MAX_CROSSINGS: usize = 64;
-/// Draws tried for each target wanted, so that a scene without free ground ends.
+/// Maximum number of draws per target, so that the search ends in a scene without free ground.
 const DRAWS_PER_TARGET: u64 = 64;
 
-/// Where targets are looked for.
+/// Site in which targets are drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct QuerySite<'a> {
-    /// The scene.
+    /// Scene of the site.
     pub scene: &'a TriangleScene,
-    /// Its index.
+    /// Index of the scene.
     pub truth: &'a Truth,
-    /// Lowest and highest corner of the box that targets lie in, absolute, metres: the box of the cloud.
+    /// Lowest and highest corner of the box of targets, absolute, metres. It is the box of the cloud.
     pub bounds: [[f64; 3]; 2],
 }
 
@@ -84,15 +85,15 @@ pub struct QuerySite<'a> {
 pub struct TargetsOfKind {
     /// Positions, (M, 3), absolute, metres.
     pub positions: Vec<[f64; 3]>,
-    /// The other end of each line of sight, (M, 3), for [`QuerySet::LinesOfSight`]; empty otherwise.
+    /// Other end of each line of sight, (M, 3), for [`QuerySet::LinesOfSight`]; empty otherwise.
     pub eyes: Vec<[f64; 3]>,
 }
 
 impl QuerySite<'_> {
-    /// `count` targets of a kind, fewer where the place has no room for them (no roof, say).
+    /// Returns `count` targets of a kind, fewer in a place without enough room for them, such as one without roofs.
     ///
-    /// Every target draws from its own stream of `seed`, so that a longer list begins with the shorter one, whatever
-    /// the number of threads. Free air is what [`QuerySite::is_inside`] denies.
+    /// Every target draws from its own stream of `seed`. A longer list therefore begins with the shorter one, for any
+    /// number of threads. A point is in free air if [`QuerySite::is_inside`] is false.
     #[must_use]
     pub fn targets(&self, set: QuerySet, count: usize, seed: u64) -> TargetsOfKind {
         let surfaces = match set {
@@ -125,19 +126,18 @@ impl QuerySite<'_> {
         }
     }
 
-    /// Whether `point` lies within a solid or below the terrain.
+    /// Returns true if `point` lies within a solid or below the terrain.
     ///
-    /// Straight above the point, each surface left from within counts one more, each entered one less: the winding
-    /// number of the closed solids (and of the ground) around it, which overlapping solids do not confuse. Triangles
-    /// must be counter-clockwise seen from outside.
+    /// On the ray straight up, each surface left from within counts plus one, and each surface entered counts minus
+    /// one. The sum is the winding number of the closed solids and the ground. It stays correct for overlapping solids.
+    /// Triangles must be counter-clockwise seen from outside.
     #[must_use]
     pub fn is_inside(&self, point: [f64; 3]) -> bool {
         let up = [0.0, 0.0, 1.0];
         self.crossings(point, up).map(|(_, facing)| if facing > 0.0 { 1 } else { -1 }).sum::<i32>() > 0
     }
 
-    /// Height of the terrain at absolute (x, y), metres, or `None` beyond its edge. The highest, where there are
-    /// several.
+    /// Returns the height of the highest terrain at absolute (x, y), metres; `None` beyond its edge.
     #[must_use]
     pub fn ground_height(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let top = self.bounds[1][2].max(self.scene_top()) + 1.0;
@@ -146,12 +146,12 @@ impl QuerySite<'_> {
             .map(|(hit, _)| top - hit.range)
     }
 
-    /// The surface that a laser return at `point` came from, for a scanner at `scanner`: the crossing of their line
-    /// that lies nearest to the return, its triangle, and a point 3 cm outside it; `None` where no surface lies within
-    /// 0.3 m of the return along the line. All absolute, metres.
+    /// Returns the surface that reflected a laser return at `point` to a scanner at `scanner`, both absolute, metres.
+    /// The result is the crossing of their line nearest to the return, and a point 3 cm outside its surface. `None`
+    /// without a surface within 0.3 m of the return along the line.
     ///
-    /// Visibility of a cloud's own points is computed for the point outside: the return itself lies behind or before
-    /// the surface by chance.
+    /// Visibility of a cloud's own points is computed for the point outside, because noise puts the return itself in
+    /// front of or behind the surface.
     #[must_use]
     pub fn surface_of_return(&self, scanner: [f64; 3], point: [f64; 3]) -> Option<(crate::Hit, [f64; 3])> {
         let direction = unit(sub(point, scanner))?;
@@ -164,8 +164,9 @@ impl QuerySite<'_> {
         Some((hit, add_scaled(add_scaled(scanner, direction, hit.range), normal, OUTSIDE)))
     }
 
-    /// Two observers: a person's eyes in the open near the middle of the place, and 6 m above its highest roof,
-    /// absolute, metres. The first is missing where no ground is free, the second where there is no roof.
+    /// Returns two observers, absolute, metres. The first is the eyes of a person in the open near the middle of the
+    /// place, or `None` without free ground. The second is a point 6 m above the highest roof, or `None` without a
+    /// roof.
     #[must_use]
     pub fn observers(&self, seed: u64) -> [Option<[f64; 3]>; 2] {
         let [low, high] = self.bounds;
@@ -182,9 +183,9 @@ impl QuerySite<'_> {
         [street, highest.map(|p| [p[0], p[1], p[2] + ABOVE_ROOF])]
     }
 
-    /// `count` people's eyes in the open anywhere in the place but for its outer twentieth, absolute, metres; fewer
-    /// where little ground is free. Where no ground has the sky above it, they stand under a ceiling. One street
-    /// observer says little: an error near it spoils a whole sector of its view.
+    /// Returns the eyes of `count` people in the open, absolute, metres; fewer on a site with little free ground. The
+    /// outer twentieth of the place is left out. If no ground has the sky above it, the people stand under a ceiling.
+    /// Results from one street observer are unreliable: an error near it spoils a whole sector of its view.
     #[must_use]
     pub fn street_observers(&self, count: usize, seed: u64) -> Vec<[f64; 3]> {
         let [low, high] = self.bounds;
@@ -196,8 +197,8 @@ impl QuerySite<'_> {
         (0..count).into_par_iter().filter_map(eye).collect()
     }
 
-    /// Eyes with room to step, not in a hedge, a passage or a car, within `reach` of `middle`: under the open sky, or
-    /// where none of the ground is, as within a building, under a ceiling.
+    /// Returns eyes with room to step, not in a hedge, a passage or a car, within `reach` of `middle`. They are under
+    /// the open sky. If all ground is covered, as within a building, they are under a ceiling.
     fn standing_in_the_open(&self, middle: [f64; 2], reach: [f64; 2], random: &mut Random) -> Option<[f64; 3]> {
         let is_under_the_sky = |eye: [f64; 3]| !self.truth.occluded_towards(eye, [0.0, 0.0, 1.0]);
         self.with_room_to_step(middle, reach, random, is_under_the_sky)
@@ -226,7 +227,8 @@ impl QuerySite<'_> {
         self.scene.bounds().map_or(0.0, |(_, high)| high[2])
     }
 
-    /// Surfaces along a ray, nearest first, and whether each faces along it (positive: left from within).
+    /// Returns the surfaces along a ray, the nearest first, with the cosine between normal and ray (positive: left from
+    /// within).
     fn crossings(&self, origin: [f64; 3], direction: [f64; 3]) -> impl Iterator<Item = (crate::Hit, f64)> + '_ {
         self.crossings_from(origin, direction, CONTACT)
     }
@@ -250,7 +252,7 @@ impl QuerySite<'_> {
         std::array::from_fn(|i| random.between(low[i], high[i]))
     }
 
-    /// A free point `height` metres above the ground at (x, y).
+    /// Returns a free point `height` metres above the ground at (x, y).
     fn standing_at(&self, at: [f64; 2], height: f64) -> Option<[f64; 3]> {
         let point = [at[0], at[1], self.ground_height(at)? + height];
         (!self.is_inside(point)).then_some(point)
@@ -273,7 +275,7 @@ impl QuerySite<'_> {
 }
 
 impl TriangleScene {
-    /// Outward unit normal of triangle `index`, or `None` where it does not exist or has no area.
+    /// Returns the outward unit normal of triangle `index`; `None` for a missing triangle or one without area.
     #[must_use]
     pub fn normal(&self, index: usize) -> Option<[f64; 3]> {
         let [a, b, c] = self.corners(index)?;
@@ -281,16 +283,16 @@ impl TriangleScene {
     }
 }
 
-/// Triangles of one material that face a way, drawn in proportion to their area.
+/// Triangles of one material and orientation, drawn in proportion to their area.
 #[derive(Default)]
 struct SurfaceSampler {
     triangles: Vec<usize>,
-    /// Area of all triangles up to and including each, m².
+    /// Cumulative area of the triangles, m².
     areas: Vec<f64>,
 }
 
 impl SurfaceSampler {
-    /// Of those triangles of `material` whose upward part of the unit normal is `wanted`.
+    /// Selects the triangles of `material` for which `wanted` accepts the upward component of the unit normal.
     fn new(scene: &TriangleScene, material: Material, wanted: impl Fn(f64) -> bool) -> Self {
         let mut sampler = Self::default();
         let mut total = 0.0;
@@ -307,7 +309,7 @@ impl SurfaceSampler {
         sampler
     }
 
-    /// A point 0.1 m outside the surface.
+    /// Draws a point 0.1 m outside the surface.
     fn draw(&self, scene: &TriangleScene, random: &mut Random) -> Option<[f64; 3]> {
         let at = random.uniform() * self.areas.last()?;
         let chosen = self.areas.partition_point(|&area| area <= at);

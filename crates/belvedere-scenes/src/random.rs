@@ -1,10 +1,10 @@
-//! Random numbers that stay the same for a seed, whatever the version of any library.
+//! Random numbers that stay the same for a seed, with any version of any library.
 
-/// A stream of random numbers.
+/// Stream of random numbers.
 ///
 /// # Source
-/// SplitMix64: Steele, Lea & Flood 2014, "Fast splittable pseudorandom number generators", section 5. It is used
-/// because any pulse can start its own stream from a hash of its number, so that threads need not share one.
+/// SplitMix64: Steele, Lea & Flood 2014, "Fast splittable pseudorandom number generators", section 5. Any pulse can
+/// start its own stream from a hash of its number, so that threads need not share one.
 #[derive(Clone, Debug)]
 pub(crate) struct Random {
     state: u64,
@@ -19,7 +19,7 @@ fn mix(value: u64) -> u64 {
 }
 
 impl Random {
-    /// The stream number `stream` of `seed`; different streams are independent.
+    /// Returns stream number `stream` of `seed`; different streams are independent.
     pub(crate) fn new(seed: u64, stream: u64) -> Self {
         Self { state: mix(mix(seed.wrapping_add(GOLDEN_GAMMA)).wrapping_add(stream.wrapping_mul(GOLDEN_GAMMA))) }
     }
@@ -29,26 +29,27 @@ impl Random {
         mix(self.state)
     }
 
-    /// Uniform in 0 (included) to 1 (excluded).
+    /// Returns a uniform number from 0 (included) to 1 (excluded).
     pub(crate) fn uniform(&mut self) -> f64 {
         // The upper 53 bits are as many as an f64 holds without rounding up to 1.
         (self.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Uniform in `low` to `high`.
+    /// Returns a uniform number from `low` to `high`.
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.uniform()
     }
 
-    /// True with probability `probability`.
+    /// Returns true with probability `probability`.
     pub(crate) fn chance(&mut self, probability: f64) -> bool {
         self.uniform() < probability
     }
 
-    /// Nearly normal, mean 0, standard deviation 1, never beyond ±6: the sum of twelve uniform numbers.
+    /// Returns a nearly normal number, mean 0, standard deviation 1, never beyond ±6: the sum of twelve uniform
+    /// numbers.
     ///
-    /// Box–Muller would need `ln` and `cos`, whose last bits differ between platforms; the sum does not, and its bound
-    /// lets a test state how far a point may lie from the surface.
+    /// Box–Muller would need `ln` and `cos`, whose last bits differ between platforms. The sum has no such differences.
+    /// Its bound limits the distance of a point from the surface, which a test can state.
     pub(crate) fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
     }

@@ -1,10 +1,10 @@
-//! Two furnished rooms with a door between them and one to the outside: a scene that is scanned from inside.
+//! Two furnished rooms with a door between them and one to the outside: a scene for scans from inside.
 
 use crate::random::Random;
 use crate::scene::{Material, ObjectPart, TriangleScene};
 use crate::solids::{PlanPlacement, extruded};
 
-/// Centre of the floor, metres, in the grid that towns lie in.
+/// Centre of the floor, metres, in the grid of the towns.
 const ORIGIN: [f64; 3] = [155_000.0, 463_000.0, 0.0];
 /// Height of the ceiling, metres.
 const HEIGHT: f64 = 2.7;
@@ -17,7 +17,7 @@ const TABLE: (f64, f64, f64) = (0.75, 0.04, 0.06);
 /// Height of the scanner above the floor, metres.
 const INSTRUMENT: f64 = 1.6;
 
-/// Sizes of the rooms, metres: west and east of the wall between them, and south to north.
+/// Sizes of the rooms, metres: west and east of the wall between them, and from south to north.
 struct RoomSizes {
     west: f64,
     east: f64,
@@ -30,8 +30,8 @@ impl RoomSizes {
     }
 }
 
-/// The two rooms and where a scanner stands in each of them, (2, 3), metres, absolute. Another seed gives other sizes
-/// and other furniture.
+/// Returns the two rooms and the position of a scanner in each of them, (2, 3), metres, absolute. Another seed gives
+/// other sizes and other furniture.
 ///
 /// The floor is terrain, walls and cupboards are facades, the ceiling and the tops of tables are slabs. All solids are
 /// closed.
@@ -58,7 +58,7 @@ pub(crate) fn furnished_rooms(seed: u64) -> (TriangleScene, [[f64; 3]; 2]) {
         let middle = (from + to) / 2.0;
         let table = [middle + random.between(-0.3, 0.3), south + random.between(0.9, 1.2)];
         scene.add_object(format!("table {name}"), &table_at(table));
-        // along the north wall, where no door is
+        // Along the north wall, which has no door.
         let width = random.between(1.2, 2.0);
         let start = random.between(from + 0.3, to - 0.3 - width);
         let height = random.between(0.8, 2.1);
@@ -70,7 +70,7 @@ pub(crate) fn furnished_rooms(seed: u64) -> (TriangleScene, [[f64; 3]; 2]) {
     (scene, stations.map(|[u, v]| [x + u, y + v, z + INSTRUMENT]))
 }
 
-/// A box between these coordinates east, north and up of the centre of the floor.
+/// Returns a box between these coordinates east, north and up of the centre of the floor.
 fn solid([west, east]: [f64; 2], [south, north]: [f64; 2], [bottom, top]: [f64; 2]) -> ObjectPart {
     let [x, y, z] = ORIGIN;
     let middle = [x + (west + east) / 2.0, y + (south + north) / 2.0];
@@ -78,7 +78,7 @@ fn solid([west, east]: [f64; 2], [south, north]: [f64; 2], [bottom, top]: [f64; 
     extruded(&footprint, z + bottom, z + top).with_material(Material::Facade)
 }
 
-/// A wall from south to north with a door in it, `door` metres north of the middle.
+/// Returns a wall from south to north with a door in it, `door` metres north of the middle.
 fn wall_with_door(across: [f64; 2], [south, north]: [f64; 2], door: f64) -> [ObjectPart; 3] {
     let (half, height) = DOOR;
     [
@@ -88,7 +88,7 @@ fn wall_with_door(across: [f64; 2], [south, north]: [f64; 2], door: f64) -> [Obj
     ]
 }
 
-/// A table of 1.4 by 0.8 m on four legs.
+/// Returns a table of 1.4 by 0.8 m on four legs.
 fn table_at([u, v]: [f64; 2]) -> [ObjectPart; 5] {
     let (top, thickness, leg) = TABLE;
     let (length, width) = (0.7, 0.4);
@@ -100,7 +100,7 @@ fn table_at([u, v]: [f64; 2]) -> [ObjectPart; 5] {
     [plate.with_material(Material::Slab), leg_at(-1.0, -1.0), leg_at(1.0, -1.0), leg_at(-1.0, 1.0), leg_at(1.0, 1.0)]
 }
 
-/// The floor, a sheet.
+/// Returns the floor, a sheet.
 fn floor(plan: &RoomSizes) -> ObjectPart {
     let [x, y, z] = ORIGIN;
     let mut part = ObjectPart::default();
@@ -132,7 +132,7 @@ mod tests {
                     let hit = truth.first_hit(station, [level * azimuth.cos(), level * azimuth.sin(), up], 100.0);
                     open += usize::from(hit.is_none());
                 }
-                // a door of 0.9 by 2.1 m, 2 m away or more, is at most a twentieth of all directions
+                // A door of 0.9 by 2.1 m, 2 m away or more, is at most a twentieth of all directions.
                 assert!(open < 180, "{seed}: {open}");
             }
         }

@@ -1,8 +1,8 @@
-//! A scene: the exact triangles that a simulated scanner sees.
+//! Scene: the exact triangles that a simulated scanner sees.
 
 use crate::vector::{add, cross, dot, scale, sub};
 
-/// What a triangle is made of.
+/// Material of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Material {
     /// Bare ground.
@@ -15,9 +15,10 @@ pub enum Material {
     TreeCrown,
     /// Stem of a tree.
     Trunk,
-    /// A single leaf, or a few on a twig, of a porous crown.
+    /// One leaf, or a few on a twig, of a porous crown.
     Leaf,
-    /// Slab that carries or covers, or its parapet: balcony, deck, canopy, ceiling of an arcade; parapet of a roof.
+    /// Slab to walk on or below, or its parapet: balcony, deck, canopy, ceiling of an arcade; also the parapet of a
+    /// roof.
     Slab,
     /// Deck of a bridge, with its sides and underside.
     Bridge,
@@ -32,7 +33,7 @@ pub enum Material {
 }
 
 impl Material {
-    /// Every material.
+    /// All materials.
     pub const ALL: [Self; 12] = [
         Self::Terrain,
         Self::Roof,
@@ -48,8 +49,8 @@ impl Material {
         Self::Car,
     ];
 
-    /// Standard class of a laser point on this material: 1 unclassified, 2 ground, 5 high vegetation, 6 building, 14
-    /// wire conductor, 17 bridge deck (ASPRS LAS 1.4, table 17).
+    /// Returns the standard class of a laser point on this material (ASPRS LAS 1.4, table 17). Classes are 1
+    /// unclassified, 2 ground, 5 high vegetation, 6 building, 14 wire conductor, 17 bridge deck.
     #[must_use]
     pub fn asprs_class(self) -> u8 {
         match self {
@@ -62,7 +63,7 @@ impl Material {
         }
     }
 
-    /// Lower-case name without blanks, as the OBJ text uses it.
+    /// Returns the lower-case name without blanks, as in the OBJ text.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -81,8 +82,8 @@ impl Material {
         }
     }
 
-    /// Share of the light that a surface facing the laser (near infrared) sends back, 0 to 1: typical values, for
-    /// plausible intensities only.
+    /// Returns the reflectance of a surface that faces the laser (near infrared), 0 to 1. Values are typical, only for
+    /// plausible intensities.
     pub(crate) fn reflectance(self) -> f64 {
         match self {
             Self::Terrain => 0.25,
@@ -95,8 +96,8 @@ impl Material {
     }
 }
 
-/// A piece of surface with a material per triangle: what the shape functions make and [`TriangleScene::add_object`]
-/// takes.
+/// Piece of surface with a material per triangle: the output of the shape functions and the input of
+/// [`TriangleScene::add_object`].
 #[derive(Clone, Debug, Default)]
 pub struct ObjectPart {
     /// Vertices, (V, 3), metres, absolute.
@@ -109,7 +110,7 @@ pub struct ObjectPart {
 
 impl ObjectPart {
     /// Adds a flat convex polygon, corners counter-clockwise seen from outside, as a fan about its first corner.
-    /// Corners may be the same: triangles that would have no area are left out.
+    /// Corners may coincide: triangles without area are left out.
     pub(crate) fn add_polygon(&mut self, corners: &[usize], material: Material) {
         if let [first, rest @ ..] = corners {
             for edge in rest.windows(2).filter(|edge| edge[0] != edge[1] && !edge.contains(first)) {
@@ -119,15 +120,15 @@ impl ObjectPart {
         }
     }
 
-    /// The same surface, all of `material`.
+    /// Returns this surface with `material` on all triangles.
     #[must_use]
     pub fn with_material(mut self, material: Material) -> Self {
         self.materials.fill(material);
         self
     }
 
-    /// Volume enclosed, m³: positive for a closed surface whose triangles are counter-clockwise seen from outside.
-    /// Without meaning for an open surface.
+    /// Returns the enclosed volume, m³: positive for a closed surface whose triangles are counter-clockwise seen from
+    /// outside. The value has no meaning for an open surface.
     #[must_use]
     pub fn volume(&self) -> f64 {
         // Measured from a vertex: from the zero of a projected grid the terms would be 1e16 m³ and cancel badly.
@@ -137,11 +138,11 @@ impl ObjectPart {
     }
 }
 
-/// A scene of triangles, grouped in named objects.
+/// Scene of triangles, grouped in named objects.
 ///
-/// Everything but the terrain consists of closed solids, a part each (all leaves of a crown are one part); solids may
-/// overlap, as a trunk reaches into its crown and neighbouring houses into each other. The terrain is a sheet that ends
-/// at the edge of the scene.
+/// All objects except the terrain consist of closed solids, one part each; all leaves of a crown are one part. Solids
+/// may overlap, as a trunk with its crown and neighbouring houses with each other. The terrain is a sheet that ends at
+/// the edge of the scene.
 #[derive(Clone, Debug, Default)]
 pub struct TriangleScene {
     /// Vertices, (V, 3), metres, absolute (the projected frame, not local).
@@ -152,15 +153,15 @@ pub struct TriangleScene {
     pub materials: Vec<Material>,
     /// Object of each triangle, (T), index into `object_names`; the triangles of one object are neighbours.
     pub objects: Vec<u32>,
-    /// Part of each triangle, (T): the parts of all objects counted through from 0 in the order they were added; the
-    /// triangles of one part are neighbours. Empty where a scene was put together without parts.
+    /// Part of each triangle, (T), counted from 0 over all objects in the order of their addition. The triangles of one
+    /// part are neighbours. Empty for a scene without parts.
     pub parts: Vec<u32>,
     /// Name of each object, such as `building 3`.
     pub object_names: Vec<String>,
 }
 
 impl TriangleScene {
-    /// Appends an object made of `parts`.
+    /// Adds an object made of `parts`.
     pub fn add_object(&mut self, name: impl Into<String>, parts: &[ObjectPart]) {
         let object = index_u32(self.object_names.len());
         self.object_names.push(name.into());
@@ -175,7 +176,7 @@ impl TriangleScene {
         }
     }
 
-    /// Triangles of each object and part, as ranges: neighbours of the same object and part belong together.
+    /// Returns the ranges of triangles with the same object and part. Triangles of one part are neighbours.
     pub(crate) fn part_ranges(&self) -> Vec<std::ops::Range<usize>> {
         let key = |t: usize| (self.objects.get(t), self.parts.get(t));
         let mut ranges: Vec<std::ops::Range<usize>> = Vec::new();
@@ -188,7 +189,7 @@ impl TriangleScene {
         ranges
     }
 
-    /// Corners of triangle `index`, or `None` where it or one of its vertices does not exist.
+    /// Returns the corners of triangle `index`; `None` for a missing triangle or vertex.
     #[must_use]
     pub fn corners(&self, index: usize) -> Option<[[f64; 3]; 3]> {
         let [a, b, c] = *self.triangles.get(index)?;
@@ -196,7 +197,7 @@ impl TriangleScene {
         Some([vertex(a)?, vertex(b)?, vertex(c)?])
     }
 
-    /// Lowest and highest corner of the box around all vertices, or `None` without any.
+    /// Returns the lowest and highest corner of the box around all vertices; `None` without vertices.
     #[must_use]
     pub fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
         let first = *self.vertices.first()?;
@@ -205,7 +206,8 @@ impl TriangleScene {
         }))
     }
 
-    /// Mean height of the terrain vertices in metres; of all vertices where there is no terrain, 0 for an empty scene.
+    /// Returns the mean height of the terrain vertices, metres. Without terrain it is the mean of all vertices, and 0
+    /// for an empty scene.
     #[must_use]
     pub fn mean_ground_height(&self) -> f64 {
         let mean = |corners: &mut dyn Iterator<Item = u32>| {
@@ -221,7 +223,7 @@ impl TriangleScene {
     }
 }
 
-/// Middle of two points.
+/// Returns the middle of two points.
 pub(crate) fn middle(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     scale(add(a, b), 0.5)
 }

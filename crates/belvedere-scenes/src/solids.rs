@@ -1,45 +1,46 @@
-//! Closed solids that buildings are made of.
+//! Closed solids for buildings.
 
 use crate::scene::{Material, ObjectPart, middle};
 use crate::vector::{add, add_scaled, length, scale, sub};
 
-/// How far a joint reaches into the solid it belongs to, metres: solids that merely touch would leave a scanner a seam
-/// to look into.
+/// Depth of a joint in the solid it belongs to, metres. Solids that merely touch would leave a seam that a scanner sees
+/// into.
 pub(crate) const JOINT: f64 = 0.1;
 
-/// Where a piece of the plan lies and how it is turned.
+/// Position and orientation of a piece of the plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanPlacement {
-    /// Local (0, 0), metres, absolute.
+    /// Absolute position of the local (0, 0), metres.
     pub origin: [f64; 2],
     /// Direction of the local u axis, radians counter-clockwise from east; v is a quarter turn further.
     pub angle: f64,
 }
 
 impl PlanPlacement {
-    /// Absolute position of the local (u, v), metres.
+    /// Returns the absolute position of the local (u, v), metres.
     #[must_use]
     pub fn at(&self, u: f64, v: f64) -> [f64; 2] {
         let (sin, cos) = self.angle.sin_cos();
         [self.origin[0] + u * cos - v * sin, self.origin[1] + u * sin + v * cos]
     }
 
-    /// Placement with its origin at the local (u, v), turned by a further `angle` radians.
+    /// Returns the placement with its origin at the local (u, v), turned by a further `angle` radians.
     #[must_use]
     pub fn moved(&self, u: f64, v: f64, angle: f64) -> Self {
         Self { origin: self.at(u, v), angle: self.angle + angle }
     }
 
-    /// Corners of a rectangle about the origin, `length` along u and `width` along v, counter-clockwise from the
-    /// lower left, (4, 2), metres.
+    /// Returns the corners of a rectangle about the origin, `length` along u and `width` along v. They are
+    /// counter-clockwise from the lower left, (4, 2), metres.
     #[must_use]
     pub fn rectangle(&self, length: f64, width: f64) -> [[f64; 2]; 4] {
         let (u, v) = (length / 2.0, width / 2.0);
         [self.at(-u, -v), self.at(u, -v), self.at(u, v), self.at(-u, v)]
     }
 
-    /// Corners of an L whose outer corner is the origin: one wing along u to `length_u`, one along v to `length_v`,
-    /// both `width` wide; counter-clockwise from the inner corner, (6, 2), metres.
+    /// Returns the corners of an L whose outer corner is the origin: one wing along u to `length_u`, one along v to
+    /// `length_v`. Both wings are `width` wide. The corners are counter-clockwise from the inner corner, (6, 2),
+    /// metres.
     #[must_use]
     pub fn l_shape(&self, length_u: f64, length_v: f64, width: f64) -> [[f64; 2]; 6] {
         [
@@ -53,11 +54,11 @@ impl PlanPlacement {
     }
 }
 
-/// Closed prism with a flat roof over `footprint`, (N, 2), metres, counter-clockwise seen from above, from height
-/// `bottom` to `top`.
+/// Returns a closed prism with a flat roof over `footprint`, (N, 2), metres, from height `bottom` to `top`. The
+/// footprint is counter-clockwise seen from above.
 ///
-/// All of the footprint must be in sight of its first corner, as it is in a convex polygon and in an L from its inner
-/// corner. Fewer than three corners give an empty part.
+/// All of the footprint must be in sight of its first corner, as in a convex polygon and in an L from its inner corner.
+/// Fewer than three corners give an empty part.
 #[must_use]
 pub fn extruded(footprint: &[[f64; 2]], bottom: f64, top: f64) -> ObjectPart {
     let mut part = ObjectPart::default();
@@ -70,40 +71,40 @@ pub fn extruded(footprint: &[[f64; 2]], bottom: f64, top: f64) -> ObjectPart {
     part
 }
 
-/// Closed house over the rectangle `footprint`, (4, 2), metres, counter-clockwise: walls from `bottom` to `eaves`, and
-/// a roof whose ridge at height `ridge` runs parallel to the first side.
+/// Returns a closed house over the rectangle `footprint`, (4, 2), metres, counter-clockwise. Walls rise from `bottom`
+/// to `eaves`. The ridge of the roof, at height `ridge`, is parallel to the first side.
 ///
-/// The ridge ends `hip` metres short of each end of the house: 0 gives gables (upright, facade), more gives hipped ends
-/// (roof); beyond half the length the ridge would cross itself.
+/// The ridge ends `hip` metres from each end of the house. 0 gives gables (upright, facade), more gives hipped ends
+/// (roof). Beyond half the length the ridge would cross itself.
 #[must_use]
 pub fn ridged(footprint: &[[f64; 2]; 4], bottom: f64, eaves: f64, ridge: f64, hip: f64) -> ObjectPart {
     ridged_to(footprint, hip, &RidgedProfile { bottom, eaves, ridge, overhang: Overhang::default() })
 }
 
-/// Heights of a building with a ridge, absolute, and how far its roof reaches beyond its walls. Metres.
+/// Absolute heights of a building with a ridge, and the overhang of its roof, metres.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RidgedProfile {
     pub(crate) bottom: f64,
-    /// Where the plane of the roof meets the plane of the wall.
+    /// Height of the line in which the plane of the roof meets the plane of the wall.
     pub(crate) eaves: f64,
     pub(crate) ridge: f64,
     pub(crate) overhang: Overhang,
 }
 
-/// How far a sloped roof reaches beyond the walls, level, metres.
+/// Level distance by which a sloped roof extends beyond the walls, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Overhang {
-    /// Beyond the walls below the eaves, in the slope of the roof. 0 for none.
+    /// Overhang beyond the walls below the eaves, in the slope of the roof. 0 for none.
     pub(crate) eaves: f64,
-    /// Beyond gables, where there are eaves. 0 ends the eaves in the plane of the gable.
+    /// Overhang beyond gables, if there are eaves. 0 ends the eaves in the plane of the gable.
     pub(crate) verge: f64,
 }
 
-/// Thickness of a roof that overhangs, measured upright, metres.
+/// Vertical thickness of a roof with an overhang, metres.
 const ROOF_THICKNESS: f64 = 0.2;
 
-/// House as [`ridged`] with the heights and the overhang of `profile`. The sides and the underside of an overhang are
-/// roof.
+/// Returns a house as [`ridged`] does, with the heights and the overhang of `profile`. The sides and the underside of
+/// an overhang are roof.
 pub(crate) fn ridged_to(footprint: &[[f64; 2]; 4], hip: f64, profile: &RidgedProfile) -> ObjectPart {
     let mut part = ObjectPart::default();
     add_walls(&mut part, footprint, profile.bottom, profile.eaves);
@@ -135,8 +136,8 @@ pub(crate) fn ridged_to(footprint: &[[f64; 2]; 4], hip: f64, profile: &RidgedPro
     part
 }
 
-/// A corner at the edge of a roof, as vertices: where the wall below ends, and the lower and the upper corner of the
-/// overhang. All three are the same where nothing overhangs.
+/// Corner at the edge of a roof, as three indices of vertices. They are the end of the wall below, and the lower and
+/// the upper corner of the overhang. Without an overhang all three are the same.
 #[derive(Clone, Copy)]
 struct RoofCorner {
     wall: usize,
@@ -145,8 +146,8 @@ struct RoofCorner {
 }
 
 impl RoofCorner {
-    /// Corner over the vertex `wall`, which lies in the plane of the roof; the roof reaches `outward` beyond it,
-    /// metres. The wall then ends below the roof.
+    /// Creates the corner over the vertex `wall`, which lies in the plane of the roof. The roof extends `outward`
+    /// beyond it, metres. The wall then ends below the roof.
     fn new(part: &mut ObjectPart, wall: usize, outward: [f64; 3]) -> Self {
         if length(outward) == 0.0 {
             return Self { wall, lower: wall, upper: wall };
@@ -158,8 +159,8 @@ impl RoofCorner {
         Self { wall, lower: part.vertices.len() - 2, upper: part.vertices.len() - 1 }
     }
 
-    /// Corner of eaves over the vertex `wall`: the roof reaches on from the vertex `ridge` by a `share` of the way from
-    /// there to the wall, and `aside` beyond that.
+    /// Creates a corner of eaves over the vertex `wall`. The roof extends by a `share` of the vector from the vertex
+    /// `ridge` to the wall, and by `aside`.
     fn eaves(part: &mut ObjectPart, wall: usize, ridge: usize, share: f64, aside: [f64; 3]) -> Self {
         let down = sub(part.vertices[wall], part.vertices[ridge]);
         Self::new(part, wall, add(scale(down, share), aside))
@@ -174,8 +175,8 @@ fn add_overhang(part: &mut ObjectPart, edge: &[RoofCorner]) {
     }
 }
 
-/// Closed L-shaped house (see [`PlanPlacement::l_shape`]) with a gable at the end of each wing, a valley over the inner
-/// corner and a hip over the outer one. Lengths and heights in metres.
+/// Returns a closed L-shaped house (see [`PlanPlacement::l_shape`]) with a gable at the end of each wing. It has a
+/// valley over the inner corner and a hip over the outer one. Lengths and heights are in metres.
 #[must_use]
 pub fn l_shaped_ridged(
     placement: &PlanPlacement,
@@ -204,12 +205,13 @@ pub fn l_shaped_ridged(
     part
 }
 
-/// Closed solid through `rings`, each of the same number of corners: sides between neighbouring rings, the first and
-/// the last ring as caps. An upright prism is two rings, a sagging wire many.
+/// Returns a closed solid through `rings`, each with the same number of corners. Neighbouring rings are joined by
+/// sides, and the first and the last ring are caps. An upright prism is two rings, a sagging wire many.
 ///
-/// Rings run counter-clockwise seen from the end that the sweep goes to; all of a cap must be in sight of its first
-/// corner. `side_materials` has one material per edge of a ring, edge k from corner k to the next; the last one holds
-/// for all that follow. Sides need not be flat. Fewer than two rings, or none with three corners, give an empty part.
+/// Rings run counter-clockwise seen from the end of the sweep. All of a cap must be in sight of its first corner.
+/// `side_materials` has one material per edge of a ring; edge k runs from corner k to the next. The last material
+/// applies to all further edges. Sides need not be flat. Fewer than two rings, or rings with fewer than three corners,
+/// give an empty part.
 pub(crate) fn swept<R: AsRef<[[f64; 3]]>>(rings: &[R], side_materials: &[Material], cap: Material) -> ObjectPart {
     let mut part = ObjectPart::default();
     let count = rings.iter().map(|ring| ring.as_ref().len()).min().unwrap_or(0);
@@ -234,24 +236,24 @@ pub(crate) fn swept<R: AsRef<[[f64; 3]]>>(rings: &[R], side_materials: &[Materia
     part
 }
 
-/// Upright prism of one material over the convex `footprint`, (N, 2), counter-clockwise, heights in metres.
+/// Returns an upright prism of one material over the convex `footprint`, (N, 2), counter-clockwise, heights in metres.
 pub(crate) fn prism(footprint: &[[f64; 2]], bottom: f64, top: f64, material: Material) -> ObjectPart {
     let ring = |height: f64| footprint.iter().map(|&[x, y]| [x, y, height]).collect::<Vec<_>>();
     swept(&[ring(bottom), ring(top)], &[material], material)
 }
 
-/// Whether a course of wings comes back to where it starts.
+/// Shape of a course of wings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum WingCourse {
-    /// With a gable at either end: one wing, an L, a U.
+    /// Course with a gable at either end: one wing, an L, a U.
     Open,
-    /// Around a courtyard.
+    /// Course around a courtyard.
     Closed,
 }
 
-/// Closed building of wings along a course, with the outer corners `outer`, (N, 2), on the right and `inner`, (N, 2),
-/// on the left; the opposite walls of a wing are parallel. The ridge runs midway between them; at the height of the
-/// eaves it makes a flat roof, which must not overhang.
+/// Returns a closed building of wings along a course. The outer corners `outer`, (N, 2), are on the right and `inner`,
+/// (N, 2), on the left. The opposite walls of a wing are parallel. The ridge runs midway between them. A ridge at the
+/// height of the eaves makes a flat roof, which must not overhang.
 pub(crate) fn winged(
     outer: &[[f64; 2]],
     inner: &[[f64; 2]],
@@ -312,13 +314,13 @@ pub(crate) fn winged(
     part
 }
 
-/// Distance of `point` from the line through two points, metres.
+/// Returns the distance of `point` from the line through two points, metres.
 fn distance_from_line(from: [f64; 2], to: [f64; 2], point: [f64; 2]) -> f64 {
     let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
     ((point[0] - from[0]) * dy - (point[1] - from[1]) * dx).abs() / dx.hypot(dy)
 }
 
-/// Steps of `way` metres out of both ends of a line, level.
+/// Returns level steps of `way` metres beyond both ends of a line.
 fn ends_beyond(line: &[[f64; 2]], way: f64) -> [[f64; 3]; 2] {
     let step = |from: [f64; 2], to: [f64; 2]| {
         let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
@@ -328,16 +330,17 @@ fn ends_beyond(line: &[[f64; 2]], way: f64) -> [[f64; 3]; 2] {
     [step(line[1], line[0]), step(line[line.len() - 2], line[line.len() - 1])]
 }
 
-/// Parapet on the walls over `outline`, (N, 2), counter-clockwise: an upright ring of `thickness` inside it, from a
-/// little below the roof at height `roof` up to `height` above it. A solid of its own, all slab as the parapets of
-/// balconies: no part of it is a roof or a wall of rooms. Metres.
+/// Returns a parapet on the walls over `outline`, (N, 2), counter-clockwise, in metres. It is an upright ring of
+/// `thickness` inside the outline, from slightly below the roof at height `roof` up to `height` above it. It is a solid
+/// of its own, because no part of it is a roof or a wall of rooms. Its material is slab, as for the parapets of
+/// balconies.
 pub(crate) fn parapet(outline: &[[f64; 2]], thickness: f64, roof: f64, height: f64) -> ObjectPart {
     let top = roof + height;
     let profile = RidgedProfile { bottom: roof - JOINT, eaves: top, ridge: top, overhang: Overhang::default() };
     winged(outline, &inset(outline, thickness), WingCourse::Closed, &profile).with_material(Material::Slab)
 }
 
-/// The corners of `outline`, (N, 2), counter-clockwise, with all its sides moved inwards by `distance` metres.
+/// Returns the corners of `outline`, (N, 2), counter-clockwise, with all its sides moved inwards by `distance` metres.
 fn inset(outline: &[[f64; 2]], distance: f64) -> Vec<[f64; 2]> {
     let count = outline.len();
     let inward = |from: [f64; 2], to: [f64; 2]| {
@@ -349,7 +352,7 @@ fn inset(outline: &[[f64; 2]], distance: f64) -> Vec<[f64; 2]> {
         let corner = outline[i];
         let before = inward(outline[(i + count - 1) % count], corner);
         let after = inward(corner, outline[(i + 1) % count]);
-        // both sides are this far from the corner of the mitre
+        // Both sides are this far from the corner of the mitre.
         let way = distance / (1.0 + before[0] * after[0] + before[1] * after[1]);
         [0, 1].map(|axis| corner[axis] + way * (before[axis] + after[axis]))
     };
@@ -399,14 +402,14 @@ mod tests {
     #[test]
     fn an_overhang_adds_its_area_times_the_thickness_of_the_roof() {
         let footprint = PLACE.rectangle(10.0, 6.0);
-        // the house and half a box of roof; a hip of 2 m takes two thirds of a prism of 6 by 2 by 3 m, halved
+        // The house and half a box of roof. A hip of 2 m takes two thirds of a prism of 6 by 2 by 3 m, halved.
         let (gabled, hipped) = (10.0 * 6.0 * (6.0 + 1.5), 10.0 * 6.0 * (6.0 + 1.5) - 2.0 * 6.0 * 3.0 * 2.0 / 6.0);
         for (eaves, verge) in [(0.0, 0.0), (0.0, 0.2), (0.4, 0.0), (0.4, 0.2)] {
             let overhang = Overhang { eaves, verge };
-            // no verge without eaves
+            // No verge without eaves.
             let plan = |end: f64| if eaves > 0.0 { (10.0 + 2.0 * end) * (6.0 + 2.0 * eaves) - 60.0 } else { 0.0 };
             assert_solid(&ridged_to(&footprint, 0.0, &profile(overhang)), gabled + ROOF_THICKNESS * plan(verge));
-            // the slope of the hip is that of the sides times 3 / 2: its eaves reach less far out
+            // The slope of the hip is that of the sides times 3 / 2: its eaves extend less far.
             let end = eaves * 2.0 / 3.0;
             assert_solid(&ridged_to(&footprint, 2.0, &profile(overhang)), hipped + ROOF_THICKNESS * plan(end));
         }
@@ -424,13 +427,13 @@ mod tests {
         let closed = winged(&outer, &inner, WingCourse::Closed, &profile(overhang));
         let around = square(20.5) - square(20.0) + square(12.0) - square(11.5);
         assert_solid(&closed, roof(ring) + ROOF_THICKNESS * around);
-        // A court open towards +v: three wings, of which those at the ends run on for the length of the fourth.
+        // A court open towards +v: three wings, of which the two at the ends continue for the length of the fourth.
         let mut inner = inner;
         (inner[0], inner[3]) = (PLACE.at(-12.0, 20.0), PLACE.at(12.0, 20.0));
         let open = winged(&outer, &inner, WingCourse::Open, &profile(overhang));
         let court = 24.0 * 32.0;
         let plan = square(20.0) - court;
-        // outwards to all sides, into the court, and the verges at both ends with the eaves beside them
+        // Outwards to all sides, into the court, and the verges at both ends with the eaves beside them.
         let beyond = 41.0 * 40.7 - 1600.0 + court - 23.0 * 31.5 - 23.0 * 0.2;
         assert_solid(&open, roof(plan) + ROOF_THICKNESS * beyond);
     }
@@ -440,7 +443,7 @@ mod tests {
         let upright_ring = (0.8 + JOINT) * 0.25;
         let rectangle = parapet(&PLACE.rectangle(10.0, 6.0), 0.25, 9.0, 0.8);
         assert_solid(&rectangle, upright_ring * (2.0 * 16.0 - 4.0 * 0.25));
-        // an L has five corners to the outside and one to the inside
+        // An L has five corners to the outside and one to the inside.
         let l_shaped = parapet(&PLACE.l_shape(12.0, 9.0, 4.0), 0.25, 9.0, 0.8);
         assert_solid(&l_shaped, upright_ring * (2.0 * 21.0 - 4.0 * 0.25));
         assert!(rectangle.vertices.iter().all(|v| v[2] > 8.8 && v[2] < 9.81));

@@ -1,4 +1,4 @@
-//! Exact answers: what a ray through a scene meets first, and whether anything lies between two points.
+//! Exact visibility: the first surface on a ray through a scene, and obstacles between two points.
 
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
@@ -11,42 +11,42 @@ use rayon::prelude::*;
 use crate::scene::TriangleScene;
 use crate::vector::{add_scaled, cross, dot, length, sub, unit};
 
-/// Surfaces nearer than this to the start of a ray, or to the end of a segment, block nothing: 1 µm.
+/// Minimum distance of a blocking surface from the start of a ray or the end of a segment: 1 µm.
 ///
-/// A point computed to lie on a triangle is off it by about 1e-9 m in a national grid; a µm absorbs that and is far
-/// below anything a scanner resolves. A point that lies on a surface is therefore not hidden by that surface, unless
+/// A point computed to lie on a triangle is off it by about 1e-9 m in a national grid. A µm is more than this error,
+/// and far less than the resolution of a scanner. A point on a surface is therefore not hidden by that surface, unless
 /// the ray starts on its far side.
 pub const CONTACT: f64 = 1e-6;
 
 /// Padding of the boxes of the search tree, as a share of the size of the scene.
 ///
-/// The tree works in f32. A ray enters it at the box of the scene, so no number exceeds the size of the scene, and the
-/// slab test errs by a few units of 6e-8 of that. A hundred times more costs nothing and loses no triangle.
+/// The tree works in f32. A ray enters it at the box of the scene, so no number exceeds the size of the scene. The slab
+/// test errs by a few units of 6e-8 of that size. A padding a hundred times larger costs nothing and loses no triangle.
 const BOX_PADDING: f64 = 1e-5;
-/// Minimum padding, and how much farther than the given range the tree looks, metres: it passes over boxes that a ray
-/// leaves, or stops before, within its first 0.1 mm.
+/// Minimum padding of boxes, and margin beyond the given range in which the tree searches, metres. The tree passes over
+/// boxes within the first 0.1 mm of a ray, or behind its end.
 const TREE_SLACK: f64 = 1e-3;
 
-/// Where a ray meets a scene first.
+/// First surface on a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Straight line from the origin of the ray, metres.
+    /// Distance from the origin of the ray, metres.
     pub range: f64,
-    /// Index of the triangle met; the lowest where several are met at the same range.
+    /// Index of the triangle; the lowest of several at the same range.
     pub triangle: u32,
 }
 
 /// Index of a scene that answers ray queries exactly.
 ///
 /// The search tree only proposes triangles; each is tested in f64 against its original corners. The test is watertight:
-/// a ray through a shared edge meets at least one of the two triangles. Results do not depend on the tree, hence not on
-/// the number of threads that built it. Both sides of a triangle block.
+/// a ray through a shared edge meets at least one of the two triangles. Results do not depend on the tree, and
+/// therefore not on the number of threads that built it. Both sides of a triangle block.
 #[derive(Debug)]
 pub struct Truth {
-    /// Triangles in the order of the tree's leaves, corners relative to `centre`.
+    /// Triangles in the order of the tree's leaves, with corners relative to `centre`.
     triangles: Vec<IndexedTriangle>,
     centre: [f64; 3],
-    /// Half the size of the box about `centre` that holds every triangle, padding included.
+    /// Half the size of the box about `centre` that contains every triangle, padding included, metres.
     half_size: [f64; 3],
     tree: CwBvh,
 }
@@ -98,16 +98,16 @@ impl Truth {
         Self { triangles: in_tree_order, centre, half_size, tree }
     }
 
-    /// First triangle within `max_range` metres (may be infinite) from `origin` along `direction`, whose length does
-    /// not matter, or `None` where there is none. A direction of zero or non-finite length, like any other NaN, meets
-    /// nothing. Surfaces nearer than [`CONTACT`] to the origin are passed over.
+    /// Returns the first triangle within `max_range` metres (may be infinite) from `origin` along `direction`; `None`
+    /// without one. The length of `direction` does not matter. A direction of zero or non-finite length, or any NaN,
+    /// meets nothing. Surfaces nearer than [`CONTACT`] to the origin are ignored.
     #[must_use]
     pub fn first_hit(&self, origin: [f64; 3], direction: [f64; 3], max_range: f64) -> Option<Hit> {
         self.first_hit_between(origin, unit(direction)?, CONTACT, max_range)
     }
 
-    /// First hits of many rays in parallel: [`Truth::first_hit`] of each of `origins`, (N, 3), along the direction of
-    /// the same row, (N, 3). Rows that only one of the two has are left out.
+    /// Returns the first hits of many rays, in parallel. Each ray starts at a row of `origins`, (N, 3), along the row
+    /// of `directions`, (N, 3) ([`Truth::first_hit`]). Surplus rows of the longer one are ignored.
     #[must_use]
     pub fn first_hits(&self, origins: &[[f64; 3]], directions: &[[f64; 3]], max_range: f64) -> Vec<Option<Hit>> {
         origins
@@ -117,32 +117,33 @@ impl Truth {
             .collect()
     }
 
-    /// Whether a triangle lies between the two points, farther than [`CONTACT`] from both.
+    /// Returns true if a triangle lies between the two points, farther than [`CONTACT`] from both.
     #[must_use]
     pub fn occluded(&self, from: [f64; 3], to: [f64; 3]) -> bool {
         let between = sub(to, from);
         unit(between).is_some_and(|direction| self.blocked(from, direction, length(between) - CONTACT))
     }
 
-    /// [`Truth::occluded`] between `eye` and each of `points`, (N, 3), in parallel.
+    /// Returns [`Truth::occluded`] between `eye` and each of `points`, (N, 3), in parallel.
     #[must_use]
     pub fn occluded_each(&self, points: &[[f64; 3]], eye: [f64; 3]) -> Vec<bool> {
         points.par_iter().map(|&point| self.occluded(point, eye)).collect()
     }
 
-    /// Whether any triangle lies from `from` towards `direction`, such as towards the sun, farther than [`CONTACT`].
+    /// Returns true if a triangle lies from `from` towards `direction`, such as towards the sun, farther than
+    /// [`CONTACT`].
     #[must_use]
     pub fn occluded_towards(&self, from: [f64; 3], direction: [f64; 3]) -> bool {
         unit(direction).is_some_and(|direction| self.blocked(from, direction, f64::INFINITY))
     }
 
-    /// [`Truth::occluded_towards`] of each of `points`, (N, 3), in parallel.
+    /// Returns [`Truth::occluded_towards`] of each of `points`, (N, 3), in parallel.
     #[must_use]
     pub fn occluded_towards_each(&self, points: &[[f64; 3]], direction: [f64; 3]) -> Vec<bool> {
         points.par_iter().map(|&point| self.occluded_towards(point, direction)).collect()
     }
 
-    /// First triangle at a range from `min_range` to `max_range` along the unit vector `direction`.
+    /// Returns the first triangle at a range from `min_range` to `max_range` along the unit vector `direction`.
     pub(crate) fn first_hit_between(
         &self,
         origin: [f64; 3],
@@ -167,18 +168,19 @@ impl Truth {
         best
     }
 
-    /// Whether any triangle lies at a range from [`CONTACT`] to `max_range` along the unit vector `direction`.
+    /// Returns true if a triangle lies at a range from [`CONTACT`] to `max_range` along the unit vector `direction`.
     fn blocked(&self, origin: [f64; 3], direction: [f64; 3], max_range: f64) -> bool {
         let local = sub(origin, self.centre);
         let Some(entry) = self.enter(local, direction, CONTACT, max_range) else { return false };
         !self.tree.ray_traverse_miss(entry.ray, |_, leaf| {
             let range = self.triangles.get(leaf).and_then(|t| crossing(&t.corners, local, direction));
-            // Only "in reach or not" counts here, any value below the reach of the ray stops the search.
+            // Only "in reach or not" counts here. Any value below the reach of the ray stops the search.
             if range.is_some_and(|r| (CONTACT..=max_range).contains(&r)) { 0.0 } else { f32::INFINITY }
         })
     }
 
-    /// The part of a ray inside the box of the scene, as the tree takes it, or `None` where it misses the box.
+    /// Returns the part of a ray inside the box of the scene, in the form of the tree; `None` for a ray that misses the
+    /// box.
     fn enter(&self, local: [f64; 3], direction: [f64; 3], min_range: f64, max_range: f64) -> Option<TruthRay> {
         let (mut start, mut end) = (min_range, max_range);
         if self.triangles.is_empty() || max_range.is_nan() || !local.iter().all(|v| v.is_finite()) {
@@ -188,8 +190,8 @@ impl Truth {
             let inverse = 1.0 / direction[axis];
             let (a, b) =
                 ((-self.half_size[axis] - local[axis]) * inverse, (self.half_size[axis] - local[axis]) * inverse);
-            // A ray that runs in a face of the box gives 0 · ∞ = NaN, which `min` and `max` pass over: not clipped
-            // there.
+            // For a ray in a face of the box 0 · ∞ = NaN, which `min` and `max` ignore. The ray is not clipped at that
+            // face.
             start = start.max(a.min(b));
             end = end.min(a.max(b));
         }
@@ -208,15 +210,15 @@ impl Truth {
     }
 }
 
-/// A ray as the search tree takes it.
+/// Ray in the form of the search tree.
 struct TruthRay {
     ray: Ray,
-    /// Range at which the tree's ray starts.
+    /// Range at which the tree's ray starts, metres.
     start: f64,
 }
 
-/// Range at which the line through `origin` along the unit vector `direction` crosses a triangle, negative behind the
-/// origin, or `None` where it passes by or runs within its plane.
+/// Returns the range at which the line through `origin` along the unit vector `direction` crosses a triangle, metres.
+/// It is negative behind the origin. `None` for a line that passes by or runs within the plane of the triangle.
 ///
 /// The three terms are the volumes between the ray and each edge. Two triangles compute the volume of a shared edge
 /// from the same numbers with opposite sign, so no ray slips between them.
@@ -231,11 +233,11 @@ fn crossing(corners: &[[f64; 3]; 3], origin: [f64; 3], direction: [f64; 3]) -> O
     (steepness != 0.0).then(|| dot(a, normal) / steepness)
 }
 
-/// Search tree over `boxes`, which must not be empty.
+/// Returns a search tree over `boxes`, which must not be empty.
 ///
-/// These are the steps of the crate's own `build_cwbvh` without what that does after them in debug builds: a check of
-/// the boxes to a fixed 1e-5, which f32 does not keep farther than about 80 m from the centre, so that it would panic
-/// on sound trees of larger scenes.
+/// The steps are those of the crate's own `build_cwbvh` without its final check in debug builds. That check compares
+/// boxes to a fixed 1e-5, which f32 cannot resolve farther than about 80 m from the centre. It would panic on sound
+/// trees of larger scenes.
 fn search_tree(boxes: &[PaddedBox]) -> CwBvh {
     let params = BvhBuildParams::medium_build();
     let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
@@ -256,13 +258,13 @@ fn padded_box(corners: &[[f64; 3]; 3], padding: f64) -> PaddedBox {
     PaddedBox(Aabb::new(to_f32(low).into(), to_f32(high).into()))
 }
 
-/// Local coordinates for the search tree, whose padded boxes allow for the rounding.
+/// Rounds local coordinates for the search tree, whose padded boxes allow for the rounding.
 #[expect(clippy::cast_possible_truncation, reason = "the padding of the boxes exceeds the rounding")]
 fn to_f32(local: [f64; 3]) -> [f32; 3] {
     local.map(|v| v as f32)
 }
 
-/// How far the search tree must look to find every box with a triangle within `range`.
+/// Returns the range up to which the tree must search to find every box with a triangle within `range`, metres.
 #[expect(clippy::cast_possible_truncation, reason = "rounded up on purpose")]
 fn tree_reach(range: f64) -> f32 {
     ((range + TREE_SLACK) as f32).next_up()

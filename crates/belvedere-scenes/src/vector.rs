@@ -12,7 +12,7 @@ pub(crate) fn scale(a: [f64; 3], factor: f64) -> [f64; 3] {
     [a[0] * factor, a[1] * factor, a[2] * factor]
 }
 
-/// `a + factor · b`.
+/// Returns `a + factor · b`.
 pub(crate) fn add_scaled(a: [f64; 3], b: [f64; 3], factor: f64) -> [f64; 3] {
     [a[0] + b[0] * factor, a[1] + b[1] * factor, a[2] + b[2] * factor]
 }
@@ -29,7 +29,7 @@ pub(crate) fn length(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Unit vector along `a`, or `None` where `a` has no direction (zero or not finite).
+/// Returns the unit vector along `a`; `None` if `a` is zero or not finite.
 pub(crate) fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
     let length = length(a);
     (length > 0.0 && length.is_finite()).then(|| scale(a, 1.0 / length))

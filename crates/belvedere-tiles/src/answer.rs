@@ -1,4 +1,4 @@
-//! The answer to a question on the cells of a tile.
+//! Answer to a question on the cells of a tile.
 
 use crate::cleared::{ClassedPoint, ClearedSurface, classed};
 use crate::grid::TileId;
@@ -37,57 +37,57 @@ use belvedere::{PointCloud, Result};
 use rayon::prelude::*;
 use std::path::Path;
 
-/// Cells around a tile that the surface of its cells is taken from.
+/// Number of cells around a tile that the surface of its cells depends on.
 pub(crate) const EDGE_CELLS: usize = 2;
-/// Targets handed to a thread at once.
+/// Number of targets that a thread takes at once.
 const CHUNK: usize = 1024;
 
-/// A question about tiles, with what its answer needs.
+/// Question about tiles, with the data that its answer needs.
 #[derive(Clone, Copy)]
 pub(crate) struct TileTask<'a> {
     pub(crate) question: &'a TileQuestion,
     pub(crate) prepared: &'a PreparedQuestion,
-    /// What blocks beside balls.
+    /// Obstacles other than balls.
     pub(crate) others: &'a Others,
-    /// Most balls that are tested together.
+    /// Maximum number of balls that are tested together.
     pub(crate) max_balls: usize,
 }
 
-/// What answers share: those for one tile, and those for tiles beside each other.
+/// Surfaces that answers share, for one tile and for neighbouring tiles.
 #[derive(Default)]
 pub(crate) struct SharedSurfaces {
-    /// That of the last answer for the tile, which may be on the same cells.
+    /// Surface of the last answer for the tile; the next answer may have the same cells.
     last: Option<TileSurface>,
     ground: GroundSquares,
 }
 
 impl SharedSurfaces {
-    /// Forgets the cells of the last tile.
+    /// Removes the surface of the last tile.
     pub(crate) fn next_tile(&mut self) {
         self.last = None;
     }
 }
 
-/// Cells of a tile on the ground, or on top of what stands there, or will.
+/// Cells of a tile on the ground, or on top of present and planned objects.
 pub(crate) struct TileSurface {
     /// Side of a cell, metres.
     cell: f64,
-    /// Points that were read for it.
+    /// Number of points read for the surface.
     points: usize,
-    /// Cells on the ground under a cover, which are no targets.
+    /// Number of cells on the ground under a cover, which are no targets.
     covered: usize,
     targets: Targets,
 }
 
-/// The area of the points that the cells of a tile need.
+/// Returns the area of the points that the cells of a tile need.
 fn area_of_cells(plan: &Plan, tile: TileId, cell: f64) -> crate::grid::MapArea {
     let farthest = f64::from(plan.statistics.farthest()) + plan.statistics.isolation_radius.unwrap_or(0.0);
     plan.grid().core(tile).widened(farthest + (EDGE_CELLS + 1) as f64 * cell)
 }
 
-/// Answers a question for the cells of a tile, with the balls that are in the folder of the run, and writes the answer;
-/// its record is to be written next. Where balls that can matter are missing, answers are unproven. `surfaces` are
-/// those of answers before.
+/// Answers a question for the cells of a tile, and writes the answer; the caller writes the record next. It uses the
+/// balls in the folder of the run. Answers that missing balls can change are unproven. `surfaces` keeps the surfaces of
+/// earlier answers.
 ///
 /// # Errors
 /// Those of reading the files and the balls, and of writing.
@@ -201,21 +201,21 @@ impl TileSurface {
     }
 }
 
-/// How many targets are near the edge of the survey for light from `directions`.
+/// Counts targets near the edge of the survey for light from `directions`.
 fn near_edge_count(plan: &Plan, targets: &Targets, directions: &[[f64; 3]], control: &Control<'_>) -> Result<usize> {
     let Some(coverage) = Coverage::of(plan.bounds()) else { return Ok(0) };
     let flags = near_edge(&coverage, &targets.positions, directions, control)?;
     Ok(flags.iter().filter(|flag| **flag == Some(true)).count())
 }
 
-/// What was found of the cells of a tile.
+/// Answers for the cells of a tile.
 struct CellAnswers {
     values: Pixels,
     unproven_cells: usize,
     skipped_observers: usize,
 }
 
-/// What of the light reaches targets, and what became of the balls.
+/// Returns the light that reaches targets, and the report on the balls.
 fn lit(
     (plan, run): (&Plan, &Path),
     (light, names): (&LightQuestion, &[String]),
@@ -229,7 +229,7 @@ fn lit(
         LightQuestion::Shadow(sun) => scene_shadow(around, targets, &[*sun], Edges::Hard, control)?,
         LightQuestion::SunRule { plan, site } => {
             let sums = scene_sun_hours(around, targets, plan, Some(site), Intervals::Without, control)?;
-            // the rule comes after the measures of its days
+            // The rule comes after the measures of its days.
             sums.into_measures(plan, targets).pop().map(|measure| measure.values).into_iter().collect()
         }
         LightQuestion::Sky(sky, intervals) => {
@@ -266,7 +266,7 @@ fn lit(
     Ok((yes_or_no(&numbers, &is_missing, &is_without_proof, size)?, balls))
 }
 
-/// Of each target, whether its line of sight is one of those that `are_free` but that no pulse proves.
+/// Flags the targets with a free line of sight that no pulse proves. `are_free` flags the free lines.
 fn without_proof(
     of_run: (&Plan, &Path),
     are_free: impl Iterator<Item = bool>,
@@ -286,7 +286,7 @@ fn without_proof(
     Ok(is_without)
 }
 
-/// Numbers of targets, a band each: those that missing balls may change are not known.
+/// Returns the numbers of targets, one band each, without those that missing balls may change.
 fn measured(mut bands: Vec<Vec<f32>>, is_unknown: &[bool], size: [usize; 2]) -> Result<CellAnswers> {
     let values = bands.first().into_iter().flatten().zip(is_unknown);
     let unproven_cells = values.filter(|(value, is_unknown)| value.is_finite() && **is_unknown).count();
@@ -296,14 +296,14 @@ fn measured(mut bands: Vec<Vec<f32>>, is_unknown: &[bool], size: [usize; 2]) -> 
     Ok(CellAnswers { values: Pixels::numbers(bands, size)?, unproven_cells, skipped_observers: 0 })
 }
 
-/// The values of the measures that bands of these names hold.
+/// Returns the values of the measures with these names of bands.
 fn wanted(measures: Vec<Measure>, names: &[String]) -> Vec<Vec<f32>> {
     let is_wanted = |measure: &Measure| names.contains(&measure.name);
     measures.into_iter().filter(is_wanted).map(|measure| measure.values).collect()
 }
 
-/// Answers for targets that are lit or not, and which of the lit are unproven: missing balls may block them, or no
-/// pulse proves them.
+/// Returns the answers for targets that are lit or not. A lit target is unproven if missing balls may block it, or if
+/// no pulse proves it.
 fn yes_or_no(lit: &[f32], is_missing: &[bool], is_without_proof: &[bool], size: [usize; 2]) -> Result<CellAnswers> {
     let answer = |row: usize| (!lit[row].is_nan()).then_some(lit[row] > 0.0);
     let is_unproven = |row: usize| is_missing[row] || is_without_proof.get(row) == Some(&true);
@@ -314,7 +314,7 @@ fn yes_or_no(lit: &[f32], is_missing: &[bool], is_without_proof: &[bool], size: 
     Ok(CellAnswers { values: Pixels::answers([answers, unproven], size)?, unproven_cells, skipped_observers: 0 })
 }
 
-/// Of each target, whether missing balls may block it in any of `directions`.
+/// Flags the targets that missing balls may block in any of `directions`.
 fn unknown_towards(balls: &ObstacleSearch, targets: &Targets, directions: &[[f64; 3]]) -> Vec<bool> {
     let is_unknown = |position: &[f32; 3]| {
         let position = position.map(f64::from);
@@ -325,13 +325,13 @@ fn unknown_towards(balls: &ObstacleSearch, targets: &Targets, directions: &[[f64
     targets.positions.par_iter().with_min_len(CHUNK).map(is_unknown).collect()
 }
 
-/// What observers see of targets past one part of the obstacles after the other.
+/// Visibility of targets from observers, past one part of the obstacles after the other.
 struct PartialSight<'a> {
-    /// Those inside an obstacle have an eye that is not finite, unless they are looked at.
+    /// Observers. The eye of an observer inside an obstacle is not finite, except in a reverse viewshed.
     observers: Vec<Observer>,
     is_reverse: bool,
     targets: &'a [[f32; 3]],
-    /// Past all parts so far; `None` before the first.
+    /// Visibility past all parts so far; `None` before the first part.
     seen: Option<Viewshed>,
 }
 
@@ -340,7 +340,7 @@ impl<'a> PartialSight<'a> {
         Self { observers: observers.to_vec(), is_reverse, targets, seen: None }
     }
 
-    /// Takes away what `scene` hides.
+    /// Removes the targets that `scene` blocks.
     fn look(&mut self, scene: &MedialScene, control: &Control<'_>) -> Result<()> {
         if !self.is_reverse {
             let mut eyes: Vec<[f64; 3]> = self.observers.iter().map(|observer| observer.eye).collect();
@@ -359,7 +359,7 @@ impl<'a> PartialSight<'a> {
         Ok(())
     }
 
-    /// Of each observer, which targets it sees although no pulse proves it.
+    /// Flags for each observer the visible targets that no pulse proves.
     fn without_proof(
         &self,
         of_run: (&Plan, &Path),
@@ -380,8 +380,8 @@ impl<'a> PartialSight<'a> {
         self.observers.iter().enumerate().map(of_observer).collect()
     }
 
-    /// What is seen past all parts; unproven where missing `balls` may block it, or where it `is_without_proof`, of
-    /// each observer.
+    /// Returns the visibility past all parts. It is unproven where missing `balls` may block it, or where
+    /// `is_without_proof` has a flag for the observer.
     fn answered(self, balls: &ObstacleSearch, is_without_proof: &[Vec<bool>], size: [usize; 2]) -> Result<CellAnswers> {
         let Self { observers, targets, seen, .. } = self;
         let (answers, masks) = seen.map(|seen| (seen.answers, seen.masks)).unwrap_or_default();
@@ -389,7 +389,7 @@ impl<'a> PartialSight<'a> {
             let target = target.map(f64::from);
             !balls.missing.is_empty() && balls.is_unknown(target, sub(eye, target), 1.0)
         };
-        // how many see a target, and how many of these without proof
+        // Number of observers that see a target, of these the unproven ones, and of these the ones with missing balls.
         let counts = |row: usize| {
             let seen_by = || observers.iter().enumerate().filter(|(number, _)| sees(&masks, row, *number));
             let is_missing = |observer: &Observer| is_unknown(targets[row], observer.eye);
@@ -420,12 +420,12 @@ impl<'a> PartialSight<'a> {
     }
 }
 
-/// Whether the observer of that number sees the target in that row.
+/// True if observer `number` sees the target in row `row`.
 fn sees(masks: &[Vec<u32>], row: usize, number: usize) -> bool {
     masks.get(number / 32).and_then(|band| band.get(row)).is_some_and(|bits| bits >> (number % 32) & 1 == 1)
 }
 
-/// The cells of a tile, of a side in metres, as targets on top of what stands there, or will.
+/// Returns the cells of a tile, with sides in metres, as targets on top of present and planned objects.
 fn cells(
     plan: &Plan,
     (tile, cell): (TileId, f64),
@@ -490,7 +490,7 @@ mod tests {
 
     #[test]
     fn views_that_missing_tiles_may_block_are_unproven() {
-        // a ball of 2 m in the east, and nothing known of a place in the north
+        // A ball of 2 m in the east, and an unknown area in the north.
         let mut east = MedialBalls::default();
         east.push(0, [10.0, 0.0, 2.0], 2.0, 0);
         let scene = MedialScene::new(&east, &BlockRule::carved()).unwrap();
@@ -498,15 +498,15 @@ mod tests {
         let missing = vec![(MapArea { low: [-5.0, 10.0], high: [5.0, 20.0] }, 30.0)];
         let balls = ObstacleSearch { missing, ..ObstacleSearch::default() };
         let positions = vec![
-            [-20.0, 0.0, 2.0],  // free
+            [-20.0, 0.0, 2.0],  // visible
             [20.0, 0.0, 2.0],   // behind the ball
-            [0.0, 40.0, 2.0],   // behind what is missing
-            [0.0, 5.0, 2.0],    // before it
+            [0.0, 40.0, 2.0],   // behind the unknown area
+            [0.0, 5.0, 2.0],    // in front of it
             [0.0, 40.0, 200.0], // high above it
             [-90.0, 0.0, 2.0],  // too far away
             [f32::NAN; 3],
         ];
-        // the parts of the obstacles in any order
+        // The parts of the obstacles in any order.
         let see = |observers: &[Observer], parts: [&MedialScene; 2]| {
             let mut sight = PartialSight::new(observers, false, &positions);
             parts.into_iter().for_each(|scene| sight.look(scene, &Control::none()).unwrap());
@@ -521,7 +521,7 @@ mod tests {
             assert_eq!(bands[0].values(), [1, 0, 1, 1, 1, 255, 255]);
             assert_eq!(bands[1].values(), [0, 0, 1, 0, 0, 255, 255]);
             assert_eq!((found.unproven_cells, found.skipped_observers), (1, 0));
-            // another high above, and one inside the ball, which sees nothing
+            // Two more observers: one high above, and one inside the ball, which sees nothing.
             let found = see(&several, parts);
             let Pixels::Counts(bands) = &found.values else { panic!("counts of several observers") };
             assert_eq!(bands[0].values(), [2, 1, 2, 2, 2, 65_535, 65_535]);

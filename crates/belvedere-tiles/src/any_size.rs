@@ -1,5 +1,5 @@
-//! The same question for a survey of any size: tile by tile where one model does not fit into memory, with the answer
-//! of one model.
+//! Questions for a survey of any size. A survey too large for one model in memory is answered tile by tile, with the
+//! answer of one model.
 
 use crate::plan::Plan;
 use crate::question::TileQuestion;
@@ -19,31 +19,32 @@ use belvedere::results::{Pixels, ResultKind, ResultRaster, UNPROVEN_BAND, georef
 use belvedere::{Error, Parameter, Result};
 use std::path::{Path, PathBuf};
 
-/// Memory that a model of a whole cloud takes for each point, and without any, bytes. As measured in docs/costs.md.
+/// Memory of a model of a whole cloud for each point, and without any point, bytes, as measured in docs/costs.md.
 const BYTES_PER_POINT: u64 = 600;
 const MIN_BYTES: u64 = 100_000_000;
-/// Bytes of each value while the results of all tiles are put together.
+/// Memory for each value while the results of all tiles are joined, bytes.
 const BYTES_PER_VALUE: u64 = 10;
-/// Most files on a server whose headers are looked at: each is a request or two.
+/// Maximum number of files on a server whose headers are read, because each file needs one or two requests.
 const MAX_REMOTE: usize = 64;
-/// How far around a question about places points are read, metres: as far as balls follow from points in usual surveys.
+/// Width of the margin around places within which points are read, metres. Balls of usual surveys depend on points up
+/// to this distance.
 const AROUND: f64 = 128.0;
 
-/// A survey of which one model takes more memory than may be used.
+/// Survey too large for one model: the model takes more memory than the limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooLarge {
-    /// Memory that one model takes, bytes.
+    /// Memory for one model, bytes.
     pub whole: u64,
-    /// Memory that may be used, bytes.
+    /// Memory limit, bytes.
     pub limit: u64,
 }
 
-/// South-west and north-east corner of the part of a survey that is read, in the coordinates of its files.
+/// South-west and north-east corners of the part of a survey that is read, in the coordinates of its files.
 pub type SurveyPart = [[f64; 2]; 2];
 
 impl TooLarge {
-    /// Whether one model of these files takes more than `limit` bytes: `None` where it does not, for files of which
-    /// tiles cannot be made, such as tables of points, and for many files on servers.
+    /// Returns the memory of one model of these files if it exceeds `limit` bytes, otherwise `None`. Also `None` for
+    /// files without tiles, such as tables of points, and for many files on servers.
     #[must_use]
     pub fn of(clouds: &[PathBuf], limit: u64) -> Option<Self> {
         let files = cloud_files(clouds).ok()?;
@@ -56,25 +57,25 @@ impl TooLarge {
         (whole > limit).then_some(Self { whole, limit })
     }
 
-    /// What takes how much, in words.
+    /// Returns the memory and its limit in words.
     #[must_use]
     pub fn in_words(&self) -> String {
         let [whole, limit] = [self.whole, self.limit].map(size_in_words);
         format!("one model of this survey takes about {whole} of memory, and {limit} may be used")
     }
 
-    /// A note that it is answered in tiles.
+    /// Returns a note that the survey is answered in tiles.
     #[must_use]
     pub fn remark_on_tiles(&self, tile_size: f64) -> Remark {
         let text = format!("{}: answered in tiles of {tile_size} m", self.in_words());
         Remark::note("in-tiles", text).with("tile_size_m", tile_size)
     }
 
-    /// The part of the survey that a question reaches about `places` in the coordinates of its files, as far as
-    /// `distance` metres from them on the map, and a note that no more is read. `None` without places.
+    /// Returns the part of the survey that a question about `places` needs, with a note that no other points are read.
+    /// Places are in the coordinates of the files, and `distance` is in metres on the map. `None` without places.
     ///
     /// # Errors
-    /// Those of the reference system that is given and of reading the header of a file.
+    /// Those of the given reference system and of reading the header of a file.
     pub fn part_around(
         &self,
         (clouds, crs): (&[PathBuf], Option<&str>),
@@ -99,40 +100,40 @@ impl TooLarge {
     }
 }
 
-/// A question about the cells of a survey, ready to be run tile by tile.
+/// Question about the cells of a survey, ready to be run tile by tile.
 pub struct SurveyQuestion {
     plan: Plan,
-    /// Where its results lie.
+    /// Folder of its results.
     folder: PathBuf,
     question: ask::Question,
-    /// Those of shadows.
+    /// Suns of a question about shadows.
     suns: Vec<NamedSun>,
     context: Context,
 }
 
-/// Cells of a survey of which something was found.
+/// Cells of a survey with the answer to a question.
 pub struct SurveyCells {
     plan: Plan,
-    /// Where they lie, local metres.
+    /// Grid of the cells, local metres.
     pub grid: MapGrid,
-    /// Where local coordinates lie.
+    /// Frame of the local coordinates.
     pub frame: Frame,
-    /// What the answer is, for the title of a map.
+    /// Description of the answer, for the title of a map.
     pub title: String,
-    /// The suns of shadows; the first measures are theirs, one each.
+    /// Suns of a question about shadows. The first measures belong to them, one each.
     pub suns: Vec<NamedSun>,
-    /// The eyes of viewsheds, local metres.
+    /// Eyes of viewsheds, local metres.
     pub eyes: Vec<[f64; 3]>,
     description: &'static str,
 }
 
 impl SurveyQuestion {
-    /// A question about a survey with cells, whose plan is kept in `folder`; its results together take no more than
+    /// Prepares a question about the cells of a survey, whose plan is kept in `folder`. All results together may take
     /// `limit` bytes of memory.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a question that tiles do not answer, and for results that take more; those of
-    /// [`Plan::with_questions`] and [`Plan::write`].
+    /// [`Error::InvalidParameter`] for a question that tiles do not answer, and for results over the limit. Also those
+    /// of [`Plan::with_questions`] and [`Plan::write`].
     pub fn new(plan: Plan, folder: &Path, question: ask::Question, limit: u64, control: &Control<'_>) -> Result<Self> {
         let frame = plan.frame()?;
         let whereabouts = plan.whereabouts(&frame);
@@ -147,7 +148,7 @@ impl SurveyQuestion {
         let is_up = |sun: &NamedSun| sun.sun.to_sun[2] > 0.0;
         let mut questions = TileQuestion::of(&question, (&plan, &whereabouts), &mut context, control)?;
         if suns.iter().any(is_up) {
-            // at night nothing is lit, which no tile needs to find out
+            // At night nothing is lit, so that no tile is needed.
             questions = TileQuestion::of_suns(suns.iter().filter(|&sun| is_up(sun)), &how_sure);
         }
         let mut values = 0_u64;
@@ -185,7 +186,7 @@ impl SurveyQuestion {
         Ok(Self { plan, folder, question, suns, context })
     }
 
-    /// Computes what is not done yet; `seconds` is a clock of the program.
+    /// Computes all missing results. `seconds` is a clock of the program.
     ///
     /// # Errors
     /// Those of [`run`].
@@ -194,7 +195,7 @@ impl SurveyQuestion {
         run(&self.plan, &self.folder, &params, control)
     }
 
-    /// The answers of a run that did all.
+    /// Returns the answers of a complete run.
     ///
     /// # Errors
     /// Those of reading the results.
@@ -226,8 +227,8 @@ impl SurveyQuestion {
         Ok(Answers { found, measures, headline, remarks, report })
     }
 
-    /// A measure for each sun or result, of a single one what of it is unproven, and how sure all are where that was
-    /// wanted.
+    /// Returns a measure for each sun or result. A single result also has its unproven part, and all have probabilities
+    /// if wanted.
     fn measures(&self, control: &Control<'_>) -> Result<Vec<Measure>> {
         let (mut results, mut likely) = (Vec::new(), Vec::new());
         let is_likely = |question: &&TileQuestion| matches!(question, TileQuestion::Probability { .. });
@@ -293,10 +294,9 @@ impl SurveyQuestion {
         }
     }
 
-    /// Measures of how sure answers are, of which `bands` were found; `answers` may say what of a single one is
-    /// unproven.
+    /// Returns the measures of probability from `bands`. `answers` may contain the unproven part of a single answer.
     fn how_sure(&self, bands: Vec<Vec<f32>>, answers: &[Measure], suffix: &str) -> Result<Vec<Measure>> {
-        // the summary needs probabilities, whatever is written
+        // The summary needs probabilities, even if they are not written.
         let how_sure = HowSure { probability: true, ..self.wanted_sureness() };
         let is_of_many = matches!(&self.question, ask::Question::Viewshed(about) if about.observers.len() > 1);
         let mut bands = bands.into_iter();
@@ -313,7 +313,7 @@ impl SurveyQuestion {
 }
 
 impl SurveyCells {
-    /// Writes measures as one cloud-optimised GeoTIFF, a band each.
+    /// Writes measures as one cloud-optimised GeoTIFF, with one band each.
     ///
     /// # Errors
     /// Those of writing.
@@ -325,7 +325,7 @@ impl SurveyCells {
         raster.write_cog(path, &georeference(&self.grid, &self.frame))
     }
 
-    /// Height of the highest point in each cell, for maps.
+    /// Returns the height of the highest point in each cell, for maps.
     ///
     /// # Errors
     /// Those of [`Plan::highest_points`].

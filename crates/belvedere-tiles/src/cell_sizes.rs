@@ -1,23 +1,23 @@
-//! Sides of the cells of results: one for all, and others where single results need finer or coarser ones.
+//! Sides of the cells of results: one for all, with finer or coarser exceptions for single results.
 
 use crate::question::TileQuestion;
 use belvedere::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Steps that the side of a cell must be a whole number of, metres: middles of cells are then exact numbers.
+/// Step of the side of a cell, metres. With whole numbers of it, middles of cells are exact numbers.
 const CELL_STEP: f64 = 1.0 / 64.0;
-/// Largest side, metres.
+/// Maximum side of a cell, metres.
 const LARGEST: f64 = 64.0;
-/// Smallest and largest side of a tile, metres.
+/// Minimum and maximum side of a tile, metres.
 pub(crate) const MIN_TILE: f64 = 16.0;
 const LARGEST_TILE: f64 = 8192.0;
 
-/// What a result is about. Results about the same have cells of the same size.
+/// Topic of a result. Results on the same topic have cells of the same size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Topic {
-    /// The shadow of one sun.
+    /// Shadow of one sun.
     Shadow,
     /// Hours of sun.
     SunHours,
@@ -25,18 +25,18 @@ pub enum Topic {
     Rule,
     /// Energy of sun and sky.
     Irradiance,
-    /// The sky view factor.
+    /// Sky view factor.
     SkyView,
-    /// What observers see.
+    /// Viewsheds of observers.
     Viewshed,
 }
 
 impl Topic {
-    /// All of them.
+    /// All topics.
     pub const ALL: [Self; 6] =
         [Self::Shadow, Self::SunHours, Self::Rule, Self::Irradiance, Self::SkyView, Self::Viewshed];
 
-    /// The word that users type for it.
+    /// Returns the word for the topic on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -59,33 +59,33 @@ pub struct CellSizes {
 }
 
 impl Default for CellSizes {
-    /// 1 m for all.
+    /// Returns sides of 1 m for all results.
     fn default() -> Self {
         Self::all(1.0)
     }
 }
 
 impl CellSizes {
-    /// The same for all results.
+    /// Returns one side for all results.
     #[must_use]
     pub fn all(side: f64) -> Self {
         Self { usual: side, others: BTreeMap::new() }
     }
 
-    /// This with another side for the results about `topic`.
+    /// Returns these sides with another side for results on `topic`.
     #[must_use]
     pub fn with(mut self, topic: Topic, side: f64) -> Self {
         self.others.insert(topic, side);
         self
     }
 
-    /// The side for the result of a question.
+    /// Returns the side for the result of a question.
     #[must_use]
     pub fn of(&self, question: &TileQuestion) -> f64 {
         self.others.get(&question.topic()).copied().unwrap_or(self.usual)
     }
 
-    /// All sides.
+    /// Returns all sides.
     pub(crate) fn sides(&self) -> impl Iterator<Item = f64> {
         std::iter::once(self.usual).chain(self.others.values().copied())
     }
@@ -94,12 +94,12 @@ impl CellSizes {
         self.sides().fold(0.0, f64::max)
     }
 
-    /// Whether a tile of this size is a whole number of cells, whichever these are.
+    /// Returns true if a tile of this side is a whole number of cells, for all sides of cells.
     pub(crate) fn divide(&self, tile_size: f64) -> bool {
         self.sides().map(|side| tile_size / side).all(|cells| cells == cells.floor())
     }
 
-    /// Checks these and the side of a tile that they divide.
+    /// Checks the sides and the side of a tile that they divide.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a side out of range, and for a tile that is no whole number of cells.
@@ -112,6 +112,8 @@ impl CellSizes {
         Err(Error::InvalidParameter { parameter: Parameter::TileSize, value, expected })
     }
 
+    /// Checks the range of the sides.
+    ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a side out of range.
     pub(crate) fn check(&self) -> Result<()> {

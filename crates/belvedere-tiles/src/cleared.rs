@@ -1,8 +1,8 @@
-//! What is cleared of a survey, in blocks of 64 m that are the same for all tiles.
+//! Objects cleared from a survey, in blocks of 64 m that are the same for all tiles.
 //!
-//! What clearing does at a place follows from what is around: from the ground below, which is interpolated, and from
-//! what stands there. Each block is looked at by itself, with all points of the eight blocks around it, so that points
-//! and balls fare alike in all tiles that meet them.
+//! The effect of clearing at a place depends on its surroundings: the interpolated ground below and the objects above
+//! it. Each block is computed by itself, with all points of the eight blocks around it. A point or a ball therefore has
+//! the same result in all tiles that meet it.
 
 use crate::grid::{CELL, MapArea, TileId, block_area, block_of};
 use crate::ground_cells;
@@ -16,22 +16,22 @@ use belvedere::model::{ClearedArea, Clearing};
 use belvedere::{ExtinctionVoxels, PointCloud, Result};
 use std::collections::{HashMap, HashSet};
 
-/// How far beyond a block its columns reach, metres: as far as a ball at one of its points, 10 m at most, and what is
-/// cleared around a point.
+/// Width of the margin of columns around a block, metres. It covers a ball at one of the points, at most 10 m, and the
+/// cleared space around a point.
 const BESIDE: f64 = 12.0;
 
-/// A point as clearing looks at it: local metres, and its class.
+/// Point with the data that clearing needs: local metres, and its class.
 pub(crate) type ClassedPoint = ([f32; 3], Option<u8>);
 
-/// The points of `rows`.
+/// Returns the points of `rows`.
 pub(crate) fn classed(cloud: &PointCloud, rows: impl Iterator<Item = usize>) -> Vec<ClassedPoint> {
     let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
     rows.filter_map(|row| Some((*cloud.positions.get(row)?, classes.get(row).copied()))).collect()
 }
 
 impl Plan {
-    /// This without what stands in some areas now: points, the balls at them, and what balls beside a polygon reach
-    /// into it. The ground below is closed.
+    /// Returns this plan without the present objects in some areas. Points, their balls, and parts of balls beside a
+    /// polygon that reach into it are removed. The ground below is closed.
     ///
     /// # Errors
     /// [`belvedere::Error::InvalidParameter`] for an area beside the survey and for the class of the ground.
@@ -39,14 +39,14 @@ impl Plan {
         let (bounds, origin) = (self.bounds(), self.frame()?.origin);
         areas.iter().try_for_each(|area| area.rectangle_on(&bounds, origin).map(|_| ()))?;
         self.cleared = areas;
-        // what was cleared ended pulses that would prove the space behind it
+        // Cleared objects ended pulses that would prove the space behind them.
         self.proves &= self.cleared.is_empty();
         self.tiles = self.tiles_with_cells();
         Ok(self)
     }
 
-    /// Whether anything stands in the areas that are cleared. Tiles are looked at one after the other until something
-    /// does.
+    /// Returns true if any object stands in the cleared areas. Tiles are tested one after the other until the first
+    /// object.
     ///
     /// # Errors
     /// Those of reading the files, of [`Clearing::new`], and [`belvedere::Error::Cancelled`].
@@ -67,7 +67,7 @@ impl Plan {
         Ok(false)
     }
 
-    /// The areas that are cleared, with the rectangles around polygons on the survey.
+    /// Returns the cleared areas, with the rectangles around polygons on the survey.
     fn cleared_areas(&self) -> Result<Vec<(&ClearedArea, Option<MapArea>)>> {
         let (bounds, origin) = (self.bounds(), self.frame()?.origin);
         let mut areas = Vec::new();
@@ -77,32 +77,32 @@ impl Plan {
         Ok(areas)
     }
 
-    /// Whether all areas can be cleared of a survey in a frame with this origin.
+    /// Returns true if all areas can be cleared from a survey in a frame with this origin.
     pub(crate) fn has_sound_areas(&self, origin: [f64; 3]) -> bool {
         self.cleared.iter().all(|area| area.rectangle_on(&self.bounds(), origin).is_ok())
     }
 
-    /// Greatest distance from a point at which a cell of a side may get a height, metres: also where the ground is
-    /// closed.
+    /// Returns the maximum distance from a point at which a cell of side `cell` may get a height, metres. It includes
+    /// closed ground.
     pub(crate) fn reach(&self, cell: f64) -> f64 {
         let reach = SurfaceParams::reach(cell);
         let reach = if self.is_on_ground() { reach.max(MAX_GAP_FROM_RETURNS) } else { reach };
         if self.cleared.is_empty() { reach } else { reach.max(Clearing::REACH + cell) }
     }
 
-    /// No cell of a side on a tile is lower, local metres.
+    /// Returns a lower bound of the heights of cells of side `cell` on a tile, local metres.
     pub(crate) fn lowest_of_cells(&self, tile: TileId, cell: f64) -> f64 {
         let core = self.grid().core(tile);
         let around = core.widened(self.reach(cell));
-        // ground that was closed is interpolated between points of all blocks around
+        // Closed ground is interpolated between points of all blocks around.
         let around = if self.cleared.is_empty() { around } else { around.joined(&core.in_blocks().widened(CELL)) };
         let around = if self.is_on_ground() { around.joined(&ground_cells::area_around(&core)) } else { around };
         self.blocks_in(&around).map(|block| f64::from(block.heights[0])).fold(f64::INFINITY, f64::min)
     }
 }
 
-/// Clears the balls of a tile, which belong to `points`, and closes the ground in `core`. Transmissions are those of
-/// balls, or none.
+/// Clears the balls of a tile, which belong to `points`, and closes the ground in `core`. `transmission` has one value
+/// for each ball, or none.
 ///
 /// # Errors
 /// Those of reading the files, and of [`Clearing::new`].
@@ -151,8 +151,8 @@ pub(crate) fn clear_balls(
     Ok(())
 }
 
-/// The voxels of crowns of a tile, without those at points that are cleared. `points` are those of the tile and around
-/// it.
+/// Returns the voxels of the crowns of a tile without voxels at cleared points. `points` are those in the tile and
+/// around it.
 ///
 /// # Errors
 /// Those of [`clear_balls`].
@@ -186,16 +186,16 @@ pub(crate) fn left_crowns(
     Ok(own.without_cleared(&cleared, &kept))
 }
 
-/// What clearing leaves of the surface of a tile.
+/// Surface of a tile after clearing.
 pub(crate) struct ClearedSurface {
-    /// Points that go.
+    /// Flags the cleared points.
     pub(crate) is_cleared: Vec<bool>,
-    /// Height of the ground at those of the places below which something went.
+    /// Height of the ground, local metres, by the index of a place below which objects were cleared.
     pub(crate) ground: HashMap<usize, f64>,
 }
 
 impl ClearedSurface {
-    /// Of the `points` of `area`, and of `places` on the map in the core of a tile.
+    /// Clears the `points` of `area`, and closes the ground at `places` on the map in the core of a tile.
     ///
     /// # Errors
     /// Those of reading the files, and of [`Clearing::new`].
@@ -222,7 +222,7 @@ impl ClearedSurface {
                 is_cleared[row as usize] |= clearings.iter().any(|clearing| clearing.clears(position, class));
             }
             for &place in places_of_blocks.get(&block).into_iter().flatten() {
-                // where areas overlap, the last one knows what all of them left
+                // In overlapping areas the last clearing has the points that all of them left.
                 let found = clearings.iter().rev().find_map(|clearing| clearing.ground_at(places[place as usize]));
                 ground.extend(found.map(|height| (place as usize, height)));
             }
@@ -231,8 +231,8 @@ impl ClearedSurface {
     }
 }
 
-/// Gives `look` each block of `area` that polygons reach, and of `core` also those with points of cleared classes, with
-/// what clearing does there.
+/// Passes to `look` each block of `area` near polygons, with the clearings of the block. Blocks of `core` with points
+/// of cleared classes are passed too.
 fn each_block(
     plan: &Plan,
     area: &MapArea,
@@ -295,7 +295,7 @@ fn each_block(
     })
 }
 
-/// Numbers of positions by the block that they lie in, rising.
+/// Groups the indices of positions by block, in ascending order.
 fn by_block(positions: impl Iterator<Item = [f32; 3]>) -> HashMap<[i32; 2], Vec<u32>> {
     let mut rows: HashMap<[i32; 2], Vec<u32>> = HashMap::new();
     for (row, [x, y, _]) in (0..).zip(positions) {

@@ -1,4 +1,4 @@
-//! The columns of points that tiles need.
+//! Columns of points that tiles need.
 
 use crate::inputs::PointColumns;
 use belvedere::{Attributes, PointCloud};
@@ -12,7 +12,7 @@ pub(crate) fn append(cloud: &mut PointCloud, more: PointCloud, columns: PointCol
     cloud.frame = more.frame;
 }
 
-/// The columns that tiles need and all files have.
+/// Returns the columns that tiles need and all files have.
 pub(crate) fn needed(attributes: Attributes, columns: PointColumns) -> Attributes {
     Attributes {
         classification: attributes.classification,

@@ -1,39 +1,39 @@
-//! What a run will take.
+//! Estimate of the points, memory and disk of a run.
 
 use crate::grid::{CELL, MapArea, block_area};
 use crate::plan::Plan;
 use crate::survey::SurveyBlock;
 use serde::Serialize;
 
-/// Memory for each point of a window while balls are made, and without any, bytes. As measured in docs/scale.md.
+/// Memory for each point of a window while balls are made, and without any point, bytes, as measured in docs/scale.md.
 const BYTES_PER_POINT: f64 = 450.0;
 const MIN_BYTES: f64 = 100e6;
-/// Memory for each ball of those that are tested together, bytes: measured 290, and room for cells and their points.
+/// Memory for each ball in a test, bytes: 290 measured, with a margin for cells and their points.
 const BYTES_PER_BALL: f64 = 450.0;
-/// Balls that are always tested together: fewer would save no memory that counts.
+/// Minimum number of balls that are tested together; fewer would save little memory.
 const MIN_BALLS: usize = 100_000;
 /// Bytes of a ball file for each point of a tile.
 const DISK_PER_POINT: f64 = 30.0;
 
-/// What a plan will take.
+/// Estimate for a plan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct RunEstimate {
-    /// Points of all tiles.
+    /// Number of points of all tiles.
     pub points: u64,
-    /// Points that are read, those around tiles among them.
+    /// Number of points read, including those around tiles.
     #[serde(rename = "points_with_halo")]
     pub points_with_buffer: u64,
-    /// Most points that one tile reads.
+    /// Maximum number of points that one tile reads.
     #[serde(rename = "most_points_of_a_tile")]
     pub max_points_of_a_tile: u64,
-    /// Memory that this tile takes, bytes.
+    /// Memory for this tile, bytes.
     pub memory_bytes: u64,
-    /// Disk that balls take, bytes.
+    /// Disk space for balls, bytes.
     pub disk_bytes: u64,
 }
 
 impl Plan {
-    /// Points that a tile reads, about.
+    /// Returns the approximate number of points that a tile reads.
     fn window_points(&self, area: &MapArea) -> f64 {
         let share = |block: &SurveyBlock| {
             let own = block_area(block.at);
@@ -43,7 +43,7 @@ impl Plan {
         self.blocks_in(area).map(share).sum()
     }
 
-    /// What the run will take, about.
+    /// Returns an estimate for the run.
     #[must_use]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "estimates; `as` saturates")]
     pub fn estimate(&self) -> RunEstimate {
@@ -59,7 +59,8 @@ impl Plan {
         }
     }
 
-    /// Most balls that are tested together: as many as take no more memory than making those of the largest tile.
+    /// Returns the maximum number of balls that are tested together. They take no more memory than making the balls of
+    /// the largest tile.
     pub(crate) fn balls_at_a_time(&self) -> usize {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an estimate; `as` saturates")]
         let balls = ((self.estimate().memory_bytes as f64 - MIN_BYTES) / BYTES_PER_BALL) as usize;

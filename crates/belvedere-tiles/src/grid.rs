@@ -3,29 +3,29 @@
 use belvedere::Bounds;
 use serde::{Deserialize, Serialize};
 
-/// Side of the blocks that the survey counts points in and that some rules for balls work in, metres.
+/// Side of the blocks in which the survey counts points and some rules for balls work, metres.
 pub(crate) const CELL: f64 = 64.0;
-/// Side of the squares that tops of balls are kept on, metres.
+/// Side of the squares on which tops of balls are kept, metres.
 pub(crate) const TOP_SIDE: f64 = 16.0;
 
-/// A tile: number east and north on the grid.
+/// Tile: column and row on the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct TileId {
     /// Row, counted north from the origin of the reference system.
     pub north: i64,
-    /// Column, counted east from there.
+    /// Column, counted east from the origin of the reference system.
     pub east: i64,
 }
 
 impl TileId {
-    /// The name of the tile in file names.
+    /// Returns the name of the tile in file names.
     #[must_use]
     pub fn name(self) -> String {
         format!("e{}_n{}", self.east, self.north)
     }
 }
 
-/// A grid of square tiles, counted from the origin of the reference system, in local coordinates.
+/// Grid of square tiles in local coordinates, counted from the origin of the reference system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TileGrid {
     /// Side of a tile, metres.
@@ -34,8 +34,8 @@ pub struct TileGrid {
     pub origin: [f64; 2],
 }
 
-/// A rectangle on the map from its lowest to its highest corner, local metres. The lower sides belong to it, the upper
-/// ones do not.
+/// Rectangle on the map from its lowest to its highest corner, local metres. The lower sides belong to it, the upper
+/// sides do not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MapArea {
     pub(crate) low: [f64; 2],
@@ -43,14 +43,14 @@ pub(crate) struct MapArea {
 }
 
 impl TileGrid {
-    /// The core of a tile.
+    /// Returns the core of a tile.
     pub(crate) fn core(&self, tile: TileId) -> MapArea {
         #[expect(clippy::cast_precision_loss, reason = "tiles of a planet are far fewer than 2^53")]
         let low = [tile.east as f64 * self.size - self.origin[0], tile.north as f64 * self.size - self.origin[1]];
         MapArea { low, high: low.map(|v| v + self.size) }
     }
 
-    /// The tile whose core holds a local position.
+    /// Returns the tile whose core contains a local position.
     #[expect(clippy::cast_possible_truncation, reason = "tiles of a planet are far fewer than 2^63")]
     pub(crate) fn tile_of(&self, [x, y]: [f64; 2]) -> TileId {
         let number = |v: f64, axis: usize| ((v + self.origin[axis]) / self.size).floor() as i64;
@@ -63,7 +63,7 @@ impl MapArea {
         self.low[0] <= x && x < self.high[0] && self.low[1] <= y && y < self.high[1]
     }
 
-    /// One place.
+    /// Returns the rectangle of a single place.
     pub(crate) fn at([x, y, _]: [f64; 3]) -> Self {
         Self { low: [x, y], high: [x, y] }
     }
@@ -72,32 +72,32 @@ impl MapArea {
         [self.low, [self.high[0], self.low[1]], [self.low[0], self.high[1]], self.high]
     }
 
-    /// From where to where it reaches along an axis on the map.
+    /// Returns its lowest and highest coordinate along an axis on the map.
     pub(crate) fn span(&self, axis: [f64; 2]) -> [f64; 2] {
         let places = self.corners().map(|[x, y]| x * axis[0] + y * axis[1]);
         [places.into_iter().fold(f64::INFINITY, f64::min), places.into_iter().fold(f64::NEG_INFINITY, f64::max)]
     }
 
-    /// Greatest distance on the map between a place of this and one of `other`, metres.
+    /// Returns the maximum distance on the map between a place of this rectangle and one of `other`, metres.
     pub(crate) fn farthest(&self, other: &Self) -> f64 {
         let side = |axis: usize| (other.high[axis] - self.low[axis]).max(self.high[axis] - other.low[axis]);
         side(0).hypot(side(1))
     }
 
-    /// The smallest rectangle around both.
+    /// Returns the smallest rectangle around both.
     pub(crate) fn joined(&self, other: &Self) -> Self {
         let low = [0, 1].map(|axis| self.low[axis].min(other.low[axis]));
         Self { low, high: [0, 1].map(|axis| self.high[axis].max(other.high[axis])) }
     }
 
-    /// The rectangle that both have in common, if they do.
+    /// Returns the intersection of both; `None` if they do not meet.
     pub(crate) fn common(&self, other: &Self) -> Option<Self> {
         let low = [0, 1].map(|axis| self.low[axis].max(other.low[axis]));
         let high = [0, 1].map(|axis| self.high[axis].min(other.high[axis]));
         self.meets(other).then_some(Self { low, high })
     }
 
-    /// Whether they have a place in common.
+    /// Returns true if both have a place in common.
     pub(crate) fn meets(&self, other: &Self) -> bool {
         (0..2).all(|axis| self.low[axis] < other.high[axis] && other.low[axis] < self.high[axis])
     }
@@ -106,12 +106,12 @@ impl MapArea {
         Self { low: self.low.map(|v| v - by), high: self.high.map(|v| v + by) }
     }
 
-    /// The blocks of 64 m from the origin of local coordinates that the area meets.
+    /// Returns the rectangle extended to whole blocks of 64 m from the origin of local coordinates.
     pub(crate) fn in_blocks(&self) -> Self {
         Self { low: self.low.map(|v| (v / CELL).floor() * CELL), high: self.high.map(|v| (v / CELL).ceil() * CELL) }
     }
 
-    /// The numbers of these blocks, east and north.
+    /// Returns the numbers of the blocks that it meets, east and north.
     pub(crate) fn blocks(&self) -> impl Iterator<Item = [i32; 2]> + use<> {
         #[expect(clippy::cast_possible_truncation, reason = "blocks of a frame of kilometres")]
         let range = |axis: usize| ((self.low[axis] / CELL).floor() as i32)..((self.high[axis] / CELL).ceil() as i32);
@@ -119,13 +119,13 @@ impl MapArea {
         north.flat_map(move |north| east.clone().map(move |east| [east, north]))
     }
 
-    /// Distance on the map to a rectangle, metres; 0 where they meet.
+    /// Returns the distance on the map to a rectangle, metres; 0 if they meet.
     pub(crate) fn distance(&self, other: &Self) -> f64 {
         let gap = |axis: usize| (other.low[axis] - self.high[axis]).max(self.low[axis] - other.high[axis]).max(0.0);
         gap(0).hypot(gap(1))
     }
 
-    /// The box of all heights over the area.
+    /// Returns the box of all heights over the rectangle.
     #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
     pub(crate) fn column(&self) -> Bounds {
         let [low, high] = [self.low, self.high].map(|[x, y]| [x as f32, y as f32]);
@@ -134,23 +134,23 @@ impl MapArea {
     }
 }
 
-/// The area of a block of 64 m.
+/// Returns the rectangle of a block of 64 m.
 pub(crate) fn block_area(block: [i32; 2]) -> MapArea {
     square_area(block, CELL)
 }
 
-/// The block of 64 m that a local position lies in.
+/// Returns the number of the block of 64 m that contains a local position.
 pub(crate) fn block_of(position: [f32; 2]) -> [i32; 2] {
     square_at(position, CELL)
 }
 
-/// The square of a side with a number, counted east and north from the origin of local coordinates.
+/// Returns the square of side `side` with a number, counted east and north from the origin of local coordinates.
 pub(crate) fn square_area(number: [i32; 2], side: f64) -> MapArea {
     let low = number.map(|number| f64::from(number) * side);
     MapArea { low, high: low.map(|v| v + side) }
 }
 
-/// The number of the square of a side that a local position lies in.
+/// Returns the number of the square of side `side` that contains a local position.
 #[expect(clippy::cast_possible_truncation, reason = "squares of a frame of kilometres; `as` saturates")]
 pub(crate) fn square_at(position: [f32; 2], side: f64) -> [i32; 2] {
     position.map(|v| (f64::from(v) / side).floor() as i32)

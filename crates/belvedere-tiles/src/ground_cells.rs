@@ -1,5 +1,5 @@
-//! Cells on the ground. It is found in squares that are the same for all tiles, so that tiles make no difference, and
-//! kept with the balls of a survey that is kept.
+//! Cells on the ground. Ground is found in squares that are the same for all tiles, so that tiles make no difference. A
+//! kept survey keeps the ground with its balls.
 
 use crate::answer::EDGE_CELLS;
 use crate::cleared::{ClearedSurface, classed};
@@ -22,25 +22,25 @@ use std::sync::Arc;
 
 /// Side of a square, metres.
 const SQUARE: f64 = 256.0;
-/// How far around a square points show its ground, metres: as far as a height is interpolated, and half as far again,
-/// so that the triangles below large halls are whole.
+/// Width of the margin around a square within which points show its ground, metres. It is 1.5 times the maximum
+/// distance of interpolation, so that the triangles below large halls are complete.
 const AROUND: f64 = 96.0;
 
-/// Cells of squares that are kept for the next tiles: about 80 MB.
+/// Maximum number of cells of squares kept for the next tiles: about 80 MB.
 const MAX_KEPT: usize = 4_000_000;
 
-/// The ground of the squares that were needed last: tiles beside each other share them.
+/// Ground of the last squares, which neighbouring tiles share.
 #[derive(Default)]
 pub(crate) struct GroundSquares(VecDeque<KeptSquare>);
 
-/// The ground of a square.
+/// Ground of a square.
 struct KeptSquare {
     square: MapArea,
     /// Side of the cells, metres.
     cell: f64,
-    /// `None` where no ground is known.
+    /// Cells as targets; `None` for a square without known ground.
     found: Option<Arc<Targets>>,
-    /// Points that were read for it.
+    /// Number of points read for the square.
     points: usize,
 }
 
@@ -51,7 +51,7 @@ impl KeptSquare {
 }
 
 impl GroundSquares {
-    /// The ground of a square for cells of a side, metres, and how many points show it.
+    /// Returns the ground of a square for cells of side `cell`, metres, and the number of points that show it.
     fn of_square(
         &mut self,
         plan: &Plan,
@@ -87,24 +87,24 @@ impl GroundSquares {
     }
 }
 
-/// Where the ground of a square of a survey that is kept lies, so that the next question finds it.
+/// File with the ground of a square of a kept survey, for later questions.
 struct SquareFile {
     path: PathBuf,
     grid: MapGrid,
 }
 
 impl SquareFile {
-    /// `None` for a survey that nobody keeps.
+    /// Returns the file of a square; `None` for a survey that is not kept.
     fn of(plan: &Plan, (square, cell): (&MapArea, f64)) -> Option<Self> {
         let folder = plan.shared_balls.as_ref()?.join("ground");
-        // without meshes it is the same for targets of any height
+        // Without meshes the ground is the same for targets of any height.
         let targets = if plan.meshes.is_empty() { plan.targets.with_height(0.0) } else { plan.targets };
         let what = (square.low, cell, targets, plan.ground, &plan.meshes);
         let name = hash(serde_json::to_string(&what).ok()?.as_bytes());
         Some(Self { path: folder.join(format!("{name}.npz")), grid: grid_of(plan, (square, cell)).ok()? })
     }
 
-    /// The cells, and how many points showed them; `None` for a file that is not there or damaged.
+    /// Returns the cells and the number of points that showed them; `None` for a missing or damaged file.
     fn read(&self, plan: &Plan) -> Option<(Option<Targets>, usize)> {
         let (rasters, points) = read_kept_rasters(&self.path).ok()?;
         let [heights, levels]: [Raster<f32>; 2] = rasters.try_into().ok()?;
@@ -122,7 +122,7 @@ impl SquareFile {
         Some((Some(Targets::at(plan.frame().ok()?, positions, None, layout)), points))
     }
 
-    /// What cannot be kept is found again.
+    /// Writes the cells. Ground that cannot be written is computed again later.
     fn write(&self, found: &Targets, points: usize) {
         let TargetLayout::Cells(ground) = &found.layout else { return };
         let levels = found.positions.iter().map(|position| position[2]).collect();
@@ -135,14 +135,14 @@ impl SquareFile {
     }
 }
 
-/// The area whose points show the ground of the squares that `area` meets.
+/// Returns the area whose points show the ground of the squares that `area` meets.
 pub(crate) fn area_around(area: &MapArea) -> MapArea {
     let mut around = squares(area).map(|square| square.widened(AROUND));
     let first = around.next().unwrap_or(*area);
     around.fold(first, |all, square| all.joined(&square))
 }
 
-/// The squares that meet an area.
+/// Returns the squares that meet an area.
 fn squares(area: &MapArea) -> impl Iterator<Item = MapArea> + use<> {
     #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
     let number = |place: [f64; 2]| square_at(place.map(|v| v as f32), SQUARE);
@@ -152,8 +152,8 @@ fn squares(area: &MapArea) -> impl Iterator<Item = MapArea> + use<> {
         .filter(move |square| square.meets(&area))
 }
 
-/// The cells of a tile, of a side in metres, as targets on the ground, those under a cover or inside what was `added`
-/// left out; how many these are, and how many points were read.
+/// Returns the cells of a tile, with sides in metres, as targets on the ground. Cells under a cover or inside `added`
+/// meshes are left out. Their number and the number of points read follow.
 pub(crate) fn ground_cells(
     plan: &Plan,
     (tile, cell): (TileId, f64),
@@ -168,7 +168,7 @@ pub(crate) fn ground_cells(
     let mut positions = vec![[f32::NAN; 3]; count * count];
     let mut heights = Raster::filled(count, count, f32::NAN);
     let (mut covered, mut points) = (0, 0);
-    // a cell that has a part in it
+    // A cell with a part inside the survey.
     let (low, high) = plan.bounds().on_map();
     let survey = MapArea { low, high }.widened(cell / 2.0);
     for square in squares(&core) {
@@ -196,14 +196,14 @@ pub(crate) fn ground_cells(
     Ok((Targets::at(plan.frame()?, positions, None, layout), [covered, points]))
 }
 
-/// The grid of a square and of its edge.
+/// Returns the grid of a square and of its edge.
 fn grid_of(plan: &Plan, (square, cell): (&MapArea, f64)) -> Result<MapGrid> {
     let edge = square.widened(EDGE_CELLS as f64 * cell);
     let [x, y, _] = plan.frame.origin;
     MapGrid::covering(edge.low, edge.high, cell, [x, y])
 }
 
-/// The cells of a square and of its edge; `None` where no ground is known.
+/// Returns the cells of a square and of its edge; `None` for a square without known ground.
 fn of_square(
     plan: &Plan,
     (square, cell): (&MapArea, f64),
@@ -242,7 +242,7 @@ fn of_square(
 }
 
 impl Plan {
-    /// Whether cells lie on the ground rather than on top of what stands there.
+    /// Returns true if cells lie on the ground instead of on the surface.
     pub(crate) fn is_on_ground(&self) -> bool {
         self.targets.level == CellLevel::Ground
     }

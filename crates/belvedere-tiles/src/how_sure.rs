@@ -1,5 +1,5 @@
-//! How likely the cells of a tile are lit, or seen: evidence that is gathered part by part of what blocks, and block by
-//! block of what pulses proved.
+//! Probability that the cells of a tile are lit or visible. The evidence is gathered part by part from obstacles, and
+//! block by block from pulses.
 
 use crate::lines::AreaLines;
 use crate::obstacles::{ObstacleSearch, rule};
@@ -20,16 +20,16 @@ use belvedere::{Error, Parameter, Result};
 use rayon::prelude::*;
 use std::path::Path;
 
-/// Targets handed to a thread at once.
+/// Number of targets that a thread takes at once.
 const CHUNK: usize = 256;
 
-/// Suns or observers, whose lines of sight to targets are looked at past one part of what blocks after the other.
+/// Evidence for lines of sight from targets to a sun or to observers, past one part of the obstacles after the other.
 pub(crate) struct PartialEvidence<'a> {
     viewers: Viewers,
     targets: &'a [[f32; 3]],
-    /// What all parts so far block, of each viewer.
+    /// Lines that all parts so far block, for each viewer.
     blocked: Vec<Vec<BlockedLines>>,
-    /// The same without vegetation, where a sun is looked at past crowns that were measured; otherwise empty.
+    /// Lines that all parts except vegetation block, for a sun behind measured crowns; otherwise empty.
     solid: Vec<BlockedLines>,
     /// Optical depth of the crowns before each target; as long as `solid`.
     depths: Vec<f64>,
@@ -37,7 +37,7 @@ pub(crate) struct PartialEvidence<'a> {
 
 enum Viewers {
     Sun(ShadowSun),
-    /// Those inside an obstacle have an eye that is not finite, unless they are looked at.
+    /// Observers. The eye of an observer inside an obstacle is not finite, except in a reverse viewshed.
     Observers {
         observers: Vec<Observer>,
         is_reverse: bool,
@@ -52,7 +52,7 @@ impl Viewers {
         }
     }
 
-    /// The line of sight from a target, local metres, to the viewer of that number; `None` where there is no answer.
+    /// Returns the line of sight from a target, local metres, to viewer `number`; `None` without an answer.
     fn line(&self, number: usize, target: [f32; 3]) -> Option<Line> {
         let target = target.map(f64::from);
         if !target.iter().all(|v| v.is_finite()) {
@@ -72,10 +72,10 @@ impl Viewers {
 }
 
 impl<'a> PartialEvidence<'a> {
-    /// Of the answers that `prepared` is about.
+    /// Creates empty evidence for the answers of `prepared`.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for others than those of a sun and of observers.
+    /// [`Error::InvalidParameter`] for other questions than a sun or observers.
     pub(crate) fn new(prepared: &PreparedQuestion, targets: &'a [[f32; 3]]) -> Result<Self> {
         let viewers = match prepared {
             PreparedQuestion::Light(LightQuestion::Shadow(sun)) => Viewers::Sun(*sun),
@@ -94,7 +94,7 @@ impl<'a> PartialEvidence<'a> {
         Ok(Self { viewers, targets, blocked, solid: Vec::new(), depths: Vec::new() })
     }
 
-    /// Looks past all `parts`, and what blocks beside them.
+    /// Adds the evidence of all `parts` and of the other obstacles.
     pub(crate) fn gather(
         &mut self,
         plan: &Plan,
@@ -145,9 +145,9 @@ impl<'a> PartialEvidence<'a> {
         Ok(())
     }
 
-    /// How likely each target is free for the viewer, or the expected number of viewers for which it is; and how many
-    /// of their answers are less certain than wanted; NaN where there is no answer. Also for how many targets balls
-    /// that may block are missing: such answers count for nothing.
+    /// Returns the probability that each target is free for the viewer, or for several viewers their expected number.
+    /// With a certainty, a second band counts the answers that miss it. Cells without an answer are NaN. The number of
+    /// targets with missing balls comes last; their answers do not count.
     pub(crate) fn bands(
         &self,
         (plan, run): (&Plan, &Path),

@@ -1,4 +1,4 @@
-//! The files of a survey, and whether they are still what they were when the plan was made.
+//! Files of a survey, and the test that they are unchanged since the plan was made.
 
 use belvedere::apps::ask::Remark;
 use belvedere::contradiction::FoundContradiction;
@@ -10,52 +10,51 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-/// Samples of a file that its fingerprint is taken of: their number and bytes. What changed at random in a hundredth of
-/// it is found by them alone.
+/// Number of samples of a file for its fingerprint, and bytes of each. The samples alone find random changes in one
+/// hundredth of the file.
 const SAMPLES: u64 = 64;
 const SAMPLE_BYTES: u64 = 1 << 12;
-/// Samples of a file on a server, of which each is a request.
+/// Number of samples of a file on a server, where each sample is a request.
 const REMOTE_SAMPLES: u64 = 4;
-/// Bytes at either end of a file on the disk that are sampled too: headers and tables.
+/// Bytes at either end of a file on the disk that are sampled too, because headers and tables lie there.
 const ENDS: u64 = 1 << 16;
-/// Bytes that are read at once for the checksum of a whole file.
+/// Bytes read at once for the checksum of a whole file.
 const AT_ONCE: usize = 1 << 20;
 
-/// A file of a survey.
+/// File of a survey.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InputFile {
-    /// Where it lies.
+    /// Path or web address.
     pub path: PathBuf,
     /// Size, bytes.
     pub bytes: u64,
     /// Number of points.
     pub points: u64,
-    /// Lowest and highest corner, in its own coordinates.
+    /// Lowest and highest corner, in the coordinates of the file.
     pub bounds: [[f64; 3]; 2],
     /// CRC-32 over its size and samples all over it, as hexadecimal digits.
     pub fingerprint: String,
-    /// When it was changed last, or what its server calls its version, where that is known.
+    /// Time of the last change, or the version on its server, if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     version: Option<String>,
-    /// CRC-32 of all of it, as hexadecimal digits; `None` for a file on a server.
+    /// CRC-32 of the whole file, as hexadecimal digits; `None` for a file on a server.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     contents: Option<String>,
-    /// A version that was found to be the file of the plan, so that it is compared once.
+    /// Last version that proved to be the file of the plan, so that the file is compared once.
     #[serde(skip)]
     compared: OnceLock<Option<String>>,
-    /// The rectangle around each piece of its rows: west, south, east and north, whole local metres. Empty where that
-    /// is not known.
+    /// Rectangle around each piece of its rows: west, south, east and north, whole local metres. Empty if unknown.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) pieces: Vec<PieceCell>,
 }
 
-/// Rows of a file that one rectangle is kept for: a chunk of most LAZ files.
+/// Number of rows of a file in one piece: a chunk of most LAZ files.
 pub(crate) const PIECE_ROWS: u64 = 50_000;
 
 /// West, south, east and north of a piece, whole local metres.
 pub(crate) type PieceCell = [i32; 4];
 
-/// The rectangle of a piece without points, which meets nothing.
+/// Rectangle of a piece without points, which meets nothing.
 pub(crate) const NOWHERE: PieceCell = [i32::MAX, i32::MAX, i32::MIN, i32::MIN];
 
 /// Widens a rectangle to hold a local position.
@@ -65,7 +64,7 @@ pub(crate) fn hold([west, south, east, north]: &mut PieceCell, [x, y, _]: [f32; 
     (*east, *north) = ((*east).max(x.ceil() as i32), (*north).max(y.ceil() as i32));
 }
 
-/// What to know of a file by its header.
+/// Returns remarks on a file from its header.
 pub(crate) fn remarks_on_file(path: &Path, head: &LasHead) -> Vec<Remark> {
     let path = path.display().to_string();
     let notes = head.notes.iter().map(|note| Remark::note("file-odd", format!("{path}: {note}")));
@@ -76,7 +75,7 @@ pub(crate) fn remarks_on_file(path: &Path, head: &LasHead) -> Vec<Remark> {
 }
 
 impl InputFile {
-    /// A file as it is now, and what its header says.
+    /// Returns a file in its present state, with its header.
     ///
     /// # Errors
     /// Those of [`read_las_head`].
@@ -112,7 +111,7 @@ impl InputFile {
         Ok((file, head))
     }
 
-    /// The file, of which only rows are read that may lie in a column of local coordinates.
+    /// Returns the file, restricted to rows that may lie in a column of local coordinates.
     pub(crate) fn source_within(&self, column: &Bounds) -> Source<'static> {
         let source = Source::path(&self.path);
         if self.pieces.is_empty() {
@@ -134,16 +133,16 @@ impl InputFile {
         source.with_likely_rows(rows)
     }
 
-    /// Whether the pieces are those of its points, or not known.
+    /// True if the number of pieces fits the number of points, or pieces are unknown.
     pub(crate) fn has_sound_pieces(&self) -> bool {
         self.pieces.is_empty() || self.pieces.len() as u64 == self.points.div_ceil(PIECE_ROWS)
     }
 
-    /// Refuses a file that is no longer what it was: its size, its samples, and where its time is another one, its
-    /// whole content. Of a file on a server, its version, its size and samples.
+    /// Refuses a changed file. Its size and its samples are compared, and with another time its whole content. For a
+    /// file on a server, its version, its size and its samples are compared.
     ///
     /// # Errors
-    /// [`Error::Io`] for a file that is gone, [`Error::Malformed`] for one that changed.
+    /// [`Error::Io`] for a missing file, [`Error::Malformed`] for a changed file.
     pub(crate) fn check(&self) -> Result<()> {
         let path = &self.path;
         let is_remote = web_address(path).is_some();
@@ -156,7 +155,8 @@ impl InputFile {
         if now.bytes != self.bytes {
             return changed();
         }
-        // samples of a file on a server are taken once; those of the disk also find what keeps its time
+        // Samples of a file on a server are taken once. Samples of a file on the disk also find changes that keep its
+        // time.
         if is_remote && was_compared && now.name.is_some() {
             return Ok(());
         }
@@ -174,7 +174,7 @@ impl InputFile {
     }
 }
 
-/// The place of a file, whatever the folder that the program is started in.
+/// Returns the place of a file, independent of the folder in which the program is started.
 pub(crate) fn absolute(path: &Path) -> Result<PathBuf> {
     match web_address(path) {
         Some(_) => Ok(hidden(path)),
@@ -182,11 +182,11 @@ pub(crate) fn absolute(path: &Path) -> Result<PathBuf> {
     }
 }
 
-/// What is known of a file without a look at its content.
+/// Data of a file that are known without reading its content.
 struct FileVersion {
     reader: Box<dyn ReadSeek>,
     bytes: u64,
-    /// When it was changed last, or what its server calls its version.
+    /// Time of the last change, or the version on its server.
     name: Option<String>,
 }
 
@@ -196,7 +196,7 @@ impl FileVersion {
         Ok(Self { reader, bytes: size, name: version })
     }
 
-    /// The hash of the size of a file and of samples all over it.
+    /// Returns the hash of the size of a file and of samples all over it.
     fn fingerprint(&mut self, path: &Path) -> Result<String> {
         let (samples, ends) =
             if web_address(path).is_some() { (REMOTE_SAMPLES, SAMPLE_BYTES) } else { (SAMPLES, ENDS) };
@@ -214,7 +214,7 @@ impl FileVersion {
     }
 }
 
-/// The hash of all of a file.
+/// Returns the hash of a whole file.
 fn contents(path: &Path) -> Result<String> {
     let mut file = Source::path(path).into_versioned_reader()?.reader;
     let (mut sum, mut bytes) = (crc32fast::Hasher::new(), vec![0; AT_ONCE]);
@@ -226,27 +226,28 @@ fn contents(path: &Path) -> Result<String> {
     }
 }
 
-/// All bytes of a file of a run. What is none is refused: a pipe with its name would be waited for for ever.
+/// Returns all bytes of a file of a run. Anything but a regular file is refused, because a read from a pipe with this
+/// name would never end.
 pub(crate) fn bytes_of_file(path: &Path) -> std::io::Result<Vec<u8>> {
     if std::fs::metadata(path)?.is_file() { std::fs::read(path) } else { Err(std::io::Error::other("is not a file")) }
 }
 
-/// CRC-32, as hexadecimal digits: what changed is to be found, and no more than that.
+/// Returns the CRC-32 as hexadecimal digits. It only has to find accidental changes.
 pub(crate) fn hash(bytes: &[u8]) -> String {
     format!("{:08x}", crc32fast::hash(bytes))
 }
 
-/// The columns of points that all files have and tiles need.
+/// Columns of points that tiles need and all files have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct PointColumns {
-    /// GPS times of one kind.
+    /// True for GPS times of one kind.
     pub(crate) gps_times: bool,
-    /// Channels of the scanner.
+    /// True for channels of the scanner.
     pub(crate) channels: bool,
 }
 
 impl PointColumns {
-    /// Those of all files with these headers.
+    /// Returns the columns that all files with these headers have.
     pub(crate) fn common(heads: &[LasHead]) -> Self {
         let kinds: Vec<Option<GpsTimeKind>> = heads.iter().map(|head| head.gps_times).collect();
         Self {

@@ -1,4 +1,4 @@
-//! Surveys that are kept: looked at once, with balls that all questions share.
+//! Kept surveys: read once, with balls that all questions share.
 
 use crate::cell_sizes::CellSizes;
 use crate::inputs::{absolute, hash, remarks_on_file};
@@ -13,8 +13,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 impl Plan {
-    /// The plan of a survey without a question that is kept in `folder`, or is made and kept there. Its cells and the
-    /// size of its tiles are usual ones ([`Plan::with_grid_cells`], [`Plan::fitting`]).
+    /// Returns the plan of a survey without a question from `folder`, or makes it and keeps it there. The plan has
+    /// default cells and the usual size of tiles ([`Plan::with_grid_cells`], [`Plan::fitting`]).
     ///
     /// # Errors
     /// Those of [`Plan::make`] and of writing.
@@ -43,8 +43,8 @@ impl Plan {
         Ok(Self { remarks: plan.remarks, ..Self::read(folder)? })
     }
 
-    /// This with questions, written into a folder of its own below that of the survey, whose balls all of its plans
-    /// share; and that folder.
+    /// Writes this plan with its questions into a folder of its own below the folder of the survey. All plans of the
+    /// survey share its balls. Returns the plan and its folder.
     ///
     /// # Errors
     /// Those of writing.

@@ -1,20 +1,21 @@
 //! Surveys larger than memory: a city on one machine, a country on many.
 //!
-//! A [`Plan`] cuts the survey into tiles and keeps what every tile must know of the whole. Then each tile is a pure
-//! function of the plan and its number ([`make_balls`], and an answer to each question): it reads a window of the
-//! inputs, writes its result and then its record, each of which appears whole. The records are the ledger: what has one
-//! is done, and whatever was interrupted is done again by [`run`].
+//! A [`Plan`] cuts the survey into tiles and keeps the statistics of the whole survey that every tile needs. Each tile
+//! is then a pure function of the plan and the number of the tile ([`make_balls`], and an answer to each question). A
+//! tile reads a window of the inputs, then writes its result and last its record. Each of these files appears complete
+//! or not at all. The records are the ledger: a tile with a record is done. [`run`] does interrupted tiles again.
 //!
-//! Balls are made once for each tile, from the points of the tile and a margin around it, and belong to the tile that
-//! their point lies in. A question is then answered tile by tile with the balls of all tiles that can matter for it:
-//! the highest tops of balls, on squares of 16 m, say which these are. Where balls that can matter are missing, the
-//! answer is unproven and never lit.
+//! Balls are made once for each tile, from the points of the tile and of a margin around it. A ball belongs to the tile
+//! that contains the point of the ball. A question is then answered tile by tile, with the balls of all tiles that can
+//! change the answer. The highest tops of balls, on squares of 16 m, identify these tiles. If balls that can change an
+//! answer are missing, the answer is unproven and never lit.
 //!
 //! # Tiles make no difference
-//! Every ball and every answer is the same, bit by bit, whatever the size of the tiles. Three things make it so: what a
-//! model estimates from its whole cloud is estimated once, with the plan ([`belvedere::model::SurveyStatistics`]); all
-//! tiles share one frame, in which positions are the same numbers for all; and every step of the way looks at points no
-//! farther away than the margin.
+//! Every ball and every answer is the same, bit by bit, for any size of tiles. There are three reasons:
+//! - Values that a model estimates from its whole cloud are estimated once, with the plan
+//!   ([`belvedere::model::SurveyStatistics`]).
+//! - All tiles share one frame, in which a position has the same numbers for all of them.
+//! - No step uses points farther away than the margin.
 
 mod answer;
 mod any_size;

@@ -1,4 +1,4 @@
-//! Which lines of sight leave the cells of a tile, and what may stand in their way.
+//! Lines of sight from the cells of a tile, and the areas where obstacles may block them.
 
 use crate::grid::{MapArea, TileId, block_area};
 use crate::plan::Plan;
@@ -7,34 +7,34 @@ use belvedere::query::{BlockedLines, EarthParams};
 use belvedere::vector::piece_in_box;
 use std::collections::BTreeSet;
 
-/// Directions up to which each is looked at by itself.
+/// Number of directions up to which each is tested by itself.
 const FEW: usize = 8;
-/// By how much lines of sight are taken for wider than they are, metres: more than f32 rounds, and than the lines lie
-/// beside them that probabilities look at.
+/// Half-width added to lines of sight, metres. It exceeds the rounding of f32 and the distance of the parallel lines of
+/// probabilities.
 pub(crate) const ROOM: f64 = BlockedLines::WIDTH + 0.03;
-/// How far above and beside its points any ball reaches at most, metres: twice the radius that they start with.
+/// Maximum distance above and beside its points that a ball reaches, metres: twice the initial radius of balls.
 pub(crate) const MAX_BALL: f64 = 10.0;
 
 /// Lines of sight from targets over an area, none lower than `lowest`.
 pub(crate) struct AreaLines<'a> {
     pub(crate) targets: MapArea,
-    /// Local metres.
+    /// Minimum height of the targets, local metres.
     pub(crate) lowest: f64,
     to: To<'a>,
-    /// Least slope of the directions, metres of height for each metre on the map.
+    /// Minimum slope of the directions, metres of height for each metre on the map.
     flattest: f64,
 }
 
-/// Where lines of sight run to.
+/// Ends of lines of sight.
 pub(crate) enum To<'a> {
-    /// Along unit vectors upward, without end.
+    /// Unit vectors upward, for lines without end.
     Directions(&'a [[f64; 3]]),
-    /// To eyes, local metres.
+    /// Eyes, local metres.
     Eyes(Vec<[f64; 3]>),
 }
 
 impl<'a> AreaLines<'a> {
-    /// The lines of sight of a question from cells over an area.
+    /// Returns the lines of sight of a question from cells over an area.
     pub(crate) fn of(prepared: &'a PreparedQuestion, targets: MapArea, lowest: f64) -> Self {
         let to = match prepared {
             PreparedQuestion::Light(light) => To::Directions(light.directions()),
@@ -57,7 +57,7 @@ impl<'a> AreaLines<'a> {
         Self { targets, lowest, to, flattest }
     }
 
-    /// Whether there is no line at all.
+    /// True if there is no line.
     pub(crate) fn is_empty(&self) -> bool {
         match &self.to {
             To::Directions(directions) => directions.is_empty(),
@@ -65,7 +65,7 @@ impl<'a> AreaLines<'a> {
         }
     }
 
-    /// Whether something over `area` that is no higher than `top`, local metres, may block one of them.
+    /// Returns true if an obstacle over `area`, no higher than `top`, local metres, may block one of the lines.
     pub(crate) fn may_meet(&self, area: &MapArea, top: f64) -> bool {
         match &self.to {
             To::Directions(directions) => self.may_meet_towards(directions, area, top),
@@ -84,7 +84,8 @@ impl<'a> AreaLines<'a> {
         directions.len() > FEW || directions.iter().any(|direction| self.meets_along(direction, area, rise))
     }
 
-    /// The same for one direction, of which it is known which way on the map it runs.
+    /// Returns true if an obstacle over `area` may block lines in one direction, with the azimuth of the direction
+    /// taken into account.
     fn meets_along(&self, direction: &[f64; 3], area: &MapArea, rise: f64) -> bool {
         let level = direction[0].hypot(direction[1]);
         if level < 1e-9 {
@@ -99,10 +100,10 @@ impl<'a> AreaLines<'a> {
         !beside && !behind && (near - front).max(0.0) * direction[2] / level <= rise
     }
 
-    /// The same for lines that end in an eye.
+    /// Returns true if an obstacle over `area` may block lines that end in an eye.
     fn may_meet_from(&self, eye: [f64; 3], area: &MapArea, top: f64) -> bool {
         let place = MapArea::at(eye);
-        // on the map: apart if any direction separates the area from both the eye and the targets
+        // On the map: apart if any axis separates the area from both the eye and the targets.
         let sides = self.targets.corners().map(|corner| [eye[1] - corner[1], corner[0] - eye[0]]);
         let axes = sides.into_iter().map(|[x, y]| [x / x.hypot(y).max(1e-12), y / x.hypot(y).max(1e-12)]);
         let is_apart = |axis: [f64; 2]| {
@@ -113,7 +114,7 @@ impl<'a> AreaLines<'a> {
         if axes.chain([[1.0, 0.0], [0.0, 1.0]]).any(is_apart) {
             return false;
         }
-        // lines that fall towards the targets are lowest at the far side of the area
+        // Lines that fall towards the targets are lowest at the far side of the area.
         let (nearest, farthest) = (place.distance(&self.targets), place.farthest(&self.targets));
         let share = if nearest > 0.0 { (place.farthest(area) / nearest).min(1.0) } else { 1.0 };
         let lowest = eye[2] + share * (self.lowest - eye[2]).min(0.0);
@@ -121,7 +122,7 @@ impl<'a> AreaLines<'a> {
     }
 }
 
-/// The tiles whose balls may matter for `lines`.
+/// Returns the tiles whose balls may block `lines`.
 pub(crate) fn tiles(plan: &Plan, lines: &AreaLines<'_>) -> Vec<TileId> {
     let grid = plan.grid();
     let is_planned = |tile: &TileId| plan.tiles.binary_search(tile).is_ok();
@@ -139,8 +140,8 @@ pub(crate) fn tiles(plan: &Plan, lines: &AreaLines<'_>) -> Vec<TileId> {
     tiles.into_iter().collect()
 }
 
-/// Whether the line of sight from a target, local metres, may meet what stands over `area` up to `top`: the line runs
-/// along `way` and ends after `length` times that, or never.
+/// Returns true if the line of sight from a target, local metres, may meet obstacles over `area` up to `top`. The line
+/// ends after `length` times the vector `way`, or never.
 pub(crate) fn passes(target: [f64; 3], way: [f64; 3], length: f64, area: &MapArea, top: f64) -> bool {
     let sides = [0, 1].map(|axis| [area.low[axis] - target[axis], area.high[axis] - target[axis]]);
     let over = piece_in_box(sides, [way[0], way[1]], [0.0, length]);
@@ -159,7 +160,7 @@ mod tests {
 
     #[test]
     fn only_what_stands_towards_the_sun_and_high_enough_may_block_it() {
-        // a sun in the east, 45 degrees high
+        // A sun in the east, 45 degrees high.
         let half = std::f64::consts::FRAC_1_SQRT_2;
         let directions = [[half, 0.0, half]];
         let lines = AreaLines::new(TARGETS, 0.0, To::Directions(&directions));
@@ -173,7 +174,7 @@ mod tests {
         ] {
             assert_eq!(lines.may_meet(&area, top), expected, "{area:?} {top}");
         }
-        // many directions: whatever the azimuth
+        // Many directions: the azimuth does not count.
         let many = vec![[0.0, half, half]; FEW + 1];
         let lines = AreaLines::new(TARGETS, 0.0, To::Directions(&many));
         assert!(lines.may_meet(&place(150.0, 50.0), 60.0));
@@ -182,23 +183,23 @@ mod tests {
 
     #[test]
     fn only_what_stands_between_eye_and_targets_and_high_enough_may_block_the_view() {
-        // an eye 300 m east of the targets and 40 m above them
+        // An eye 300 m east of the targets and 40 m above them.
         let lines = AreaLines::new(TARGETS, 0.0, To::Eyes(vec![[400.0, 50.0, 40.0]]));
         for (area, top, expected) in [
             (place(110.0, 50.0), 3.0, true),
             (place(110.0, 50.0), -1.0, false),
-            // half-way lines are no lower than 20 m, but for those to the near edge that are lower
+            // Lines half-way are no lower than 20 m, except lower lines to the near edge.
             (place(250.0, 50.0), 22.0, true),
             (place(250.0, 50.0), 18.0, false),
             (place(410.0, 50.0), 500.0, false),
             (place(-20.0, 50.0), 500.0, false),
-            // beside the triangle between eye and targets
+            // Beside the triangle between eye and targets.
             (place(250.0, 90.0), 500.0, false),
             (place(110.0, 90.0), 500.0, true),
         ] {
             assert_eq!(lines.may_meet(&area, top), expected, "{area:?} {top}");
         }
-        // an eye below the targets, among them
+        // An eye below the targets, among them.
         let lines = AreaLines::new(TARGETS, 10.0, To::Eyes(vec![[50.0, 50.0, 2.0]]));
         assert!(lines.may_meet(&place(70.0, 70.0), 3.0));
         assert!(!lines.may_meet(&place(70.0, 70.0), 1.0));
@@ -216,7 +217,7 @@ mod tests {
         assert!(!towards([0.0, 9.0, 0.0], [half, 0.0, half]));
         assert!(towards([15.0, 0.0, 0.0], [0.0, 0.0, 1.0]));
         assert!(towards([0.0; 3], [1.0, 0.0, 0.0]) && !towards([0.0, 0.0, 31.0], [1.0, 0.0, 0.0]));
-        // to an eye before the area, beyond it, and down from above
+        // To an eye in front of the area, to one beyond it, and down from above.
         assert!(!passes([0.0; 3], [8.0, 0.0, 0.0], 1.0, &area, 30.0));
         assert!(passes([0.0; 3], [30.0, 0.0, 0.0], 1.0, &area, 30.0));
         assert!(passes([0.0, 0.0, 60.0], [40.0, 0.0, -70.0], 1.0, &area, 30.0));

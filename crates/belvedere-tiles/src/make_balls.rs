@@ -1,4 +1,4 @@
-//! The balls of a tile.
+//! Balls of a tile.
 
 use crate::cleared::{ClassedPoint, classed, clear_balls, left_crowns};
 use crate::grid::{MapArea, TOP_SIDE, TileId, square_at};
@@ -23,8 +23,8 @@ use std::path::Path;
 /// the same balls.
 ///
 /// # Errors
-/// Those of reading the files and of [`SceneModel::build`]; [`belvedere::Error::Malformed`] where points that the plan
-/// counted are not found.
+/// Those of reading the files and of [`SceneModel::build`]. [`belvedere::Error::Malformed`] for a count of points that
+/// differs from the plan.
 pub fn make_balls(plan: &Plan, run: &Path, tile: TileId, control: &Control<'_>) -> Result<TileRecord> {
     atomic::make_folder(&Stage::Balls.folder(plan, run))?;
     let cloud = control.stage("reading", 0, || window::read(plan, &plan.window(tile), control))?;
@@ -40,9 +40,9 @@ fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Cont
     let core = plan.grid().core(tile);
     let is_in = |p: &[f32; 3]| core.holds([p[0].into(), p[1].into()]);
     let all = classed(&cloud, 0..points);
-    // those of other tiles may be cleared within this one
+    // Objects of other tiles may be cleared within this tile.
     let mut parts = ModelParts { frame: plan.frame()?, ..ModelParts::default() };
-    // a pulse begins a hand's breadth from its return, which may lie beside the tile
+    // A pulse begins a hand's breadth from its return, which may lie beside the tile.
     let near = if plan.proves { core.widened(1.0) } else { core };
     if all.iter().any(|point| near.holds([point.0[0].into(), point.0[1].into()])) {
         parts = match SceneModel::build_owned(cloud, &plan.model(), control) {
@@ -63,13 +63,13 @@ fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Cont
     let patches = patches::of_tile(&parts.patches, &core, &plan.cleared);
     let own_pulses = |pulses: &FreeSegmentColumns| proof::of_tile(pulses, &core);
     let pulses = parts.pulses.as_ref().filter(|_| plan.proves).map(own_pulses);
-    // those of the margin are other tiles'
+    // Outlines in the margin belong to other tiles.
     let outlines = BuildingOutlines::default();
     let parts = ModelParts { balls, transmission, patches, outlines, medium, pulses, ..parts };
     written(plan, run, tile, parts, nothing, control)
 }
 
-/// Writes what blocks of a tile, and completes its `record`.
+/// Writes the obstacles of a tile, and completes its `record`.
 fn written(
     plan: &Plan,
     run: &Path,
@@ -108,7 +108,7 @@ fn written(
     Ok(TileRecord { outcome: TileOutcome::Done, result, balls: count, tops, ..record })
 }
 
-/// The highest top of balls over each square of 16 m that any reaches into.
+/// Returns the highest top of balls over each square of 16 m that any ball reaches into.
 pub(crate) fn tops(balls: &MedialBalls) -> Vec<([i32; 2], f32)> {
     let mut tops: BTreeMap<[i32; 2], f32> = BTreeMap::new();
     for (&[x, y, z], &radius) in balls.centers.iter().zip(&balls.radii) {
@@ -123,7 +123,7 @@ pub(crate) fn tops(balls: &MedialBalls) -> Vec<([i32; 2], f32)> {
     tops.into_iter().collect()
 }
 
-/// Tops over squares of 16 m, raised to those of the voxels of crowns, which take light half a voxel beyond.
+/// Returns the tops over squares of 16 m, raised to the voxels of crowns. Voxels take light up to half a voxel beyond.
 fn raised_to_crowns(tops: Vec<([i32; 2], f32)>, voxels: &ExtinctionVoxels, origin: [f64; 3]) -> Vec<([i32; 2], f32)> {
     let mut tops: BTreeMap<[i32; 2], f32> = tops.into_iter().collect();
     for &voxel in &voxels.voxels {
@@ -140,14 +140,14 @@ fn raised_to_crowns(tops: Vec<([i32; 2], f32)>, voxels: &ExtinctionVoxels, origi
     tops.into_iter().collect()
 }
 
-/// The square on the map over which a voxel of a crown takes light, and up to where, local metres.
+/// Returns the square on the map over which a voxel of a crown takes light, and the top of that space, local metres.
 pub(crate) fn crown_box(voxel: [i32; 3], origin: [f64; 3]) -> (MapArea, f64) {
     let [low, high] = ExtinctionVoxels::square_of(voxel, origin);
     let reach = VOXEL_SIDE;
     (MapArea { low, high }.widened(reach), ExtinctionVoxels::top_of(voxel, origin) + reach)
 }
 
-/// The square on the map that a ball covers.
+/// Returns the square on the map that a ball covers.
 pub(crate) fn square_of([x, y, _]: [f32; 3], radius: f32) -> MapArea {
     let (middle, radius) = ([x, y].map(f64::from), f64::from(radius));
     MapArea { low: middle.map(|v| v - radius), high: middle.map(|v| v + radius) }
@@ -163,7 +163,7 @@ mod tests {
     use belvedere::view::to_sun;
     use belvedere::{Frame, PatchKind, SurfacePatches};
 
-    /// Level ground of 150 m, and patches of a long building across it: over it no point stands.
+    /// Returns level ground of 150 m, and patches of a long building across it, over which no point lies.
     fn survey() -> (PointCloud, SurfacePatches) {
         let positions = (0..150 * 150).map(|i| [(i % 150) as f32 + 0.5, (i / 150) as f32 + 0.5, 2.0]).collect();
         let frame = Frame { origin: [154_624.0, 462_848.0, 0.0], ..Frame::default() };
@@ -180,14 +180,14 @@ mod tests {
         (PointCloud { frame, positions, ..PointCloud::default() }, patches)
     }
 
-    /// The answers of a run in tiles of a side whose model has the patches.
+    /// Returns the answers of a run in tiles of side `side` whose model has the patches.
     fn answers(folder: &Path, side: f64, patches: &SurfacePatches) -> [BTreeMap<[i64; 2], u32>; 2] {
         let control = Control::none();
         let [cloud, run_folder] = ["ground.laz", &format!("tiles_{side}")].map(|name| folder.join(name));
         let sun = TileQuestion::Shadow { name: "sun".to_owned(), to_sun: to_sun(2.5, 0.5), season: None };
         let params = PlanParams { clouds: vec![cloud], tile_size: side, ..PlanParams::default() };
         let plan = Plan::make(&params, &control).unwrap();
-        // relative to the origin of the plan, whatever that is
+        // Relative to the origin of the plan, which may have any value.
         let origin = plan.frame().unwrap().origin;
         let by: [f64; 3] = std::array::from_fn(|i| [154_624.0, 462_848.0, 0.0][i] - origin[i]);
         let eyes =
@@ -202,7 +202,7 @@ mod tests {
         run(&plan, &run_folder, &params(Steps::Balls), &control).unwrap();
         let mut kept = 0;
         for &tile in &plan.tiles {
-            // a tile without points has no balls
+            // A tile without points has no balls.
             let (path, frame) = (Stage::Balls.result(&plan, &run_folder, tile), plan.frame().unwrap());
             let nothing = ModelParts { frame, ..ModelParts::default() };
             let parts = if path.exists() { read_balls(&path).unwrap() } else { nothing };
@@ -222,7 +222,7 @@ mod tests {
         [of(&sun, "sun.tif"), of(&view, "view.tif")].map(|path| cells(&path))
     }
 
-    /// Values of cells of 1 m by their place.
+    /// Returns the values of cells of 1 m by their place.
     fn cells(path: &Path) -> BTreeMap<[i64; 2], u32> {
         let raster = read_tif(path).unwrap();
         let (corner, width) = (raster.place.unwrap().upper_left.map(|v| v.round() as i64), raster.values.width());

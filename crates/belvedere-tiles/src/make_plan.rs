@@ -1,4 +1,4 @@
-//! From the files of a survey to the plan of its tiles.
+//! Plan of tiles from the files of a survey.
 
 use crate::cell_sizes::{CellSizes, MIN_TILE};
 use crate::grid::{CELL, MapArea};
@@ -16,34 +16,34 @@ use belvedere::weather::CalendarDay;
 use belvedere::{Error, Parameter, Result};
 use std::path::{Path, PathBuf};
 
-/// Corners that the origin of local coordinates is one of, metres: of blocks of 64 m, and few, so that neighbouring
-/// surveys share it.
+/// Spacing of possible origins of local coordinates, metres. It is a multiple of 64 m blocks, and large so that
+/// neighbouring surveys share an origin.
 const ORIGIN_STEP: f64 = 1024.0;
-/// Farthest that a point may lie from the origin, metres: up to here f32 keeps a millimetre.
+/// Maximum distance of a point from the origin, metres. Up to this distance f32 resolves a millimetre.
 const FARTHEST: f64 = 16_384.0;
-/// Points that show the ground, at most.
+/// Maximum number of points that sample the ground.
 const MAX_SAMPLE: usize = 4000;
 
-/// How a plan is made.
+/// Parameters of a plan.
 #[derive(Clone, Debug)]
 pub struct PlanParams {
     /// Files, folders and catalogues of tiles.
     pub clouds: Vec<PathBuf>,
-    /// Reference system of files that name none, or the same.
+    /// Reference system of files that name none, or that name the same one.
     pub crs: Option<String>,
-    /// Whether it holds against the files and their coordinates. Default: contradictions are errors.
+    /// Treatment of a given reference system that contradicts the files or their coordinates. Default: contradictions
+    /// are errors.
     pub crs_against_files: Insistence,
-    /// Day of the flight of files whose GPS times are seconds of a week. Default: not known.
+    /// Day of the flight for files with GPS times in seconds of a week. Default: unknown.
     pub flown: Option<CalendarDay>,
-    /// Side of a tile, metres. Default 512: a multiple of the blocks of 64 m, so that no point is looked at for
-    /// nothing.
+    /// Side of a tile, metres. Default 512, a multiple of the blocks of 64 m, so that no point is read in vain.
     pub tile_size: f64,
     /// Sides of the cells of results. Default 1 m.
     pub cells: CellSizes,
-    /// Places that the survey must hold, in its coordinates: one outside is refused before points are read. Default
-    /// none.
+    /// Places that the survey must contain, in its coordinates. A place outside is refused before points are read.
+    /// Default none.
     pub places: Vec<[f64; 2]>,
-    /// Most memory that a tile may take, bytes: tiles are made smaller until the largest fits. `None` for any.
+    /// Maximum memory for a tile, bytes. Tiles are made smaller until the largest fits. `None` for no limit.
     pub memory: Option<u64>,
     /// Name and version of the program.
     pub program: String,
@@ -66,11 +66,11 @@ impl Default for PlanParams {
 }
 
 impl Plan {
-    /// Looks at all points once, and plans the tiles, without a question.
+    /// Reads all points once and plans the tiles, without a question.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for sizes out of range, places outside, a survey that is too wide for one frame, and
-    /// memory into which no tile fits; those of reading the files, and of [`SurveyStatistics::estimate`].
+    /// [`Error::InvalidParameter`] for sizes out of range, places outside, a survey too wide for one frame, and memory
+    /// too small for any tile. Also those of reading the files, and of [`SurveyStatistics::estimate`].
     pub fn make(params: &PlanParams, control: &Control<'_>) -> Result<Self> {
         params.cells.check_tile(params.tile_size)?;
         let (mut inputs, heads, mut remarks) = inputs(&params.clouds)?;
@@ -89,7 +89,7 @@ impl Plan {
         })?;
         for input in &mut inputs {
             input.pieces = found.pieces.get(&input.path).cloned().unwrap_or_default();
-            // rows at the end may all have been left out
+            // Rows at the end may all have been left out.
             input.pieces.resize(usize::try_from(input.points.div_ceil(PIECE_ROWS)).unwrap_or(0), NOWHERE);
         }
         let bounds = found.bounds.ok_or_else(|| Error::NoPoints { what: "all points are noise".to_owned() })?;
@@ -110,7 +110,7 @@ impl Plan {
             ground: found.ground_points(),
             proves: false,
             nearness: proof::nearness(&found.places),
-            // in steps, so that it does not look more exact than it is
+            // Rounded up, because more digits would suggest too much accuracy.
             buffer: statistics.buffer(&model).ceil(),
             questions: Vec::new(),
             meshes: Vec::new(),
@@ -137,11 +137,11 @@ impl Plan {
         }
     }
 
-    /// This with smaller tiles, until the largest fits into the memory, bytes, and is a whole number of cells: their
-    /// size changes no result.
+    /// Returns this plan with smaller tiles, so that the largest fits into `memory`, bytes. The side of a tile stays a
+    /// whole number of cells. The size of tiles changes no result.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for memory into which no tile fits.
+    /// [`Error::InvalidParameter`] for memory too small for any tile.
     pub fn fitting(mut self, memory: u64) -> Result<Self> {
         let (size, needed) = (self.tile_size, self.estimate().memory_bytes);
         while self.estimate().memory_bytes > memory || !self.cells.divide(self.tile_size) {
@@ -170,19 +170,19 @@ impl Plan {
     }
 }
 
-/// The next smaller side of a tile, metres: whole blocks, which read the fewest points, and halves of one.
+/// Returns the next smaller side of a tile, metres: whole blocks, which need the fewest points, or halves of one block.
 fn next_smaller(size: f64) -> f64 {
     let blocks = (size / CELL).ceil() - 1.0;
     if blocks >= 1.0 { blocks * CELL } else { size / 2.0 }
 }
 
-/// Some of many points, evenly.
+/// Returns at most `MAX_SAMPLE` of the points, evenly spaced by their number.
 fn sample(positions: &[[f32; 3]]) -> Vec<[f64; 3]> {
     let step = positions.len().div_ceil(MAX_SAMPLE).max(1);
     positions.iter().step_by(step).map(|p| p.map(f64::from)).collect()
 }
 
-/// The frame of a survey whose system is named in the file `named_in`, and the corners of its files, metres.
+/// Returns the frame of a survey and the corners of its files, metres. The file `named_in` names the reference system.
 fn frame_of(
     crs: &Crs,
     params: &PlanParams,
@@ -225,8 +225,8 @@ fn frame_of(
     Ok((frame, [low, high]))
 }
 
-/// The reference system of a survey: the one that is given, with the heights of the files where it names none, or that
-/// of the file that names one.
+/// Returns the reference system of a survey. The given one takes its heights from the files if it names none. Without a
+/// given one, it is the system of the file that names one.
 fn system_of(params: &PlanParams, inputs: &[InputFile], heads: &[LasHead], with_crs: usize) -> Result<Crs> {
     let of_files = &heads[with_crs].crs;
     let Some(text) = &params.crs else { return Ok(of_files.clone()) };
@@ -241,7 +241,7 @@ fn system_of(params: &PlanParams, inputs: &[InputFile], heads: &[LasHead], with_
     Ok(given.with_heights_of(of_files))
 }
 
-/// Files of a survey with their headers, and what to know of the catalogues that name them.
+/// Returns the files of a survey with their headers, and remarks on the catalogues that name them.
 fn inputs(clouds: &[PathBuf]) -> Result<(Vec<InputFile>, Vec<LasHead>, Vec<Remark>)> {
     let (sources, contradictions) = cloud_sources(clouds)?;
     let found: Vec<(InputFile, LasHead)> = sources.into_iter().map(InputFile::new).collect::<Result<_>>()?;

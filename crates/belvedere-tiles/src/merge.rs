@@ -1,4 +1,4 @@
-//! All tiles of a result as one: a catalogue that programs of GIS open, or one raster.
+//! All tiles of a result in one file: a catalogue for GIS programs, or one raster.
 
 use crate::grid::{MapArea, TileId};
 use crate::plan::Plan;
@@ -18,32 +18,32 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
 
-/// Most cells of a merged raster: a gigabyte of floats.
+/// Maximum number of cells of a merged raster: a gigabyte of floats.
 const MAX_CELLS: usize = 1 << 28;
 
-/// What is done with a run that is not finished.
+/// Treatment of an unfinished run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum UnfinishedRun {
-    /// It is refused.
+    /// Error.
     #[default]
     Refused,
-    /// What is there is merged.
+    /// Merge of the existing results.
     Merged,
 }
 
-/// What was merged.
+/// Counts of merged tiles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Merged {
-    /// Tiles that have a result.
+    /// Number of tiles with a result.
     pub tiles: usize,
-    /// Tiles of the plan on which nothing is.
+    /// Number of tiles of the plan without any value.
     pub empty: usize,
-    /// Tiles of the plan that failed, are not done yet, or have a damaged result.
+    /// Number of tiles of the plan that failed, are not done yet, or have a damaged result.
     pub missing: usize,
 }
 
 impl Merged {
-    /// What to know of it.
+    /// Returns a remark on missing tiles, if there are any.
     #[must_use]
     pub fn remarks(&self) -> Vec<Remark> {
         let Self { tiles, empty, missing } = *self;
@@ -58,7 +58,7 @@ impl Merged {
     }
 }
 
-/// Those of `tiles` with a result, and how many there are of each kind.
+/// Returns the tiles with a result, and the counts of all kinds of tiles.
 fn results(plan: &Plan, folder: &Path, question: &TileQuestion, tiles: &[TileId]) -> (Vec<TileId>, Merged) {
     let stage = Stage::Answer(question);
     let (mut with_result, mut counts) = (Vec::new(), Merged::default());
@@ -75,18 +75,18 @@ fn results(plan: &Plan, folder: &Path, question: &TileQuestion, tiles: &[TileId]
     (with_result, counts)
 }
 
-/// The area of all of `tiles`.
+/// Returns the smallest rectangle around all tiles.
 fn area_of(plan: &Plan, tiles: &[TileId]) -> Result<MapArea> {
     let cores = tiles.iter().map(|&tile| plan.grid().core(tile));
     let area = cores.reduce(|area, core| area.joined(&core));
     area.ok_or_else(|| Error::NoPoints { what: "the plan has no tile there".to_owned() })
 }
 
-/// The part of the area of `tiles` in which cells of a question may have a value: as far as points reach.
+/// Returns the part of the area of `tiles`, up to the reach of points, in which cells of a question may have a value.
 fn area_with_cells(plan: &Plan, question: &TileQuestion, tiles: &[TileId]) -> Result<MapArea> {
     let (whole, cell) = (area_of(plan, tiles)?, plan.cells.of(question));
     let (low, high) = plan.bounds().on_map();
-    // ground beside the points is no part of the survey
+    // Ground beside the points is no part of the survey.
     let near = MapArea { low, high }.widened(if plan.is_on_ground() { 0.0 } else { plan.reach(cell) });
     let edge =
         |axis: usize, v: f64, round: fn(f64) -> f64| whole.low[axis] + round((v - whole.low[axis]) / cell) * cell;
@@ -96,7 +96,7 @@ fn area_with_cells(plan: &Plan, question: &TileQuestion, tiles: &[TileId]) -> Re
     })
 }
 
-/// The cells of the result of a question over an area.
+/// Returns the cells of the result of a question over an area.
 fn cells_over(plan: &Plan, question: &TileQuestion, area: &MapArea) -> MapGrid {
     let cell = plan.cells.of(question);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
@@ -104,7 +104,7 @@ fn cells_over(plan: &Plan, question: &TileQuestion, area: &MapArea) -> MapGrid {
     MapGrid { corner: [area.low[0], area.high[1]], cell, width: count(0), height: count(1) }
 }
 
-/// Column and row of the first cell of a tile, which may lie beside the cells.
+/// Returns column and row of the first cell of a tile, which may lie beside the cells.
 fn place_of(plan: &Plan, cells: &MapGrid, tile: TileId) -> [i64; 2] {
     let core = plan.grid().core(tile);
     #[expect(clippy::cast_possible_truncation, reason = "a whole number of cells")]
@@ -112,7 +112,7 @@ fn place_of(plan: &Plan, cells: &MapGrid, tile: TileId) -> [i64; 2] {
     [number(core.low[0] - cells.corner[0]), number(cells.corner[1] - core.high[1])]
 }
 
-/// Cells along the side of a tile.
+/// Returns the number of cells along the side of a tile.
 fn side_of(plan: &Plan, cells: &MapGrid) -> usize {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
     let side = (plan.tile_size / cells.cell).round() as usize;
@@ -123,11 +123,8 @@ fn in_xml(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 
-/// Writes a catalogue (`.vrt`) of the results of a question that are there, which QGIS, GDAL and rasterio open as one
-/// raster that says what its values are.
-///
-/// # Errors
-/// [`Error::Io`].
+/// Writes a catalogue (`.vrt`) of the existing results of a question. QGIS, GDAL and rasterio open it as one raster
+/// with a description of its values.
 pub fn write_catalogue(plan: &Plan, folder: &Path, question: &TileQuestion) -> Result<Merged> {
     let planned = plan.tiles_of(question);
     let (tiles, counts) = results(plan, folder, question, &planned);
@@ -142,7 +139,7 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &TileQuestion) -> R
     let [x, y] = place.upper_left;
     let step = place.column_step[0];
     let _ = writeln!(text, "  <GeoTransform>{x}, {step}, 0, {y}, 0, {}</GeoTransform>", -step);
-    // as GDAL calls the description of a TIFF, so that one that is made from the catalogue has it too
+    // GDAL's name for the description of a TIFF, so that a TIFF made from the catalogue has the description too.
     let what = in_xml(question.description());
     let _ = writeln!(text, "  <Metadata>\n    <MDI key=\"TIFFTAG_IMAGEDESCRIPTION\">{what}</MDI>\n  </Metadata>");
     for (band, name) in (1..).zip(question.band_names(plan.kind_of(question))) {
@@ -168,12 +165,12 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &TileQuestion) -> R
     Ok(counts)
 }
 
-/// Writes the results of a question as one cloud-optimised GeoTIFF, which says what its values are. It reaches as far
-/// as points do.
+/// Writes the results of a question as one cloud-optimised GeoTIFF with a description of its values. The raster extends
+/// as far as points do.
 ///
 /// # Errors
-/// [`Error::Malformed`] for a run without a result, and for one that is not finished unless it is to be merged
-/// nevertheless; [`Error::InvalidParameter`] for more cells than fit into memory; those of reading and writing rasters.
+/// [`Error::Malformed`] for a run without a result, and for an unfinished run unless `unfinished` allows it.
+/// [`Error::InvalidParameter`] for more cells than fit into memory. Also those of reading and writing rasters.
 pub fn merge(
     plan: &Plan,
     folder: &Path,
@@ -205,26 +202,26 @@ pub fn merge(
 }
 
 impl Plan {
-    /// The cells of the results of a question that may have a value: as far as points reach.
+    /// Returns the cells of a result of a question that may have a value, up to the reach of points.
     ///
     /// # Errors
-    /// [`Error::NoPoints`] where the plan has no tile.
+    /// [`Error::NoPoints`] for a plan without a tile.
     pub fn cells_of(&self, question: &TileQuestion) -> Result<MapGrid> {
         Ok(cells_over(self, question, &area_with_cells(self, question, &self.tiles_of(question))?))
     }
 
-    /// The results of a question that are there, on [`Plan::cells_of`].
+    /// Returns the existing results of a question, on [`Plan::cells_of`].
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for more cells than fit into memory; those of reading rasters.
+    /// [`Error::InvalidParameter`] for more cells than fit into memory. Also those of reading rasters.
     pub fn results_of(&self, folder: &Path, question: &TileQuestion, control: &Control<'_>) -> Result<Pixels> {
         let cells = self.cells_of(question)?;
         let (tiles, _) = results(self, folder, question, &self.tiles_of(question));
         Ok(gather(self, folder, question, (&tiles, &cells), control)?.0)
     }
 
-    /// Height of the highest point in each cell of a grid, for maps; in cells without any the mean of the filled
-    /// neighbours, NaN where there is none. Points are read once, and none is kept.
+    /// Returns the height of the highest point in each cell of a grid, for maps. A cell without points has the mean of
+    /// its filled neighbours, or NaN without any. Points are read once and not kept.
     ///
     /// # Errors
     /// Those of reading the files.
@@ -240,12 +237,12 @@ impl Plan {
     }
 }
 
-/// The results of a question that are there, of the tiles that touch the box from `low` to `high` on the map, metres of
-/// the reference system.
+/// Returns the existing results of a question for tiles that touch a box. The box extends from `low` to `high` on the
+/// map, in metres of the reference system.
 ///
 /// # Errors
-/// [`Error::NoPoints`] where the plan has no tile there, [`Error::InvalidParameter`] for more cells than fit into
-/// memory; those of reading rasters.
+/// [`Error::NoPoints`] for a box without tiles of the plan, [`Error::InvalidParameter`] for more cells than fit into
+/// memory. Also those of reading rasters.
 pub fn merged_within(
     plan: &Plan,
     folder: &Path,
@@ -271,7 +268,7 @@ pub fn merged_within(
     Ok(PlacedRaster { values, name, place: Some(place), description, further_bands })
 }
 
-/// The results of tiles in one raster of cells.
+/// Joins the results of tiles into one raster of cells.
 fn gather(
     plan: &Plan,
     folder: &Path,

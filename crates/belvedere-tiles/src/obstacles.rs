@@ -1,4 +1,4 @@
-//! What can block lines of sight from a tile: the balls of all tiles that are high and near enough.
+//! Obstacles for lines of sight from a tile: the balls of all tiles that are high and near enough.
 
 use crate::grid::{CELL, MapArea, TOP_SIDE, TileId, block_area, square_area};
 use crate::lines::{AreaLines, MAX_BALL, passes, tiles};
@@ -15,35 +15,35 @@ use belvedere::pulses::FreeSegmentColumns;
 use belvedere::{Error, Result};
 use std::path::Path;
 
-/// The balls of a tile as its record tells of them.
+/// Balls of a tile according to its record.
 pub(crate) struct BallTile {
     pub(crate) tile: TileId,
     pub(crate) ball_count: usize,
-    /// Squares of 16 m that balls reach into, and the highest top of them there, local metres.
+    /// Squares of 16 m that balls reach into, with the highest top of balls over each, local metres.
     pub(crate) tops: Vec<([i32; 2], f32)>,
 }
 
-/// What became of the balls that may matter for an answer.
+/// Report on the balls that may change an answer.
 #[derive(Debug, Default)]
 pub(crate) struct ObstacleSearch {
     /// Number of balls that were tested.
     pub(crate) ball_count: usize,
-    /// Most of them that were in memory at a time, where they were tested in parts.
+    /// Maximum number of balls in memory at a time, for tests in parts.
     pub(crate) max_held: usize,
-    /// Where balls are missing: what may stand there, and how high.
+    /// Areas with missing balls, and the maximum height of obstacles there, local metres.
     pub(crate) missing: Vec<(MapArea, f64)>,
-    /// Balls that were found damaged, and were made again.
+    /// Damaged balls that were made again.
     pub(crate) damaged: Vec<String>,
 }
 
 impl ObstacleSearch {
-    /// Whether a line of sight from a target, local metres, may meet what is missing: along `way`, to an end after
-    /// `length` times that or without end.
+    /// Returns true if a line of sight from a target, local metres, may meet missing balls. The line ends after
+    /// `length` times the vector `way`, or never.
     pub(crate) fn is_unknown(&self, target: [f64; 3], way: [f64; 3], length: f64) -> bool {
         self.missing.iter().any(|(area, top)| passes(target, way, length, area, *top))
     }
 
-    /// Reads the balls of a tile, as far as they are there. Damaged ones are made again.
+    /// Reads the balls of a tile, if they exist. Damaged balls are made again.
     ///
     /// # Errors
     /// Those of writing records, and [`Error::Cancelled`].
@@ -66,8 +66,7 @@ impl ObstacleSearch {
         Ok(balls)
     }
 
-    /// Reads the pulses that end in a tile; `None` where none are known. Those that are not there yet, or damaged, are
-    /// made.
+    /// Reads the pulses that end in a tile; `None` for a tile without known pulses. Missing or damaged pulses are made.
     ///
     /// # Errors
     /// Those of writing records, and [`Error::Cancelled`].
@@ -95,7 +94,7 @@ impl ObstacleSearch {
 }
 
 impl ObstacleSearch {
-    /// Adds the crowns of a tile that may take light from `lines` to `voxels`. Those that are damaged are made again.
+    /// Adds the crowns of a tile that may take light from `lines` to `voxels`. Damaged crowns are made again.
     ///
     /// # Errors
     /// Those of writing records, and [`Error::Cancelled`].
@@ -118,7 +117,7 @@ impl ObstacleSearch {
                 self.damaged.push(error.to_string());
                 made_again((plan, run, tile), read, control)?.flatten()
             }
-            // what may stand there is noted with its balls
+            // Missing balls of the tile are reported with its balls.
             None => None,
         };
         let Some(found) = found else { return Ok(()) };
@@ -132,7 +131,7 @@ impl ObstacleSearch {
     }
 }
 
-/// The tiles with balls that may matter for `lines`; those that are missing are noted in `found`.
+/// Returns the tiles with balls that may block `lines`. Missing tiles are added to `found`.
 ///
 /// # Errors
 /// [`Error::Cancelled`].
@@ -160,12 +159,12 @@ pub(crate) fn ball_tiles(
     Ok(ball_tiles)
 }
 
-/// How balls of tiles block.
+/// Returns the rule by which balls of tiles block.
 pub(crate) fn rule(plan: &Plan) -> BlockRule {
     if plan.statistics.carves { BlockRule::carved() } else { BlockRule::uncarved() }
 }
 
-/// The balls of a tile. Those that are not what was written are named and made again; `None` where that fails.
+/// Returns the balls of a tile. Damaged balls are named and made again; `None` if that fails.
 fn sound(
     plan: &Plan,
     run: &Path,
@@ -184,7 +183,8 @@ fn sound(
     made_again((plan, run, tile), |record| read(&record), control)
 }
 
-/// What `read` finds of the balls of a tile that are made now; `None`, and a record that says why, where that fails.
+/// Makes the balls of a tile and returns the result of `read`. On failure it returns `None` and writes a record with
+/// the reason.
 fn made_again<T>(
     (plan, run, tile): (&Plan, &Path, TileId),
     read: impl FnOnce(TileRecord) -> Result<T>,
@@ -201,7 +201,7 @@ fn made_again<T>(
     }
 }
 
-/// The rows of balls that may block one of `lines`.
+/// Returns the rows of balls that may block one of `lines`.
 pub(crate) fn may_block<'a>(balls: &'a MedialBalls, lines: &'a AreaLines<'_>) -> impl Iterator<Item = usize> + 'a {
     let rows = balls.centers.iter().zip(&balls.radii).enumerate();
     rows.filter(|(_, (center, radius))| {
@@ -217,7 +217,7 @@ pub(crate) fn push(balls: &mut MedialBalls, more: &MedialBalls, row: usize) {
     }
 }
 
-/// What may stand on a tile of which nothing is known but how high its points are.
+/// Returns the possible obstacles on a tile without balls, from the heights of its points.
 fn unknown(plan: &Plan, tile: TileId) -> Vec<(MapArea, f64)> {
     let core = plan.grid().core(tile);
     let part = |block: &crate::survey::SurveyBlock| {

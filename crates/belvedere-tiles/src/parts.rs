@@ -1,10 +1,10 @@
 //! Obstacles of a tile part by part: memory does not grow with the area that its lines of sight cross.
 //!
-//! The lowest of many directions of the sky meets balls all over a city. But a line of sight is free where no ball
-//! blocks it, so that balls may be tested one part after the other, and the answer does not depend on how they are cut
-//! into parts. Parts are squares of tiles, nearest first: most lines end at the nearest. Of a distant part only those
-//! balls are tested that are high enough to block a line that is still free. Lines of sight to observers are tested in
-//! parts as well.
+//! The lowest of many directions of the sky meets balls all over a city. But a line of sight is free only if no ball
+//! blocks it. Balls may therefore be tested one part after the other, and the division into parts does not change the
+//! answer. Parts are squares of tiles, the nearest first, because most lines end at the nearest. In a distant part only
+//! balls high enough to block a line that is still free are tested. Lines of sight to observers are tested in parts as
+//! well.
 
 use crate::grid::{MapArea, TOP_SIDE, TileId, square_area};
 use crate::lines::{AreaLines, MAX_BALL};
@@ -27,34 +27,34 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-/// Distances from the cells up to which the balls of a tile are tested before the others, metres: after the first, few
-/// lines of sight are left.
+/// Distances from the cells that divide the balls of a tile into groups, tested from near to far, metres. After the
+/// first group few lines of sight are left.
 const BANDS: [f64; 4] = [64.0, 192.0, 448.0, f64::INFINITY];
-/// Targets handed to a thread at once.
+/// Number of targets that a thread takes at once.
 const CHUNK: usize = 256;
-/// Number of balls from which those found so far are tested before more are looked up.
+/// Number of collected balls that starts a test before more balls are looked up.
 const MIN_TEST_BATCH: usize = 100_000;
 
-/// The balls that may matter for the cells of a tile, of which a part is in memory at a time.
+/// Balls that may block lines from the cells of a tile; only one part is in memory at a time.
 pub(crate) struct TileObstacles<'a> {
     plan: &'a Plan,
     run: &'a Path,
-    /// Where the cells lie.
+    /// Area of the cells.
     cells: MapArea,
-    /// What blocks beside balls.
+    /// Obstacles other than balls.
     others: &'a Others,
-    /// Most balls of a part.
+    /// Maximum number of balls in a part.
     max_balls: usize,
-    /// Squares of tiles, nearest first.
+    /// Squares of tiles, the nearest first.
     squares: Vec<Vec<BallTile>>,
-    /// Crowns, where they were measured and let light through.
+    /// Crowns as a medium, if they were measured and let light through.
     medium: Option<Medium>,
     found: Mutex<ObstacleSearch>,
 }
 
 impl<'a> TileObstacles<'a> {
-    /// Parts of at most `max_balls` of the balls that may matter for `lines` from the cells of `tile`, and the `others`
-    /// that block.
+    /// Finds the balls that may block `lines` from the cells of `tile`, in parts of at most `max_balls`. `others` block
+    /// too.
     ///
     /// # Errors
     /// [`belvedere::Error::Cancelled`].
@@ -84,8 +84,9 @@ impl<'a> TileObstacles<'a> {
         Ok(Self { plan, run, cells: lines.targets, others, max_balls, squares, medium, found: Mutex::new(found) })
     }
 
-    /// Gives `look` scenes of at most so many balls that may block one of `lines`, until all were given, and with each
-    /// the same without vegetation where crowns were measured. A line of sight is free where it is free in all.
+    /// Passes to `look` scenes of at most `max_balls` balls that may block one of `lines`, until all were passed. For
+    /// measured crowns each scene comes with a second one without vegetation. A line of sight is free if it is free in
+    /// all scenes.
     ///
     /// # Errors
     /// Those of `look`, of writing records, and [`belvedere::Error::Cancelled`].
@@ -119,12 +120,12 @@ impl<'a> TileObstacles<'a> {
         look(&scene, solid.as_ref())
     }
 
-    /// What became of the balls.
+    /// Returns the report on the balls.
     pub(crate) fn into_found(self) -> ObstacleSearch {
         self.found.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes from `free` what a square of tiles hides, part by part.
+    /// Removes the lines of `free` that a square of tiles blocks, part by part.
     fn hide(
         &self,
         free: &mut Free<'_>,
@@ -146,7 +147,7 @@ impl<'a> TileObstacles<'a> {
             let distances: Vec<f64> = balls.centers.par_iter().map(distance).collect();
             let mut from = f64::NEG_INFINITY;
             for to in BANDS {
-                // as far as the far corner of a square that a ball reaches into
+                // The distance to the far corner of a square that a ball reaches into.
                 let reach = 1.5 * TOP_SIDE + MAX_BALL;
                 let may_reach = |&&(number, _): &&([i32; 2], f32)| {
                     let distance = self.cells.distance(&square_area(number, TOP_SIDE));
@@ -246,17 +247,17 @@ impl ObstacleParts for TileObstacles<'_> {
     }
 }
 
-/// Balls and patches that become a scene together.
+/// Balls and patches of one scene.
 #[derive(Default)]
 struct SceneBatch {
     all: MedialBalls,
-    /// Those that are no vegetation, where crowns were measured.
+    /// Balls other than vegetation, for measured crowns.
     solid: Option<MedialBalls>,
     patches: SurfacePatches,
 }
 
 impl SceneBatch {
-    /// The scenes of all balls and of those that are solid; none are left.
+    /// Returns the scenes of all balls and of solid balls, and empties the batch.
     fn taken(
         &mut self,
         rule: &BlockRule,
@@ -276,14 +277,14 @@ impl SceneBatch {
     }
 }
 
-/// Lines of sight that nothing has blocked so far.
+/// Lines of sight without an obstacle so far.
 struct Free<'a> {
-    /// By all but vegetation, or by all where trees are opaque.
+    /// Lines free of all obstacles except vegetation; with opaque trees, of all obstacles.
     without_trees: FreeLines<'a>,
-    /// By all, where trees let light through.
+    /// Lines free of all obstacles, for trees that let light through.
     all: Option<FreeLines<'a>>,
     target_count: usize,
-    /// Where lines run that balls may still block. Crowns block no others.
+    /// Strips of the lines that balls may still block. Crowns block no other lines.
     strips: Strips,
 }
 
@@ -291,11 +292,11 @@ struct Free<'a> {
 #[derive(Default)]
 struct BallBatch {
     opaque: MedialBalls,
-    /// Where trees let light through.
+    /// Vegetation, for trees that let light through.
     vegetation: MedialBalls,
-    /// Tested with the first of the balls.
+    /// Patches, tested with the first of the balls.
     patches: SurfacePatches,
-    /// Those of the directions in which any of them may block.
+    /// Indices of the directions in which any of the balls may block a line.
     columns: BTreeSet<usize>,
 }
 
@@ -304,7 +305,7 @@ impl BallBatch {
         self.opaque.len() + self.vegetation.len()
     }
 
-    /// Takes what the balls hide from `free`, and lets them go.
+    /// Removes from `free` the lines that the balls block, and empties the batch.
     fn hide(
         &mut self,
         free: &mut Free<'_>,
@@ -342,10 +343,11 @@ impl BallBatch {
     }
 }
 
-/// Tiles in squares, the nearest first, all as large as the largest around `tile` with no more than `max_balls`.
+/// Divides tiles into squares, the nearest first. All squares have the size of the largest one around `tile` with at
+/// most `max_balls`.
 fn squares(tile: TileId, ball_tiles: Vec<BallTile>, max_balls: usize) -> Vec<Vec<BallTile>> {
     let away = |other: &BallTile| [other.tile.east - tile.east, other.tile.north - tile.north];
-    // the number of a square, where one of `side` tiles has the tile in its middle
+    // The number of a square, if a square of `side` tiles has the tile in its middle.
     let number = |other: &BallTile, side: i64| away(other).map(|away| (away + (side - 1) / 2).div_euclid(side));
     let is_in_first = |other: &&BallTile, side: i64| number(other, side) == [0, 0];
     let balls_around =

@@ -1,5 +1,5 @@
-//! Surface patches of tiles. A tile keeps all triangles that reach into it: some are kept by several tiles, which
-//! changes no answer, and wherever a line of sight meets one, the tile there has it.
+//! Surface patches of tiles. A tile keeps all triangles that reach into it. Some are kept by several tiles, which
+//! changes no answer. At each place where a line of sight meets a triangle, the tile there has the triangle.
 
 use crate::grid::{MapArea, TOP_SIDE, square_at};
 use crate::lines::{AreaLines, ROOM};
@@ -8,8 +8,8 @@ use belvedere::model::ClearedArea;
 use belvedere::patches::PatchTriangle;
 use std::collections::BTreeMap;
 
-/// The patches that reach into the `core` of a tile, without what is cleared. Each lies in one block; those of blocks
-/// that the tile has only a part of are left to the tiles that have them.
+/// Returns the patches that reach into the `core` of a tile, without cleared patches. Each patch lies in one block.
+/// Patches of blocks with their middle outside the tile are left to other tiles.
 pub(crate) fn of_tile(patches: &SurfacePatches, core: &MapArea, cleared: &[ClearedArea]) -> SurfacePatches {
     let blocks = core.in_blocks();
     let middle = |area: &MapArea| [0, 1].map(|axis| f64::midpoint(area.low[axis], area.high[axis]));
@@ -24,7 +24,7 @@ pub(crate) fn of_tile(patches: &SurfacePatches, core: &MapArea, cleared: &[Clear
     own
 }
 
-/// Adds those of `patches` to `all` that may block one of `lines`.
+/// Adds to `all` those of `patches` that may block one of `lines`.
 pub(crate) fn add_blocking(all: &mut SurfacePatches, patches: &SurfacePatches, lines: &AreaLines<'_>) {
     chosen(patches, |area, top| lines.may_meet(area, top)).iter().for_each(|(corners, kind)| all.push(*corners, kind));
 }
@@ -47,7 +47,7 @@ pub(crate) fn raise(tops: Vec<([i32; 2], f32)>, patches: &SurfacePatches) -> Vec
     tops.into_iter().collect()
 }
 
-/// The patches that `is_chosen` chooses by their area on the map and their top.
+/// Returns the patches that `is_chosen` selects by their area on the map and their top.
 fn chosen(patches: &SurfacePatches, is_chosen: impl Fn(&MapArea, f64) -> bool) -> SurfacePatches {
     let mut chosen = SurfacePatches::default();
     for (triangle, kind) in patches.iter() {
@@ -59,7 +59,7 @@ fn chosen(patches: &SurfacePatches, is_chosen: impl Fn(&MapArea, f64) -> bool) -
     chosen
 }
 
-/// The rectangle around a triangle on the map, with room for one that stands upright, and its top, local metres.
+/// Returns the rectangle around a triangle on the map, with a margin for an upright one, and its top, local metres.
 fn area_and_top(triangle: &PatchTriangle) -> (MapArea, f64) {
     let corners = triangle.map(|corner| corner.map(f64::from));
     let around = corners.map(MapArea::at).iter().fold(MapArea::at(corners[0]), |all, own| all.joined(own));
@@ -71,7 +71,7 @@ mod tests {
     use super::*;
     use belvedere::PatchKind;
 
-    /// A wall of 40 m, a roof that reaches into two tiles, and a small one.
+    /// Returns a wall of 40 m, a roof that reaches into two tiles, and a small roof.
     fn patches() -> SurfacePatches {
         let mut patches = SurfacePatches::default();
         patches.push([[64.0, 10.0, 0.0], [64.0, 50.0, 0.0], [64.0, 50.0, 12.0]], PatchKind::Wall);
@@ -87,7 +87,7 @@ mod tests {
         assert_eq!(of_tile(&patches(), &west, &[]), patches());
         assert_eq!(of_tile(&patches(), &east, &[]).len(), 1);
         assert!(of_tile(&patches(), &tile(192.0, 256.0), &[]).is_empty());
-        // the middle of the roof lies in a block of which this tile has a part only
+        // The middle of the roof lies in a block of which this tile has only a part.
         assert!(of_tile(&patches(), &tile(40.0, 60.0), &[]).is_empty());
         let square = ClearedArea::Polygon(vec![vec![[0.0, 0.0], [12.0, 0.0], [12.0, 12.0], [0.0, 12.0]]]);
         assert_eq!(of_tile(&patches(), &west, &[square, ClearedArea::Class(5)]).len(), 2);

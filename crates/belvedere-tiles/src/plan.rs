@@ -1,4 +1,4 @@
-//! The plan of a run: everything that a tile must know beside its own points.
+//! Plan of a run: all data that a tile needs beside its own points.
 
 use crate::cell_sizes::CellSizes;
 use crate::grid::{MapArea, TileGrid, TileId, block_area};
@@ -32,22 +32,22 @@ use std::sync::Arc;
 
 /// Version of the layout of plans and records.
 pub(crate) const LAYOUT: u32 = 13;
-/// Points around a place that its ground is taken from, metres, beside the usual ones.
+/// Margin around the grid of a place within which points are read for its ground, metres.
 const GROUND_AROUND: f64 = 32.0;
-/// A plan: input files, tiles and what is known of the whole survey. It is the same for the same files and parameters.
+/// Plan: input files, tiles and statistics of the whole survey. The same files and parameters give the same plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     pub(crate) layout: u32,
-    /// Name and version of the program that made it.
+    /// Name and version of the program that made the plan.
     pub program: String,
     /// Files of the survey.
     pub inputs: Vec<InputFile>,
-    /// Reference system that was given.
+    /// Reference system given by the user.
     pub(crate) crs: Option<String>,
-    /// Whether it holds against the files.
+    /// True if the given reference system holds against that of the files.
     #[serde(default, skip_serializing_if = "is_false")]
     pub(crate) crs_override: bool,
-    /// Day of the flight that was given.
+    /// Day of the flight given by the user.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) flown: Option<String>,
     pub(crate) frame: PlanFrame,
@@ -56,75 +56,76 @@ pub struct Plan {
     pub tile_size: f64,
     /// Sides of the cells of results.
     pub cells: CellSizes,
-    /// What cells stand on, and how high targets are above it.
+    /// Level of cells, on the ground or on the surface, and height of targets above it.
     #[serde(default = "on_surface")]
     pub(crate) targets: CellParams,
-    /// Which points are ground: those of class 2, or those that are found.
+    /// Kind of ground points: points of class 2, or detected points.
     pub(crate) ground: GroundPoints,
-    /// Whether the pulses are kept that prove lines of sight free.
+    /// True if the pulses that prove lines of sight free are kept.
     #[serde(default, skip_serializing_if = "is_false")]
     pub(crate) proves: bool,
-    /// How near a pulse must pass for a place to count as seen, metres.
+    /// Proof distance: maximum distance between a pulse and a place that it proves empty, metres.
     pub(crate) nearness: f64,
-    /// How far around a tile points are read, metres.
+    /// Width of the margin around a tile within which points are read, metres.
     #[serde(rename = "halo")]
     pub buffer: f64,
-    /// The questions that are answered.
+    /// Questions that the run answers.
     pub questions: Vec<TileQuestion>,
-    /// Meshes of what is planned, which block beside what was surveyed.
+    /// Meshes of planned objects, which block beside the surveyed objects.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) meshes: Vec<SideFile>,
-    /// Areas without what stands there now.
+    /// Areas cleared of their present objects.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) cleared: Vec<ClearedArea>,
-    /// Heights of the ground beyond the survey.
+    /// Elevation raster of the ground beyond the survey.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) terrain: Option<SideFile>,
-    /// Horizon beyond the survey, for all places alike.
+    /// Horizon beyond the survey, the same for all places.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) horizon: Option<SideFile>,
-    /// Trees, where they let light through.
+    /// Treatment of light in crowns; `None` for opaque trees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) trees: Option<CrownLight>,
-    /// Tiles that may hold points, from the south-west.
+    /// Tiles that may contain points, from the south-west.
     pub tiles: Vec<TileId>,
     pub(crate) low: [f32; 3],
     pub(crate) high: [f32; 3],
     #[serde(rename = "facts")]
     pub(crate) statistics: SurveyStatistics,
     pub(crate) blocks: Vec<SurveyBlock>,
-    /// What records name the plan by that they belong to: a fingerprint of its file; empty before it was read from one.
+    /// Fingerprint of the file of the plan, by which records name their plan. Empty until the plan is read from a file.
     #[serde(skip)]
     pub(crate) name: String,
-    /// What records name what balls follow from: a fingerprint of the plan without questions; empty as `name`.
+    /// Fingerprint of the plan without questions, by which records of balls name their plan. Empty as long as `name`
+    /// is.
     #[serde(skip)]
     pub(crate) survey_name: String,
-    /// The folder of balls that several plans of a survey share; `None` for that of the run.
+    /// Folder of balls that several plans of a survey share; `None` for the folder of the run.
     #[serde(skip)]
     pub(crate) shared_balls: Option<PathBuf>,
     /// Points of places all over the survey, local metres.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) sample: Vec<[f64; 3]>,
-    /// What to know of the files and the questions, while the plan is made.
+    /// Remarks on the files and the questions from making the plan.
     #[serde(skip)]
     pub remarks: Vec<Remark>,
 }
 
-/// Where local coordinates lie.
+/// Frame of the local coordinates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlanFrame {
     /// Origin, metres.
     pub origin: [f64; 3],
     /// Metres per unit of the files along each axis.
     pub metres_per_unit: [f64; 3],
-    /// Reference system as text; empty where it is not known.
+    /// Reference system as text; empty if unknown.
     pub system: String,
-    /// What in the files speaks against it.
+    /// Content of the files that contradicts the reference system; `None` without a contradiction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub doubt: Option<String>,
 }
 
-/// What plans of all versions say.
+/// Members that plans of all versions have.
 #[derive(Deserialize)]
 struct Version {
     layout: u32,
@@ -132,12 +133,12 @@ struct Version {
 }
 
 impl Plan {
-    /// Whether the reference system that was given holds against the files.
+    /// Returns whether the given reference system is refused or holds if the files contradict it.
     pub(crate) fn insistence(&self) -> Insistence {
         if self.crs_override { Insistence::Insist } else { Insistence::Refuse }
     }
 
-    /// Day of the flight that was given.
+    /// Returns the day of the flight given by the user.
     pub(crate) fn flown(&self) -> Option<CalendarDay> {
         self.flown.as_deref().and_then(CalendarDay::parse)
     }
@@ -145,8 +146,8 @@ impl Plan {
     /// Reads the plan of a run.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Malformed`] for a folder without a plan, for what is no plan, and for one of another
-    /// version.
+    /// [`Error::Io`], and [`Error::Malformed`] for a folder without a plan, for a file that is no plan, and for a plan
+    /// of another version.
     pub fn read(folder: &Path) -> Result<Self> {
         let path = Self::path(folder);
         let refused = |what: String| Err(Error::malformed(&path, format!("{what} again with `belvedere city plan`")));
@@ -182,7 +183,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// A fingerprint of all that balls follow from.
+    /// Returns a fingerprint of all data from which balls are made.
     pub(crate) fn survey_fingerprint(&self, path: &Path) -> Result<String> {
         let bare = Self {
             cells: CellSizes::default(),
@@ -200,12 +201,12 @@ impl Plan {
         Ok(hash(text.as_bytes()))
     }
 
-    /// Whether pulses are known that prove lines of sight free.
+    /// True if the survey has measured pulses that prove lines of sight free.
     pub(crate) fn can_prove(&self) -> bool {
         self.statistics.carves && !self.statistics.are_pulses_assumed() && self.cleared.is_empty()
     }
 
-    /// What records of a stage name that they belong to.
+    /// Returns the name of the plan in records of a stage.
     pub(crate) fn name_for(&self, stage: Stage<'_>) -> &str {
         match stage {
             Stage::Balls => &self.survey_name,
@@ -213,8 +214,8 @@ impl Plan {
         }
     }
 
-    /// This with other cells for all results: their side, what they stand on, which points are ground, and how high
-    /// targets are. [`GroundPoints::Auto`] keeps those that the plan took.
+    /// Returns this plan with other cells for all results. `cells` gives their side, their level, the kind of ground
+    /// points and the height of targets. [`GroundPoints::Auto`] keeps the kind of ground points of the plan.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a side or a height out of range.
@@ -231,18 +232,18 @@ impl Plan {
         Ok(self)
     }
 
-    /// Where the survey lies as far as suns are concerned.
+    /// Returns the location of the survey for questions about suns.
     #[must_use]
     pub fn whereabouts<'a>(&self, frame: &'a Frame) -> Whereabouts<'a> {
         let has_far_terrain = self.terrain.is_some() || self.horizon.is_some();
         Whereabouts { frame, bounds: self.bounds(), has_far_terrain }
     }
 
-    /// Writes the plan into the folder of a run, which is made. Any program may carry it out.
+    /// Writes the plan into the folder of a run, and makes the folder. Any program may carry out the plan.
     ///
     /// # Errors
-    /// [`Error::Io`], [`Error::Malformed`] for a folder with results of another plan and for files whose address had
-    /// a user, a password or a key, which are never written.
+    /// [`Error::Io`], [`Error::Malformed`] for a folder with results of another plan. Also [`Error::Malformed`] for
+    /// files whose address had a user, a password or a key, because these are never written.
     pub fn write(&self, folder: &Path) -> Result<()> {
         let beside = self.meshes.iter().chain(&self.terrain).chain(&self.horizon).map(SideFile::path);
         let is_cut = |path: &&Path| path.to_str().and_then(Address::parse).is_some_and(|it| it.cut_number().is_some());
@@ -254,14 +255,14 @@ impl Plan {
         self.write_here(folder)
     }
 
-    /// The same for a plan that only this process carries out, which knows the whole addresses.
+    /// Writes a plan that only this process carries out, because only this process knows the complete addresses.
     pub(crate) fn write_here(&self, folder: &Path) -> Result<()> {
         atomic::make_folder(folder)?;
         let path = Self::path(folder);
         let text = sealed(self).map_err(|e| Error::malformed(&path, format!("cannot be written: {e}")))?;
         let has_results =
             || folder.read_dir().is_ok_and(|mut entries| entries.any(|entry| entry.is_ok_and(|e| e.path().is_dir())));
-        // a damaged plan may be that of the results
+        // A damaged plan may be the plan of the results.
         let is_other =
             |before: Vec<u8>| before != text.as_bytes() && serde_json::from_slice::<Version>(&before).is_ok();
         if bytes_of_file(&path).is_ok_and(is_other) && has_results() {
@@ -271,13 +272,13 @@ impl Plan {
         atomic::write(&path, |file| file.write_all(text.as_bytes()).map_err(Error::io(&path)))
     }
 
-    /// Where the plan of a run lies.
+    /// Returns the path of the plan of a run.
     #[must_use]
     pub fn path(folder: &Path) -> PathBuf {
         folder.join("plan.json")
     }
 
-    /// The frame of all tiles.
+    /// Returns the frame of all tiles.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a reference system that this program does not know.
@@ -285,26 +286,26 @@ impl Plan {
         self.frame.to_frame()
     }
 
-    /// The smallest box around the survey, local metres.
+    /// Returns the smallest box around the survey, local metres.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         Bounds { low: self.low, high: self.high }
     }
 
-    /// The grid of tiles.
+    /// Returns the grid of tiles.
     #[must_use]
     pub fn grid(&self) -> TileGrid {
         TileGrid { size: self.tile_size, origin: [self.frame.origin[0], self.frame.origin[1]] }
     }
 
-    /// How balls of tiles are made.
+    /// Returns the parameters of the model that makes the balls of tiles.
     pub(crate) fn model(&self) -> ModelParams {
         ModelParams::default().with_statistics(Some(Arc::new(self.statistics.clone())))
     }
 
-    /// Files that may have points in `area`.
+    /// Returns the files that may have points in `area`.
     pub(crate) fn files_meeting(&self, area: &MapArea) -> impl Iterator<Item = &InputFile> {
-        // what headers round bounds by
+        // Rounding of the bounds in headers, metres.
         let area = area.widened(0.1);
         let PlanFrame { origin, metres_per_unit, .. } = &self.frame;
         let local = move |v: f64, axis: usize| v * metres_per_unit[axis] - origin[axis];
@@ -317,12 +318,12 @@ impl Plan {
         })
     }
 
-    /// The area whose points a tile needs for its balls.
+    /// Returns the area whose points a tile needs for its balls.
     pub(crate) fn window(&self, tile: TileId) -> MapArea {
         self.grid().core(tile).in_blocks().widened(self.buffer)
     }
 
-    /// Blocks of 64 m with points that meet `area`.
+    /// Returns the blocks of 64 m with points that meet `area`.
     pub(crate) fn blocks_in(&self, area: &MapArea) -> impl Iterator<Item = &SurveyBlock> {
         area.blocks().filter_map(|at| {
             let place = self.blocks.binary_search_by_key(&at, |block| block.at).ok()?;
@@ -330,14 +331,14 @@ impl Plan {
         })
     }
 
-    /// The tiles with cells for the result of a question, from the south-west: all but some at the edge of the survey
-    /// that only larger cells reach.
+    /// Returns the tiles with cells for the result of a question, from the south-west. Some tiles at the edge of the
+    /// survey, which only larger cells reach, are left out.
     pub(crate) fn tiles_of(&self, question: &TileQuestion) -> Vec<TileId> {
         let cell = self.cells.of(question);
         self.tiles.iter().copied().filter(|&tile| self.has_cells(tile, cell)).collect()
     }
 
-    /// Tiles with cells for any result.
+    /// Returns the tiles with cells for any result.
     pub(crate) fn tiles_with_cells(&self) -> Vec<TileId> {
         let (grid, cell) = (self.grid(), self.cells.largest());
         let of_block = |block: &SurveyBlock| {
@@ -350,7 +351,7 @@ impl Plan {
         tiles.into_iter().filter(|&tile| self.has_cells(tile, cell)).collect()
     }
 
-    /// Whether cells of a side may get a height on a tile: it is near points.
+    /// True if cells of side `cell` may get a height on a tile, because points are near.
     pub(crate) fn has_cells(&self, tile: TileId, cell: f64) -> bool {
         let reach = self.reach(cell);
         let core = self.grid().core(tile);
@@ -359,11 +360,11 @@ impl Plan {
             && self.blocks_in(&core.widened(reach)).next().is_some()
     }
 
-    /// This with other questions, and with remarks on their radiation and on leaves.
+    /// Returns this plan with other questions, and with remarks on their radiation and on leaves.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for two questions whose results would lie in one folder and for parameters outside
-    /// their range; those of reading weather.
+    /// [`Error::InvalidParameter`] for two questions with the same folder of results and for parameters out of range.
+    /// Also the errors of reading weather.
     pub fn with_questions(self, questions: Vec<TileQuestion>, control: &Control<'_>) -> Result<Self> {
         check_names(&questions)?;
         let mut context = Context::default();
@@ -379,24 +380,25 @@ impl Plan {
         Ok(Self { questions, remarks, proves, ..self })
     }
 
-    /// This with meshes of what is planned, such as buildings: their triangles block exactly, beside what was surveyed,
-    /// and targets of cells below them lie on top of them.
+    /// Returns this plan with meshes of planned objects, such as buildings. Their triangles block exactly, beside the
+    /// surveyed objects. Targets of cells below the meshes lie on top of them.
     ///
     /// # Errors
-    /// Those of reading meshes, and [`Error::InvalidParameter`] for one that does not lie on the survey.
+    /// Those of reading meshes, and [`Error::InvalidParameter`] for a mesh that does not lie on the survey.
     pub fn with_meshes(self, meshes: Vec<SideFile>) -> Result<Self> {
         added_meshes(&meshes, &self.frame()?, Coverage::of(self.bounds()).as_ref())?;
         Ok(Self { meshes, ..self })
     }
 
-    /// This before far terrain, an elevation raster and a horizon as [`read_terrain`](belvedere::io::read_terrain) and
-    /// [`read_horizon`](belvedere::io::read_horizon) take them: directions to the sun and the sky below it are blocked.
-    /// Within the box of the survey, and a cell of the raster around it, terrain blocks nothing. A remark says where
-    /// the heights of the raster are not those of the ground.
+    /// Returns this plan with far terrain: an elevation raster and a horizon in the formats of
+    /// [`read_terrain`](belvedere::io::read_terrain) and [`read_horizon`](belvedere::io::read_horizon). Far terrain
+    /// blocks directions to the sun and the sky below its horizon. Terrain within the box of the survey, and within one
+    /// cell of the raster around it, blocks nothing. A remark names places with a difference between the heights of the
+    /// raster and of the ground.
     ///
     /// # Errors
-    /// Those of reading the files, and [`Error::InvalidParameter`] for terrain that does not reach the survey or lies
-    /// far above or below it.
+    /// Those of reading the files. [`Error::InvalidParameter`] for terrain that does not reach the survey or lies far
+    /// above or below it.
     pub fn with_far_terrain(self, terrain: Option<SideFile>, horizon: Option<SideFile>) -> Result<Self> {
         let frame = self.frame()?;
         let far = far_terrain(terrain.as_ref(), horizon.as_ref(), &frame, self.bounds())?;
@@ -405,10 +407,10 @@ impl Plan {
         Ok(Self { terrain, horizon, remarks, ..self })
     }
 
-    /// This with trees that let light through, where questions ask for light.
+    /// Returns this plan with trees that let light through, for questions about light.
     ///
     /// # Errors
-    /// [`Error::MissingAttribute`] for a survey whose pulses do not say what vegetation is.
+    /// [`Error::MissingAttribute`] for a survey without pulses that separate vegetation from other balls.
     pub fn with_light_through_trees(self, trees: CrownLight) -> Result<Self> {
         let is_known =
             if matches!(trees, CrownLight::Measured { .. }) { self.knows_crowns() } else { self.statistics.carves };
@@ -422,7 +424,7 @@ impl Plan {
         Ok(Self { trees: Some(trees), ..self })
     }
 
-    /// Whether tiles know crowns as a medium.
+    /// True if tiles have crowns as a medium.
     #[must_use]
     pub fn knows_crowns(&self) -> bool {
         self.statistics.know_crowns()
@@ -437,10 +439,10 @@ impl Plan {
         Ok(density_at(&self.statistics.flight_days, latitude, &self.whereabouts(&self.frame()?)))
     }
 
-    /// The meshes of what is planned, and far terrain.
+    /// Returns the meshes of planned objects, and far terrain.
     ///
     /// # Errors
-    /// Those of reading them, and [`Error::Malformed`] for a file that changed since the plan was made.
+    /// Those of reading the files, and [`Error::Malformed`] for a file that changed after the plan was made.
     pub(crate) fn others(&self) -> Result<Others> {
         let frame = self.frame()?;
         Ok(Others {
@@ -449,13 +451,13 @@ impl Plan {
         })
     }
 
-    /// What the values of a result are.
+    /// Returns the kind of the values of a result.
     pub(crate) fn kind_of(&self, question: &TileQuestion) -> ResultKind {
         question.kind(self.trees.is_some_and(|trees| trees.gives_shares()))
     }
 
-    /// Puts places on the map, local metres, on the ground: each that has no height gets `height` metres above the
-    /// ground there.
+    /// Sets places on the map, local metres, on the ground. Each place without a height gets `height` metres above the
+    /// ground.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a place without ground, those of reading the files and of [`Ground::of_cloud`].
@@ -482,7 +484,7 @@ impl Plan {
 impl PlanFrame {
     pub(crate) fn to_frame(&self) -> Result<Frame> {
         let named = if self.system.is_empty() { Crs::default() } else { Crs::parse(&self.system)? };
-        // units may follow from another record than the system
+        // Units may come from another record than the reference system.
         let crs = Crs {
             metres_per_unit: self.metres_per_unit[0],
             vertical_metres_per_unit: self.metres_per_unit[2],
@@ -493,7 +495,7 @@ impl PlanFrame {
     }
 }
 
-/// Cells on top of what stands there.
+/// Returns cells on the surface, on top of the present objects.
 pub(crate) fn on_surface() -> CellParams {
     CellParams::default().with_level(CellLevel::Surface)
 }
@@ -508,7 +510,7 @@ pub(crate) fn without_ground(value: String) -> Error {
     Error::InvalidParameter { parameter: Parameter::Observer, value, expected }
 }
 
-/// Refuses questions whose results would lie in one folder, or in one that is not below that of the run.
+/// Refuses questions with the same folder of results, and folders that do not lie below the folder of the run.
 fn check_names(questions: &[TileQuestion]) -> Result<()> {
     let mut names = BTreeSet::from([Stage::Balls.name()]);
     for name in questions.iter().map(TileQuestion::name) {
@@ -525,7 +527,7 @@ fn check_names(questions: &[TileQuestion]) -> Result<()> {
     Ok(())
 }
 
-/// The numbers of a plan that must not be anything.
+/// Checks the numbers of a plan that must lie within limits; `None` for a damaged plan.
 fn check_numbers(plan: &Plan) -> Option<()> {
     let own = [&plan.buffer, &plan.tile_size, &plan.nearness];
     let finite = plan.frame.origin.iter().chain(&plan.frame.metres_per_unit).chain(own);

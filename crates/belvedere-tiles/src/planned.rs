@@ -1,4 +1,4 @@
-//! What blocks beside what was surveyed: buildings that are planned, and mountains beyond the survey.
+//! Obstacles beside the surveyed ones: planned buildings, and mountains beyond the survey.
 
 use crate::inputs::{absolute, hash};
 use belvedere::apps::horizon::convergence;
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// A file beside the survey, as it was when the plan was made.
+/// File beside the survey, in its state when the plan was made.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SideFile {
     path: PathBuf,
@@ -20,7 +20,7 @@ pub struct SideFile {
 }
 
 impl SideFile {
-    /// A file as it is now.
+    /// Returns a file in its present state.
     ///
     /// # Errors
     /// [`Error::Io`], and [`Error::Malformed`] for a folder.
@@ -33,15 +33,15 @@ impl SideFile {
         Ok(Self { path, fingerprint })
     }
 
-    /// Where it lies.
+    /// Returns the path of the file.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Its bytes, refused unless they are what they were.
+    /// Returns its bytes, and refuses a changed file.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Malformed`] for a file that changed since.
+    /// [`Error::Io`], and [`Error::Malformed`] for a file that changed after the plan was made.
     pub(crate) fn read(&self) -> Result<Vec<u8>> {
         let bytes = bytes_of(&self.path)?;
         if hash(&bytes) != self.fingerprint {
@@ -62,21 +62,20 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// What blocks beside what was surveyed.
+/// Obstacles beside the surveyed ones.
 pub(crate) struct Others {
     pub(crate) added: Option<BlockingTriangles>,
     pub(crate) far_terrain: FarTerrain,
 }
 
 impl Others {
-    /// Nothing else blocks.
+    /// Returns no other obstacles.
     pub(crate) fn none() -> Self {
         Self { added: None, far_terrain: FarTerrain::default() }
     }
 }
 
-/// What lies beyond a survey between `survey`, local metres of `frame`: an elevation raster and a horizon, where they
-/// are given.
+/// Returns the terrain beyond the box `survey`, local metres of `frame`: an elevation raster and a horizon, if given.
 ///
 /// # Errors
 /// Those of [`SideFile::read`], of [`read_terrain`], [`read_horizon`] and [`check_terrain`].
@@ -101,7 +100,8 @@ pub(crate) fn far_terrain(
     Ok(far)
 }
 
-/// The triangles of `meshes` in local metres of `frame`; `None` without a mesh. They must meet the space of `coverage`.
+/// Returns the triangles of `meshes` in local metres of `frame`; `None` without a mesh. The triangles must meet the
+/// space of `coverage`.
 ///
 /// # Errors
 /// Those of [`SideFile::read`], of [`read_mesh_in`] and of [`BlockingTriangles::new`].

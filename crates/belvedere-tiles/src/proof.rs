@@ -1,9 +1,9 @@
-//! What pulses prove of lines of sight that cross tiles: block by block, so that memory does not grow with their length
-//! and tiles make no difference.
+//! Proof by pulses of lines of sight that cross tiles. The proof runs block by block, so that memory does not grow with
+//! the length of lines and tiles make no difference.
 //!
-//! With the balls of a tile the pulses are kept that end in it. A line of sight is cut at the sides of blocks of 64 m,
-//! and the length of each piece that no pulse over the block came near to is added up in whole numbers, so that no
-//! order of blocks changes the sum.
+//! The pulses that end in a tile are kept with its balls. A line of sight is cut at the sides of blocks of 64 m. The
+//! length of each piece that no pulse over the block came near to is added in whole numbers. The order of the blocks
+//! therefore does not change the sum.
 
 use crate::grid::{CELL, MapArea, TileId, block_area, square_at};
 use crate::obstacles::ObstacleSearch;
@@ -18,55 +18,54 @@ use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-/// How far beside a block a pulse is still taken for one over it, metres, beside the nearness: more than positions are
-/// rounded by.
+/// Additional distance beside a block within which a pulse counts as over it, metres, on top of the proof distance. It
+/// is more than the rounding of positions.
 const ROOM: f64 = 0.1;
-/// Parts of a metre that unseen lengths are counted in.
+/// Number of parts of a metre in which unseen lengths are counted.
 const STEPS: f64 = 65_536.0;
-/// Tiles whose pulses may stay in memory when others are read.
+/// Number of tiles above which pulses far from the block are dropped from memory.
 const MAX_TILES: usize = 4;
-/// Lines of sight and pulses handed to a thread at once, where each takes little and where it takes more.
+/// Number of lines of sight and pulses that a thread takes at once: `CHUNK` for short work, `FEW` for long work.
 const CHUNK: usize = 1024;
 const FEW: usize = 64;
 
-/// A line of sight.
+/// Line of sight from a target.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Line {
-    /// Local metres.
+    /// Target, local metres.
     pub(crate) target: [f64; 3],
-    /// Unit vector.
+    /// Unit vector from the target along the line.
     pub(crate) towards: [f64; 3],
-    /// Its length, metres; infinite without an end.
+    /// Length of the line, metres; infinite without an end.
     pub(crate) range: f64,
 }
 
-/// Up to where pulses prove anything, local metres.
+/// Returns the height up to which pulses can prove space empty, local metres.
 pub(crate) fn top(plan: &Plan) -> f64 {
     f64::from(plan.statistics.top + plan.model().free_segments.headroom)
 }
 
-/// How near a pulse must pass for a place to count as seen, metres: by the first returns of some places all over a
-/// survey.
+/// Returns the proof distance, metres, from the first returns of some places all over a survey.
 pub(crate) fn nearness(places: &PointCloud) -> f64 {
     let numbers = places.attributes.return_number.as_deref();
     let is_first = |(row, _): &(usize, &[f32; 3])| numbers.is_none_or(|numbers| numbers[*row] <= 1);
     nearness_of(places.positions.iter().enumerate().filter(is_first).map(|(_, &p)| p))
 }
 
-/// The pulses that end in a tile, in an order that does not depend on how they were indexed.
+/// Returns the pulses that end in a tile, in an order that does not depend on their index.
 pub(crate) fn of_tile(pulses: &FreeSegmentColumns, core: &MapArea) -> FreeSegmentColumns {
     let is_own = |(_, start): &(u32, &[f32; 3])| core.holds([start[0].into(), start[1].into()]);
     let rows: Vec<u32> = (0..).zip(&pulses.starts).filter(is_own).map(|(row, _)| row).collect();
     in_order(pulses.select(&rows))
 }
 
-/// Whether a piece of a line passes over an area.
+/// True if a piece of a line passes over an area.
 fn passes_over([start, end]: [[f64; 3]; 2], area: &MapArea) -> bool {
     let sides = [0, 1].map(|axis| [area.low[axis] - start[axis], area.high[axis] - start[axis]]);
     piece_in_box(sides, [end[0] - start[0], end[1] - start[1]], [0.0, 1.0]).is_some()
 }
 
-/// Which of `lines` run through more unseen space than a proof tolerates.
+/// Flags those of `lines` that run through more unseen space than a proof tolerates.
 ///
 /// # Errors
 /// Those of reading pulses, and [`belvedere::Error::Cancelled`].
@@ -82,8 +81,8 @@ pub(crate) fn unproven(
     Ok(unseen.into_iter().map(|unseen| unseen > steps(tolerance)).collect())
 }
 
-/// About how much of each of `lines` runs through unseen space, metres, as evidence of a probability: no more than
-/// makes a difference there.
+/// Returns the approximate unseen length of each of `lines`, metres, as evidence of a probability. Lengths above the
+/// maximum of the evidence are not measured further.
 ///
 /// # Errors
 /// Those of [`unproven`].
@@ -99,10 +98,10 @@ pub(crate) fn sampled_lengths(
     Ok(unseen.into_iter().map(|unseen| f64::from(unseen) / STEPS).collect())
 }
 
-/// How a proof measures what is unseen of a piece of a line.
+/// Measure of the unseen length of a piece of a line by a proof, metres.
 type Measure<'a> = &'a (dyn Fn(&Proof, ([f64; 3], [f64; 3]), [f64; 2]) -> f64 + Sync);
 
-/// The unseen length of each of `lines` as `measure` has it, in steps, until it is more than `enough`.
+/// Returns the unseen length of each of `lines` by `measure`, in steps, until it exceeds `enough`.
 fn unseen_steps(
     (plan, run): (&Plan, &Path),
     lines: &[Line],
@@ -114,7 +113,7 @@ fn unseen_steps(
     let (low, high) = plan.bounds().on_map();
     let survey = MapArea { low, high };
     let top = top(plan);
-    // below the top and over the survey
+    // Only the part below the top and over the survey.
     let piece = |line: &Line| {
         let [east, north] = sides_of(&survey, line.target);
         let up = [f64::NEG_INFINITY, top - line.target[2]];
@@ -123,9 +122,9 @@ fn unseen_steps(
     let pieces: Vec<Option<[f64; 2]>> = lines.par_iter().with_min_len(CHUNK).map(piece).collect();
     let mut unseen = vec![0_u32; lines.len()];
     let mut of_blocks: Vec<([i32; 2], Vec<u32>)> = lines_of_blocks(lines, &pieces).into_iter().collect();
-    // those of a tile follow each other
+    // Blocks of one tile follow each other.
     of_blocks.sort_by_cached_key(|(block, _)| (plan.grid().tile_of(block_area(*block).low), *block));
-    // how far a pulse leans away from its return
+    // Maximum horizontal distance from a pulse to its return.
     let reach = plan.statistics.max_lean * (top - f64::from(plan.low[2])).max(0.0) + plan.nearness + ROOM;
     let mut pulses = TilePulses { reach, tiles: BTreeMap::new() };
     for (block, rows) in of_blocks {
@@ -151,18 +150,18 @@ fn unseen_steps(
     Ok(unseen)
 }
 
-/// A length in whole numbers.
+/// Rounds a length in metres to whole steps.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
 fn steps(metres: f64) -> u32 {
     (metres * STEPS).round() as u32
 }
 
-/// The sides of an area as seen from a place.
+/// Returns the sides of an area relative to a place.
 fn sides_of(area: &MapArea, place: [f64; 3]) -> [[f64; 2]; 2] {
     [0, 1].map(|axis| [area.low[axis] - place[axis], area.high[axis] - place[axis]])
 }
 
-/// The blocks of 64 m that lines run through, and which these are.
+/// Returns the blocks of 64 m that lines run through, with the indices of these lines.
 fn lines_of_blocks(lines: &[Line], pieces: &[Option<[f64; 2]>]) -> BTreeMap<[i32; 2], Vec<u32>> {
     let mut blocks: BTreeMap<[i32; 2], Vec<u32>> = BTreeMap::new();
     for (row, (line, piece)) in (0_u32..).zip(lines.iter().zip(pieces)) {
@@ -188,21 +187,21 @@ fn lines_of_blocks(lines: &[Line], pieces: &[Option<[f64; 2]>]) -> BTreeMap<[i32
     blocks
 }
 
-/// The pulses of the tiles that were read last.
+/// Pulses of the last tiles that were read.
 struct TilePulses {
-    /// How far from a block a pulse over it may end, metres.
+    /// Maximum distance from a block to the end of a pulse over it, metres.
     reach: f64,
     tiles: BTreeMap<TileId, PulsesOfBlocks>,
 }
 
-/// The pulses of a tile, and the rows of those that pass over each of its blocks.
+/// Pulses of a tile, and the rows of the pulses over each of its blocks.
 struct PulsesOfBlocks {
     pulses: FreeSegmentColumns,
     rows: HashMap<[i32; 2], Vec<u32>>,
 }
 
 impl TilePulses {
-    /// The pulses over a block, in an order that does not depend on the tiles.
+    /// Returns the pulses over a block, in an order that does not depend on the tiles.
     fn over(
         &mut self,
         (plan, run): (&Plan, &Path),
@@ -262,7 +261,7 @@ impl PulsesOfBlocks {
     }
 }
 
-/// Pulses by their numbers.
+/// Sorts pulses by their numbers.
 fn in_order(pulses: FreeSegmentColumns) -> FreeSegmentColumns {
     let key = |row: u32| {
         let row = row as usize;
@@ -272,11 +271,11 @@ fn in_order(pulses: FreeSegmentColumns) -> FreeSegmentColumns {
     };
     #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
     let mut rows: Vec<u32> = (0..pulses.starts.len() as u32).collect();
-    // those of one tile are
+    // The pulses of one tile are sorted already.
     if rows.is_sorted_by(|&a, &b| key(a) <= key(b)) {
         return pulses;
     }
-    // of several tiles there are as many runs
+    // Pulses of several tiles form as many sorted runs.
     rows.par_sort_by(|&a, &b| key(a).cmp(&key(b)));
     pulses.select(&rows)
 }

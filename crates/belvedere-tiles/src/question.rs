@@ -23,108 +23,110 @@ use belvedere::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// A question that has an answer for each cell on top of what stands there.
+/// Question with an answer for each cell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum TileQuestion {
-    /// Which cells a sun lights: 1 lit, 0 in shadow.
+    /// Cells lit by one sun: 1 lit, 0 in shadow.
     Shadow {
         /// Name of the folder of its results.
         name: String,
         /// Unit vector from the scene to the sun: x east, y grid north, z up.
         to_sun: [f64; 3],
-        /// The season, by which trees have leaves; `None` where no date is known.
+        /// Season, which decides whether trees have leaves; `None` without a known date.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         season: Option<Season>,
     },
-    /// The sky view factor of cells.
+    /// Sky view factor of cells.
     SkyView {
-        /// How the sky is parted.
+        /// Division of the sky into parts.
         sky: SkyParts,
-        /// Whether to say how far it may be from the truth.
+        /// True if results include an interval around the truth.
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         interval: bool,
     },
-    /// Hours of sun a day, the mean over some days.
+    /// Hours of sun a day, mean of several days.
     SunHours {
-        /// Where the survey lies.
+        /// Location of the survey.
         site: Site,
-        /// The days.
+        /// Days of the mean.
         days: SunHoursQuestion,
     },
-    /// Whether a rule of sunlight is met on all of its days: 1 met, 0 not.
+    /// Compliance with a rule of sunlight on all of its days: 1 met, 0 not met.
     SunRule {
         /// Name of the folder of its results.
         name: String,
-        /// Where the survey lies.
+        /// Location of the survey.
         site: Site,
-        /// The rule with its days.
+        /// Rule with its days.
         days: SunHoursQuestion,
     },
     /// Energy of sun and sky on level cells over a period, kWh/m².
     Irradiance {
-        /// Where the survey lies.
+        /// Location of the survey.
         site: Site,
-        /// Where the radiation comes from.
+        /// Source of the radiation.
         radiation: TileRadiation,
-        /// How it is gathered.
+        /// Parameters of the sums of energy.
         params: IrradianceParams,
-        /// Whether to say how far it may be from the truth.
+        /// True if results include an interval around the truth.
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         interval: bool,
     },
-    /// What observers see: of one 1 where nothing blocks it, 0 blocked; of several from how many nothing blocks a cell.
+    /// Visibility from observers. For one observer 1 is visible and 0 blocked; for several the number with a free line
+    /// of sight to the cell.
     Viewshed {
-        /// Their eyes, local metres.
+        /// Eyes of the observers, local metres.
         eyes: Vec<[f64; 3]>,
-        /// How far they look on the map, metres; `None` for any distance.
+        /// Maximum distance of sight on the map, metres; `None` for any distance.
         max_distance: Option<f64>,
-        /// Whether they are what is looked at, from cells: such a target may lie inside an obstacle.
+        /// True for a reverse viewshed: the eyes are targets, which cells look at. Such a target may lie inside an
+        /// obstacle.
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         is_reverse: bool,
     },
-    /// How likely a sun lights cells, or observers see them: of several observers the expected number of those that do.
+    /// Probability that a sun lights a cell or that an observer sees it; for several observers the expected number.
     Probability {
         /// Name of the folder of its results.
         name: String,
-        /// The answers that it is about: shadow of a sun, or what observers see.
+        /// Question whose answers get probabilities: the shadow of a sun, or a viewshed.
         of: Box<Self>,
-        /// Of several observers, the certainty below which their answers are counted as uncertain.
+        /// Certainty of several observers, above 0.5 up to 1, below which their answers count as uncertain.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         certain: Option<f64>,
     },
 }
 
-/// Where radiation comes from.
+/// Source of radiation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum TileRadiation {
-    /// Rows of weather, each cut into parts.
+    /// Rows of weather, each divided into parts.
     Weather {
-        /// The file.
+        /// Weather file.
         file: SideFile,
-        /// Parts of each row.
+        /// Number of parts of each row.
         parts: usize,
     },
-    /// A year without clouds.
+    /// Year without clouds.
     ClearSky {
-        /// What it sends.
+        /// Radiation of the clear sky.
         clear_sky: ClearSky,
-        /// The year.
+        /// Calendar year.
         year: i16,
     },
 }
 
-/// A question with all that follows from its parameters.
+/// Question with all data derived from its parameters.
 pub(crate) enum PreparedQuestion {
     Light(LightQuestion),
     Viewshed { observers: Vec<Observer>, is_reverse: bool },
     Probability { of: Box<Self>, certainty: Option<Certainty> },
 }
 
-/// A question about light from given directions.
+/// Question about light from given directions.
 pub(crate) enum LightQuestion {
     Shadow(ShadowSun),
     Sky(SkyDirections, Intervals),
@@ -134,7 +136,7 @@ pub(crate) enum LightQuestion {
 }
 
 impl PreparedQuestion {
-    /// Factors of crowns in the seasons of the question ([`CrownLight::known_factors`]).
+    /// Returns the factors of crowns in the seasons of the question ([`CrownLight::known_factors`]).
     pub(crate) fn known_factors(&self, crowns: CrownLight) -> Vec<f64> {
         let on = |plan: &SunPlan, site: &Site| {
             crowns.known_factors(plan.dates().map(|date| Some(Season::on(date, site)))).collect()
@@ -154,7 +156,7 @@ impl PreparedQuestion {
 }
 
 impl LightQuestion {
-    /// Where it comes from, unit vectors.
+    /// Returns the directions of the light as unit vectors.
     pub(crate) fn directions(&self) -> &[[f64; 3]] {
         match self {
             Self::Shadow(sun) => std::slice::from_ref(&sun.to_sun),
@@ -192,12 +194,12 @@ impl TileRadiation {
 }
 
 impl TileQuestion {
-    /// The questions about tiles that a question about the survey of `plan` comes to, one for each result; figures and
+    /// Returns the questions about tiles for a question about the survey of `plan`, one for each result. Figures and
     /// remarks go into `context`.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for what cannot be, and for a question that tiles do not answer; those of
-    /// [`Plan::set_on_ground`].
+    /// [`Error::InvalidParameter`] for impossible parameters, and for a question that tiles do not answer. Also those
+    /// of [`Plan::set_on_ground`].
     pub fn of(
         question: &ask::Question,
         (plan, whereabouts): (&Plan, &Whereabouts<'_>),
@@ -262,7 +264,7 @@ impl TileQuestion {
         }
     }
 
-    /// This, and where it is wanted how likely its answers are.
+    /// Returns this question, followed by the question about its probability if that is wanted.
     fn with_probability(self, how_sure: &ask::HowSure) -> Vec<Self> {
         let is_of_several = self.is_of_several();
         let likely = how_sure.is_wanted().then(|| Self::Probability {
@@ -273,7 +275,7 @@ impl TileQuestion {
         [self].into_iter().chain(likely).collect()
     }
 
-    /// The questions about shadows of suns.
+    /// Returns the questions about shadows of suns.
     pub(crate) fn of_suns<'a>(suns: impl IntoIterator<Item = &'a ask::NamedSun>, how_sure: &ask::HowSure) -> Vec<Self> {
         let question = |sun: &ask::NamedSun| Self::Shadow {
             name: format!("shadow_{}", sun.label),
@@ -283,7 +285,7 @@ impl TileQuestion {
         suns.into_iter().map(question).flat_map(|sun| sun.with_probability(how_sure)).collect()
     }
 
-    /// What of a question is not found in tiles.
+    /// Returns the first part of a question that tiles do not support; `None` if they support all of it.
     #[must_use]
     pub fn not_in_tiles(question: &ask::Question) -> Option<&'static str> {
         let counts = |unproven: Option<UnprovenAs>| unproven.is_some_and(|choice| choice != UnprovenAs::Reported);
@@ -314,7 +316,7 @@ impl TileQuestion {
         parts.iter().find(|(_, is_wanted)| *is_wanted).map(|(what, _)| *what)
     }
 
-    /// Name of the folder of its results.
+    /// Returns the name of the folder of its results.
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
@@ -326,7 +328,7 @@ impl TileQuestion {
         }
     }
 
-    /// What it is about.
+    /// Returns the topic of the question.
     #[must_use]
     pub fn topic(&self) -> Topic {
         match self {
@@ -340,7 +342,7 @@ impl TileQuestion {
         }
     }
 
-    /// What its values are, in the words of the rasters of the same question to one scene.
+    /// Returns a description of the values, in the same words as rasters of one scene.
     #[must_use]
     pub fn description(&self) -> &'static str {
         match self {
@@ -355,12 +357,12 @@ impl TileQuestion {
         }
     }
 
-    /// Whether it is about several observers.
+    /// True if the question has several observers.
     fn is_of_several(&self) -> bool {
         matches!(self, Self::Viewshed { eyes, .. } if eyes.len() > 1)
     }
 
-    /// What its values are, where shadows are `shares` of light or a yes or no.
+    /// Returns the kind of the values; with `shares` shadows are shares of light instead of yes or no.
     pub(crate) fn kind(&self, shares: bool) -> ResultKind {
         match self {
             Self::Shadow { .. } if shares => ResultKind::Number,
@@ -373,12 +375,12 @@ impl TileQuestion {
         }
     }
 
-    /// Whether its answers say what pulses prove.
+    /// True if the answers use the proof by pulses.
     pub(crate) fn needs_proof(&self) -> bool {
         matches!(self, Self::Shadow { .. } | Self::Viewshed { .. } | Self::Probability { .. })
     }
 
-    /// Refuses what says how sure answers are, where pulses are not known.
+    /// Refuses probabilities and intervals for a survey without known pulses.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`].
@@ -393,7 +395,7 @@ impl TileQuestion {
         if are_known { Ok(()) } else { refused() }
     }
 
-    /// Whether its values come with how far they may be from the truth.
+    /// True if the values have an interval around the truth.
     fn has_interval(&self) -> bool {
         match self {
             Self::SkyView { interval, .. } | Self::Irradiance { interval, .. } => *interval,
@@ -402,8 +404,7 @@ impl TileQuestion {
         }
     }
 
-    /// Names of the bands of a result of a kind: answers and counts have a second one, of what missing tiles may
-    /// change.
+    /// Returns the names of the bands of a result. Answers and counts have a second band for unproven cells.
     #[must_use]
     pub fn band_names(&self, kind: ResultKind) -> Vec<String> {
         if let Self::Probability { of, certain, .. } = self {
@@ -427,12 +428,12 @@ impl TileQuestion {
         [first.to_owned()].into_iter().chain(second).chain(ends).collect()
     }
 
-    /// What follows from its parameters, where crowns of trees let light through or not; remarks on radiation go into
-    /// `context`.
+    /// Returns the question with all data derived from its parameters and from the light through crowns. Remarks on
+    /// radiation go into `context`.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for parameters outside their range, a sun that is not above the horizon and eyes
-    /// that are nowhere; those of reading weather.
+    /// [`Error::InvalidParameter`] for parameters out of range, a sun that is not above the horizon, and missing or
+    /// non-finite eyes. Also those of reading weather.
     pub(crate) fn prepare(
         &self,
         crowns: Option<CrownLight>,

@@ -1,4 +1,4 @@
-//! What became of a tile. A record is written after its result, so that whatever has one is complete.
+//! Outcome of a tile. A record is written after its result, so that a tile with a record is complete.
 
 use crate::grid::TileId;
 use crate::inputs::{bytes_of_file, hash};
@@ -12,29 +12,29 @@ use std::io::Write;
 use std::path::Path;
 use std::time::UNIX_EPOCH;
 
-/// Largest record that is believed, bytes.
+/// Maximum size of a record, bytes. A larger file is not read.
 const MAX_BYTES: u64 = 1 << 26;
 
-/// What became of a tile.
+/// Outcome of a tile.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TileOutcome {
-    /// Its result is there.
+    /// The result exists.
     Done,
-    /// Nothing is there, and there is no result.
+    /// The tile is empty and has no result.
     #[default]
     Nothing,
-    /// It could not be done, and why.
+    /// The tile failed, with the reason.
     Failed(String),
 }
 
-/// A file of a result as it was written.
+/// File of a result in the state in which it was written.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Stamp {
     bytes: u64,
     /// CRC-32, as hexadecimal digits.
     fingerprint: String,
-    /// When it was changed last, where that is known.
+    /// Time of the last change, if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     modified: Option<String>,
 }
@@ -46,10 +46,10 @@ impl Stamp {
         Ok(Self { bytes: bytes.len() as u64, fingerprint: hash(&bytes), modified })
     }
 
-    /// The bytes of the file, refused unless they are what was written.
+    /// Returns the bytes of the file, and refuses a changed file.
     ///
     /// # Errors
-    /// [`Error::Io`], and [`Error::Malformed`] for a file that changed since.
+    /// [`Error::Io`], and [`Error::Malformed`] for a file that changed since it was written.
     pub(crate) fn read(&self, path: &Path) -> Result<Vec<u8>> {
         let bytes = bytes_of_file(path).map_err(Error::io(path))?;
         if self.fingerprint != hash(&bytes) {
@@ -58,7 +58,7 @@ impl Stamp {
         Ok(bytes)
     }
 
-    /// What became of the file since; `None` where nothing did.
+    /// Returns a description of damage to the file since it was written; `None` without damage.
     fn damage(&self, path: &Path) -> Option<String> {
         let what = match std::fs::metadata(path) {
             Err(_) => "is gone",
@@ -68,64 +68,65 @@ impl Stamp {
         Some(format!("{} {what}", path.display()))
     }
 
-    /// Whether the file is what was written. Its content is looked at where it has another time.
+    /// Returns true if the file is unchanged. Its content is compared only if its time differs.
     fn fits(&self, path: &Path) -> bool {
         (self.modified.is_some() && modified(path) == self.modified)
             || bytes_of_file(path).is_ok_and(|bytes| hash(&bytes) == self.fingerprint)
     }
 }
 
-/// When a file was changed last, nanoseconds since 1970.
+/// Returns the time of the last change of a file, nanoseconds since 1970.
 fn modified(path: &Path) -> Option<String> {
     let time = std::fs::metadata(path).ok()?.modified().ok()?;
     Some(time.duration_since(UNIX_EPOCH).ok()?.as_nanos().to_string())
 }
 
-/// The record of a tile.
+/// Record of a tile.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TileRecord {
-    /// Name of the plan that it belongs to; of balls, of what they follow from.
+    /// Name of the plan of the record. A record of balls has the name of the plan without questions.
     pub(crate) plan: String,
-    /// What became of the tile.
+    /// Outcome of the tile.
     pub outcome: TileOutcome,
-    /// The file of its result, where there is one.
+    /// File of its result, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) result: Option<Stamp>,
-    /// The file of the pulses that end in it, where there is one.
+    /// File of the pulses that end in it, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) pulses: Option<Stamp>,
-    /// The file of its crowns, where it has any.
+    /// File of its crowns, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) crowns: Option<Stamp>,
-    /// Points that were read.
+    /// Number of points read.
     pub points: usize,
-    /// Balls that were made, or that could matter for the answer.
+    /// Number of balls that were made, or that were tested for the answer.
     pub balls: usize,
-    /// Most balls that were held at a time for an answer.
+    /// Maximum number of balls held at a time for an answer.
     #[serde(rename = "most_balls", default, skip_serializing_if = "is_zero")]
     pub max_balls: usize,
-    /// Cells that are targets.
+    /// Number of cells that are targets.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub cells: usize,
-    /// Cells on the ground under a cover, which are no targets.
+    /// Number of cells on the ground under a cover, which are no targets.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub covered_cells: usize,
-    /// Cells whose answer is unproven because balls are missing.
+    /// Number of cells with an unproven answer because balls are missing.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub unproven_cells: usize,
-    /// Cells that are near the edge of the survey for the light of the question; `None` where it is not about light.
+    /// Number of cells near the edge of the survey for the light of the question; `None` for questions about other
+    /// topics.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub near_edge_cells: Option<usize>,
-    /// Observers that stand inside an obstacle, and see nothing.
+    /// Number of observers inside an obstacle, which see nothing.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub skipped_observers: usize,
-    /// Seconds that it took, where the program has a clock.
+    /// Time for the tile, seconds; 0 in a program without a clock.
     #[serde(default)]
     pub seconds: f64,
-    /// Squares of 16 m that balls reach into, and the highest top of them there, local metres.
+    /// Squares of 16 m that balls reach into, with the highest top of balls over each, local metres.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) tops: Vec<([i32; 2], f32)>,
-    /// Balls that were found damaged on the way, and were made again.
+    /// Damaged balls that were found during the answer, and were made again.
     #[serde(skip)]
     pub(crate) damaged: Vec<String>,
 }
@@ -136,7 +137,7 @@ fn is_zero(count: &usize) -> bool {
 }
 
 impl TileRecord {
-    /// The record of a tile in a run; `None` where there is none that belongs to the plan and is what was written.
+    /// Returns the record of a tile in a run; `None` without an undamaged record of the plan.
     pub(crate) fn read(plan: &Plan, run: &Path, stage: Stage<'_>, tile: TileId) -> Option<Self> {
         let path = stage.record(plan, run, tile);
         if std::fs::metadata(&path).ok()?.len() > MAX_BYTES {
@@ -147,13 +148,13 @@ impl TileRecord {
         (record.plan == plan.name_for(stage)).then_some(record)
     }
 
-    /// Whether the tile need not be done again.
+    /// Returns true if the tile does not need another run.
     #[must_use]
     pub fn is_settled(&self) -> bool {
         !matches!(self.outcome, TileOutcome::Failed(_))
     }
 
-    /// What became of its files since; `None` where nothing did.
+    /// Returns a description of damage to its files since they were written; `None` without damage.
     pub(crate) fn damage(&self, plan: &Plan, run: &Path, stage: Stage<'_>, tile: TileId) -> Option<String> {
         let of_result = || self.result.as_ref()?.damage(&stage.result(plan, run, tile));
         let of_pulses = || self.pulses.as_ref()?.damage(&stage.pulses(plan, run, tile));
@@ -161,7 +162,7 @@ impl TileRecord {
         of_result().or_else(of_pulses).or_else(of_crowns)
     }
 
-    /// The bytes of the file of its result, refused unless they are what was written.
+    /// Returns the bytes of the file of its result, and refuses a changed file.
     ///
     /// # Errors
     /// Those of [`Stamp::read`].

@@ -1,4 +1,4 @@
-//! A page about a run: what was computed, how long it took, and what is missing.
+//! Page about a run: results, times, and missing parts.
 
 use crate::plan::Plan;
 use crate::status::status;

@@ -1,4 +1,4 @@
-//! A run: all tiles that are not done yet, one after the other.
+//! Run of all tiles that are not done yet, one after the other.
 
 use crate::answer::{SharedSurfaces, TileTask, answer};
 use crate::grid::TileId;
@@ -16,12 +16,12 @@ use belvedere::{Error, Parameter, Result};
 use serde::Serialize;
 use std::path::Path;
 
-/// A share of the tiles: every `of`-th from number `number` on, counted from 1.
+/// Share of the tiles: every `of`-th tile from number `number` on, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// Which share, from 1.
+    /// Number of the share, from 1.
     pub number: usize,
-    /// How many shares there are.
+    /// Number of shares.
     pub of: usize,
 }
 
@@ -31,60 +31,61 @@ impl Default for Shard {
     }
 }
 
-/// Which steps of a run are done.
+/// Steps of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Steps {
     /// Balls, and the answers to the questions.
     #[default]
     All,
-    /// Balls only, so that jobs that answer later find those of all tiles.
+    /// Balls only, so that later jobs with answers find the balls of all tiles.
     Balls,
 }
 
-/// How a run is done.
+/// Parameters of a run.
 pub struct RunParams<'a> {
-    /// Which tiles. Default: all.
+    /// Share of the tiles. Default: all.
     pub shard: Shard,
-    /// Which steps.
+    /// Steps of the run.
     pub steps: Steps,
-    /// Most balls that are held at a time for an answer; no answer depends on it. `None` for as many as take no more
-    /// memory than making the balls of the largest tile.
+    /// Maximum number of balls held at a time for an answer; no answer depends on it. `None` for as many as take no
+    /// more memory than making the balls of the largest tile.
     pub max_balls: Option<usize>,
-    /// Seconds on a clock of the program, for records; the library has none.
+    /// Seconds on a clock of the program, for records. The library has no clock.
     pub seconds: &'a dyn Fn() -> f64,
 }
 
-/// What a run did.
+/// Result of a run.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct RunReport {
-    /// Tiles whose balls were made.
+    /// Number of tiles whose balls were made.
     pub balls_made: usize,
-    /// Answers to a question on a tile.
+    /// Number of answers to a question on a tile.
     pub answers_made: usize,
-    /// Tiles and answers that were there already.
+    /// Number of tiles and answers that existed already.
     pub already_done: usize,
-    /// Cells whose answer is unproven because balls are missing.
+    /// Number of cells with an unproven answer because balls are missing.
     pub unproven_cells: usize,
-    /// Cells of questions about light, each counted once for each question.
+    /// Number of cells of questions about light, counted once for each question.
     pub cells_of_light: usize,
-    /// Of these, cells near the edge of the survey.
+    /// Number of these cells near the edge of the survey.
     pub cells_near_edge: usize,
-    /// Cells on the ground under a cover, which have no answer to the first question; `None` where cells lie on top.
+    /// Number of cells on the ground under a cover, which have no answer to the first question; `None` for cells on the
+    /// surface.
     #[serde(rename = "cells_under_cover_left_out", skip_serializing_if = "Option::is_none")]
     pub cells_under_cover: Option<usize>,
-    /// Most balls that were held at a time for an answer.
+    /// Maximum number of balls held at a time for an answer.
     #[serde(rename = "most_balls")]
     pub max_balls: usize,
-    /// Observers of viewsheds that stand inside an obstacle, and see nothing.
+    /// Number of observers of viewsheds inside an obstacle, which see nothing.
     pub skipped_observers: usize,
-    /// Results that were damaged or gone, and were made again.
+    /// Damaged or missing results that were made again.
     pub damaged: Vec<String>,
-    /// What could not be done, and why.
+    /// Failed tiles and answers, with the reasons.
     pub failed: Vec<String>,
 }
 
 impl RunReport {
-    /// What to know of the answers.
+    /// Returns remarks on the answers.
     #[must_use]
     pub fn remarks(&self) -> Vec<Remark> {
         let damaged = self.damaged.iter().take(MAX_NAMED);
@@ -114,14 +115,14 @@ impl RunReport {
     }
 }
 
-/// Most damaged results that are named.
+/// Maximum number of damaged results in remarks.
 const MAX_NAMED: usize = 10;
 
-/// Makes the balls and the answers that a run lacks. What fails is named and recorded, and the rest goes on; the next
-/// run tries it again.
+/// Makes the missing balls and answers of a run. Failed tiles are named and recorded, and the run continues. The next
+/// run tries them again.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a share that there is not, [`Error::Cancelled`], and those of writing records.
+/// [`Error::InvalidParameter`] for a share that does not exist, [`Error::Cancelled`], and those of writing records.
 pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control<'_>) -> Result<RunReport> {
     let Shard { number, of } = params.shard;
     if number == 0 || number > of {
@@ -145,7 +146,7 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
             question.prepare(plan.trees, &mut Context::default(), control)?,
         ));
     }
-    // those on cells of one size follow each other and share the surface of a tile
+    // Answers on cells of one size follow each other and share the surface of a tile.
     ready.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut surfaces = SharedSurfaces::default();
     for tile in own() {
@@ -154,14 +155,14 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
             if !plan.has_cells(tile, *cell) {
                 continue;
             }
-            // what was unproven for lack of balls may have them now
+            // Balls that were missing for an unproven answer may exist now.
             let record = work.settled(Stage::Answer(question), tile);
             if let Some(record) = record.filter(|record| record.unproven_cells == 0) {
                 work.report.already_done += 1;
                 work.report.count(&record, plan.questions.first() == Some(*question));
                 continue;
             }
-            // other shares may not have come to them
+            // Other shares may not have reached these tiles yet.
             let core = plan.grid().core(tile);
             let lowest = plan.lowest_of_cells(tile, *cell);
             for other in tiles(plan, &AreaLines::of(prepared, core, lowest)) {
@@ -187,7 +188,7 @@ struct RunWork<'a> {
 }
 
 impl RunWork<'_> {
-    /// The record of a tile that is done and whose result is still there; what is damaged is named.
+    /// Returns the record of a tile that is done and has an undamaged result. Damage is reported.
     fn settled(&mut self, stage: Stage<'_>, tile: TileId) -> Option<TileRecord> {
         let record = TileRecord::read(self.plan, self.folder, stage, tile).filter(TileRecord::is_settled)?;
         let Some(damage) = record.damage(self.plan, self.folder, stage, tile) else { return Some(record) };
@@ -195,7 +196,7 @@ impl RunWork<'_> {
         None
     }
 
-    /// Makes the balls of a tile unless they are there.
+    /// Makes the balls of a tile unless they exist.
     fn balls(&mut self, tile: TileId) -> Result<()> {
         if self.settled(Stage::Balls, tile).is_some() {
             self.report.already_done += 1;
@@ -206,7 +207,7 @@ impl RunWork<'_> {
         Ok(())
     }
 
-    /// The same for a tile that an answer needs: one that failed before is not tried again.
+    /// Makes the balls of a tile that an answer needs. A tile that failed before is not tried again.
     fn missing_balls(&mut self, tile: TileId) -> Result<()> {
         if TileRecord::read(self.plan, self.folder, Stage::Balls, tile).is_none() {
             self.attempt(Stage::Balls, tile, || make_balls(self.plan, self.folder, tile, self.control))?;
@@ -228,7 +229,7 @@ impl RunWork<'_> {
         Ok(())
     }
 
-    /// Does something with a tile, and records how long it took or why it failed.
+    /// Does the work for a tile, and records its time or the reason of its failure.
     fn attempt(
         &mut self,
         stage: Stage<'_>,

@@ -1,18 +1,18 @@
-//! JSON that says by itself whether it is what was written: its first member is a checksum of all that follows.
+//! JSON with a checksum: its first member is a checksum of the rest.
 
 use crate::inputs::hash;
 use serde::Serialize;
 
 const START: &str = "{\"checksum\":\"";
 
-/// A value as JSON with a checksum.
+/// Returns a value as JSON with a checksum.
 pub(crate) fn sealed(value: &impl Serialize) -> serde_json::Result<String> {
     let text = serde_json::to_string(value)?;
     let rest = text.strip_prefix('{').unwrap_or_default();
     Ok(format!("{START}{}\",{rest}", hash(rest.as_bytes())))
 }
 
-/// Whether JSON with a checksum is what was written.
+/// Returns true if JSON with a checksum is unchanged.
 pub(crate) fn is_sound(bytes: &[u8]) -> bool {
     let parts = bytes.strip_prefix(START.as_bytes()).and_then(|bytes| bytes.split_at_checked(8));
     let rest = parts.and_then(|(sum, rest)| Some((sum, rest.strip_prefix(b"\",")?)));

@@ -1,21 +1,21 @@
-//! The steps of the run of a tile, and where their results lie.
+//! Steps of the run of a tile, and the paths of their results.
 
 use crate::grid::TileId;
 use crate::plan::Plan;
 use crate::question::TileQuestion;
 use std::path::{Path, PathBuf};
 
-/// A step of the run of a tile.
+/// Step of the run of a tile.
 #[derive(Clone, Copy, Debug)]
 pub enum Stage<'a> {
-    /// Its balls.
+    /// Balls of the tile.
     Balls,
-    /// The answer to a question.
+    /// Answer to a question.
     Answer(&'a TileQuestion),
 }
 
 impl Stage<'_> {
-    /// The name of its folder in a run.
+    /// Returns the name of its folder in a run.
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
@@ -24,7 +24,7 @@ impl Stage<'_> {
         }
     }
 
-    /// Where its results lie: in the folder of the run, but for balls that several plans share.
+    /// Returns the folder of its results: in the folder of the run, except for balls that several plans share.
     pub(crate) fn folder(&self, plan: &Plan, run: &Path) -> PathBuf {
         let own = match self {
             Self::Balls => plan.shared_balls.as_deref().unwrap_or(run),
@@ -33,18 +33,18 @@ impl Stage<'_> {
         own.join(self.name())
     }
 
-    /// Where the result of a tile lies.
+    /// Returns the path of the result of a tile.
     pub(crate) fn result(&self, plan: &Plan, run: &Path, tile: TileId) -> PathBuf {
         let extension = if matches!(self, Self::Balls) { "npz" } else { "tif" };
         self.folder(plan, run).join(format!("{}.{extension}", tile.name()))
     }
 
-    /// Where the pulses lie that end in a tile.
+    /// Returns the path of the pulses that end in a tile.
     pub(crate) fn pulses(&self, plan: &Plan, run: &Path, tile: TileId) -> PathBuf {
         self.folder(plan, run).join(format!("{}.pulses.npz", tile.name()))
     }
 
-    /// Where the crowns of a tile lie.
+    /// Returns the path of the crowns of a tile.
     pub(crate) fn crowns(&self, plan: &Plan, run: &Path, tile: TileId) -> PathBuf {
         self.folder(plan, run).join(format!("{}.crowns.npz", tile.name()))
     }

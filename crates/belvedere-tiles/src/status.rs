@@ -1,4 +1,4 @@
-//! How far a run has come.
+//! Progress of a run.
 
 use crate::plan::Plan;
 use crate::record::{TileOutcome, TileRecord};
@@ -6,45 +6,45 @@ use crate::stage::Stage;
 use serde::Serialize;
 use std::path::Path;
 
-/// How far a run has come.
+/// Progress of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Status {
-    /// Tiles of the plan.
+    /// Number of tiles of the plan.
     pub tiles: usize,
-    /// Balls, and each question.
+    /// Progress of balls, and of each question.
     pub stages: Vec<StageStatus>,
 }
 
-/// How far one stage of a run has come.
+/// Progress of one stage of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct StageStatus {
-    /// Its name, which is that of its folder.
+    /// Name of the stage and of its folder.
     pub name: String,
-    /// Tiles that have a result.
+    /// Number of tiles with a result.
     pub done: usize,
-    /// Tiles on which nothing is.
+    /// Number of empty tiles.
     pub empty: usize,
-    /// Tiles that are left, those whose result is damaged or gone among them.
+    /// Number of tiles that are left, including tiles with a damaged or missing result.
     pub left: usize,
-    /// Points that were read for them.
+    /// Number of points read for the tiles.
     pub points_read: usize,
-    /// Cells whose answer is unproven because balls are missing.
+    /// Number of cells with an unproven answer because balls are missing.
     pub unproven_cells: usize,
-    /// Seconds that they took.
+    /// Time for the tiles, seconds.
     pub seconds: f64,
-    /// Tiles that failed, and why.
+    /// Failed tiles, with the reasons.
     pub failed: Vec<String>,
 }
 
 impl Status {
-    /// Whether nothing is left and nothing failed.
+    /// Returns true if no tile is left and none failed.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.stages.iter().all(|stage| stage.left == 0 && stage.failed.is_empty())
     }
 }
 
-/// How far the run in `folder` has come.
+/// Returns the progress of the run in `folder`.
 #[must_use]
 pub fn status(plan: &Plan, folder: &Path) -> Status {
     let stages = std::iter::once(Stage::Balls).chain(plan.questions.iter().map(Stage::Answer));

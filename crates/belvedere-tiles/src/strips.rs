@@ -1,8 +1,7 @@
-//! Where lines of sight that are still free run, and what is high enough to block one of them.
+//! Strips of lines of sight that are still free, and the minimum height of a ball that blocks one of them.
 //!
-//! Seen along a direction, the lines from a tile lie side by side in strips. What stands in a strip must be higher than
-//! the lowest line there. Few lines reach far: so most of what stands far away never needs to be looked at, let alone
-//! indexed.
+//! Seen along a direction, the lines from a tile lie side by side in strips. An obstacle in a strip must be higher than
+//! the lowest line there. Few lines run far, so that most distant obstacles need no test and no index.
 
 use crate::grid::{MapArea, TOP_SIDE, square_area, square_at};
 use crate::lines::{MAX_BALL, ROOM};
@@ -10,31 +9,32 @@ use belvedere::query::FreeLines;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Least width of a strip, metres, and most strips of a direction.
+/// Minimum width of a strip, metres, and maximum number of strips in a direction.
 const WIDTH: f64 = 4.0;
 const MAX_STRIPS: f64 = 1024.0;
-/// Slope in place of that of lines that are steeper, metres of height for each metre on the map: in the highest scene
-/// they move by less than [`ROOM`].
+/// Maximum slope of lines, metres of height for each metre on the map. Steeper lines get this slope. In the highest
+/// scene they then move by less than [`ROOM`].
 const STEEPEST: f64 = 1e6;
-/// Slope below which lines reach far: 11 degrees.
+/// Slope below which lines run far: 11 degrees.
 const LOW_SLOPE: f64 = 0.2;
-/// Lines of these up to which each has its own start, and neighbours that share one where lines are steeper.
+/// Number of low lines up to which each line has its own start, and number of neighbours that share one start on
+/// steeper lines.
 const MAX_STARTS: usize = 1 << 24;
 const NEIGHBOURS: usize = 256;
-/// Directions handed to a thread at once.
+/// Number of directions that a thread takes at once.
 const TOGETHER: usize = 64;
-/// Cells of a square along a side, and their side, metres: balls are grouped by them.
+/// Number of cells along the side of a square, and their side, metres. Balls are grouped by these cells.
 const PARTS: i32 = 2;
 const CELL: f64 = TOP_SIDE / PARTS as f64;
-/// Radii up to which balls are looked up together, metres.
+/// Maximum radii of the two groups of balls that are looked up together, metres.
 const RADII: [f64; 2] = [1.0, MAX_BALL];
 
-/// The lines of sight in one direction.
+/// Lines of sight in one direction.
 struct DirectionLines {
-    /// Unit vector on the map that they run along.
+    /// Horizontal unit vector along the lines.
     along: [f64; 2],
     slope: f64,
-    /// Where the first strip begins to the left of that.
+    /// Coordinate across the lines of the left side of the first strip.
     left: f64,
     strips: Vec<LineStrip>,
 }
@@ -42,9 +42,9 @@ struct DirectionLines {
 /// Lines of sight side by side.
 #[derive(Clone, Copy)]
 struct LineStrip {
-    /// Where the first starts along the direction.
+    /// Coordinate along the direction of the first start of a line.
     start: f64,
-    /// Height of the lowest, continued back to where the distance along the direction is zero.
+    /// Height of the lowest line, continued back to coordinate zero along the direction.
     height: f64,
 }
 
@@ -53,12 +53,12 @@ const NO_LINES: LineStrip = LineStrip { start: f64::INFINITY, height: f64::INFIN
 /// Lines of sight that are still free.
 pub(crate) struct Strips {
     width: f64,
-    /// Those of each direction.
+    /// Lines of each direction.
     courses: Vec<DirectionLines>,
 }
 
 impl Strips {
-    /// No lines yet, in `directions` from targets over an area.
+    /// Creates strips without lines, for `directions` from targets over an area.
     pub(crate) fn new(directions: &[[f64; 3]], targets: &MapArea) -> Self {
         let extent = (targets.high[0] - targets.low[0]).hypot(targets.high[1] - targets.low[1]);
         let width = WIDTH.max(extent / MAX_STRIPS);
@@ -68,13 +68,13 @@ impl Strips {
         }
     }
 
-    /// Looks up where the lines of `free` in the directions of `columns` run, which ascend.
+    /// Finds the strips of the lines of `free` in the directions of `columns`, which ascend.
     pub(crate) fn look_up(&mut self, free: &FreeLines<'_>, columns: &[usize]) {
         let (width, courses) = (self.width, self.courses.iter_mut().enumerate());
         let mut looked_up: Vec<(usize, &mut DirectionLines)> =
             courses.filter(|(column, _)| columns.binary_search(column).is_ok()).collect();
         let low_count = looked_up.iter().filter(|(_, course)| course.is_low()).count();
-        // where lines reach far each has its own start
+        // Where lines run far, each has its own start.
         let of_low = (free.target_count() * low_count).div_ceil(MAX_STARTS);
         looked_up.par_chunks_mut(TOGETHER).for_each(|courses| {
             for (is_low, together) in [(true, of_low), (false, NEIGHBOURS)] {
@@ -94,8 +94,8 @@ impl Strips {
         });
     }
 
-    /// The columns of the directions in which something on one of the squares of 16 m with the highest `tops` may block
-    /// a line.
+    /// Returns the columns of directions with a line that may be blocked. Obstacles lie on squares of 16 m with the
+    /// highest `tops`.
     pub(crate) fn meeting(&self, tops: &[([i32; 2], f32)]) -> Vec<usize> {
         let squares: Vec<(MapArea, f64)> =
             tops.iter().map(|&(number, top)| (square_area(number, TOP_SIDE), f64::from(top))).collect();
@@ -105,8 +105,8 @@ impl Strips {
         courses.filter(|(_, course)| meets(course)).map(|(column, _)| column).collect()
     }
 
-    /// How high balls on squares of 16 m with the highest `tops` must be to block a line in the directions of any of
-    /// `columns`.
+    /// Returns the minimum tops of balls that may block a line in any direction of `columns`. Balls lie on squares of
+    /// 16 m with the highest `tops`.
     pub(crate) fn min_tops(&self, columns: &[usize], tops: &[([i32; 2], f32)]) -> MinTops {
         let courses: Vec<&DirectionLines> = columns.iter().filter_map(|&column| self.courses.get(column)).collect();
         let min = |area: &MapArea| {
@@ -114,7 +114,7 @@ impl Strips {
         };
         let of_square = |&(number, top): &([i32; 2], f32)| {
             let reached = f64::from(top) >= min(&square_area(number, TOP_SIDE).widened(MAX_BALL));
-            // numbers in a damaged record may be any
+            // Numbers in a damaged record may have any value.
             let [east, north] = number.map(|number| number.wrapping_mul(PARTS));
             let cells =
                 (0..PARTS * PARTS).map(move |part| [east.wrapping_add(part % PARTS), north.wrapping_add(part / PARTS)]);
@@ -125,8 +125,8 @@ impl Strips {
     }
 }
 
-/// How high balls must be to block a line: by the cell of their centre, those of small and those of any radius. In
-/// other cells none blocks.
+/// Minimum tops of balls that block a line, by the cell of their centre: for small balls and for balls of any radius.
+/// In other cells no ball blocks.
 pub(crate) struct MinTops(HashMap<[i32; 2], [f64; 2]>);
 
 impl MinTops {
@@ -153,17 +153,17 @@ impl DirectionLines {
         Self { along, slope, left, strips: vec![NO_LINES; count] }
     }
 
-    /// Whether lines reach far.
+    /// True if lines run far.
     fn is_low(&self) -> bool {
         self.slope < LOW_SLOPE
     }
 
-    /// From where to where an area reaches along the lines and across.
+    /// Returns the ranges of an area along the lines and across.
     fn spans(&self, area: &MapArea) -> [[f64; 2]; 2] {
         [area.span(self.along), area.span([-self.along[1], self.along[0]])]
     }
 
-    /// The strips that something between two places across the lines meets.
+    /// Returns the strips that meet a range across the lines.
     fn met(&self, [from, to]: [f64; 2], width: f64) -> std::ops::Range<usize> {
         let place = |v: f64| (v - self.left) / width;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
@@ -181,7 +181,7 @@ impl DirectionLines {
         }
     }
 
-    /// How high something over `area` must be to block a line, local metres.
+    /// Returns the minimum top of an obstacle over `area` that may block a line, local metres.
     fn min_top(&self, area: &MapArea, width: f64) -> f64 {
         let [[near, far], [left, right]] = self.spans(area);
         let met = self.strips.get(self.met([left - ROOM, right + ROOM], width)).unwrap_or_default();
@@ -197,7 +197,7 @@ mod tests {
     use belvedere::medial::MedialBalls;
     use belvedere::random::uniform;
 
-    /// Rays and balls at random, and steep ones among them: what meets is never left out, and much that does not is.
+    /// Random lines and balls, steep lines among them: no ball that blocks a line is left out, and many others are.
     #[test]
     fn what_blocks_a_line_is_found_and_little_else() {
         let random = |seed: u64, i: u64, low: f64, high: f64| low + (high - low) * uniform(seed, i);
@@ -241,7 +241,7 @@ mod tests {
                     })
                 })
             };
-            // as many lines tried in turn for many targets as for few
+            // As many tests of lines for many targets as for few.
             let tried = (0..2000).step_by(1 + targets.len() / 2000);
             let blocking: Vec<usize> = tried.filter(|&row| blocks(row)).collect();
             assert!(!blocking.is_empty());

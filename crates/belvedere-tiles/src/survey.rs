@@ -1,4 +1,4 @@
-//! One pass over all points: where they lie, how high, and samples of them.
+//! One pass over all points: their places, their heights, and samples of them.
 
 use crate::columns::append;
 use crate::grid::{MapArea, block_of};
@@ -12,51 +12,51 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 
-/// Most points of the sample along flight lines.
+/// Maximum number of points in the sample along flight lines.
 const MAX_SAMPLED: u64 = 4_000_000;
-/// Places whose points are all kept, along each side of the survey, and their side, metres.
+/// Number of places, along each side of the survey, with all points kept, and the side of a place, metres.
 const PLACES: u32 = 5;
 const PLACE_M: f64 = 40.0;
-/// Height of the levels that points are counted in, metres. Points that are not isolated have two others within it.
+/// Height of the levels in which points are counted, metres. Points that are not isolated have two others within it.
 const LEVEL_M: f32 = 4.0;
-/// Fewest points of a level and those next to it for it to count as more than strays.
+/// Minimum number of points in a level and its two neighbours; fewer are strays.
 const FEWEST: u32 = 3;
-/// Blocks of 64 m around a block that its height is compared with.
+/// Number of blocks of 64 m on each side of a block that its height is compared with.
 const AROUND: i32 = 5;
-/// LAS flag of withheld points, and classes of noise: what cleaning leaves out.
+/// LAS flag of withheld points, and classes of noise, which cleaning removes.
 const WITHHELD: u8 = 4;
 const NOISE: [u8; 2] = [7, 18];
 /// ASPRS class of ground.
 const GROUND: u8 = 2;
 
-/// The points of a block of 64 m.
+/// Points of a block of 64 m.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SurveyBlock {
-    /// Number east and north from the origin of local coordinates.
+    /// Column east and row north of the block, from the origin of local coordinates.
     pub at: [i32; 2],
     /// Number of points.
     pub points: u64,
-    /// Lowest and highest point, strays left out, local metres.
+    /// Height of the lowest and the highest point without strays, local metres.
     pub heights: [f32; 2],
 }
 
-/// What a pass over a survey found.
+/// Result of a pass over a survey.
 pub(crate) struct SurveyOverview {
     pub(crate) blocks: Vec<SurveyBlock>,
     pub(crate) bounds: Option<Bounds>,
     pub(crate) extremes: SurveyExtremes,
-    /// Points that count, and those of them of the class of ground.
+    /// Number of counted points, and of those with the class of ground.
     points: [u64; 2],
-    /// Whole pulses at random.
+    /// Random sample of whole pulses.
     pub(crate) along_lines: PointCloud,
     /// All points of some places.
     pub(crate) places: PointCloud,
-    /// The rectangles around the pieces of each file.
+    /// Rectangles around the pieces of each file.
     pub(crate) pieces: HashMap<PathBuf, Vec<PieceCell>>,
 }
 
 impl SurveyOverview {
-    /// Which points are ground, by the rule of [`GroundPoints::Auto`] for all of the survey.
+    /// Returns the kind of ground points for the whole survey, by the rule of [`GroundPoints::Auto`].
     pub(crate) fn ground_points(&self) -> GroundPoints {
         let [points, ground] = self.points;
         if ground < points.div_ceil(1000) { GroundPoints::Found } else { GroundPoints::Classed }
@@ -66,11 +66,11 @@ impl SurveyOverview {
 #[derive(Default)]
 struct PointCounts {
     points: u64,
-    /// By number of the level: points, lowest and highest.
+    /// By number of the level: count of points, lowest and highest point.
     levels: BTreeMap<i32, (u32, f32, f32)>,
 }
 
-/// Looks at all points of `files`, which hold about `point_count`, in `area`.
+/// Reads all points of `files` in `area`. The files have about `point_count` points.
 pub(crate) fn survey(
     files: &[PathBuf],
     options: &ReadOptions,
@@ -89,7 +89,7 @@ pub(crate) fn survey(
     let mut bounds: Option<Bounds> = None;
     let mut points = [0; 2];
     let mut pieces: HashMap<PathBuf, Vec<PieceCell>> = HashMap::new();
-    // sources live as long as the work
+    // Sources must outlive the read.
     for batch in read_batches(files.to_vec(), &options.clone().with_row_numbers(), control)? {
         let CloudBatch { cloud, source, rows } = batch?;
         hold_rows(pieces.entry(source).or_default(), &rows, &cloud.positions);
@@ -128,7 +128,7 @@ pub(crate) fn survey(
     Ok(SurveyOverview { blocks, bounds, extremes, points, along_lines, places: of_places, pieces })
 }
 
-/// Widens the cells of the pieces that `rows` of a file belong to.
+/// Widens the rectangles of the pieces that contain `rows` of a file.
 fn hold_rows(pieces: &mut Vec<PieceCell>, rows: &[u64], positions: &[[f32; 3]]) {
     for (&row, &p) in rows.iter().zip(positions) {
         let number = usize::try_from(row / PIECE_ROWS).unwrap_or(usize::MAX);
@@ -139,7 +139,7 @@ fn hold_rows(pieces: &mut Vec<PieceCell>, rows: &[u64], positions: &[[f32; 3]]) 
     }
 }
 
-/// The top of all blocks, and the largest height of one above the lowest around it.
+/// Sets the top of all blocks, and the largest height of a block above the lowest point around it.
 fn add_heights(extremes: &mut SurveyExtremes, blocks: &[SurveyBlock]) {
     let by_place: BTreeMap<[i32; 2], f32> = blocks.iter().map(|block| (block.at, block.heights[0])).collect();
     for block in blocks {
@@ -152,7 +152,7 @@ fn add_heights(extremes: &mut SurveyExtremes, blocks: &[SurveyBlock]) {
     }
 }
 
-/// Whether a point is one of those that blocks count: neither noise nor withheld.
+/// Returns true if blocks count the point: it is neither noise nor withheld.
 pub(crate) fn is_counted(p: [f32; 3], class: u8, flags: u8) -> bool {
     flags & WITHHELD == 0 && !NOISE.contains(&class) && p.iter().all(|v| v.is_finite())
 }
@@ -175,7 +175,7 @@ fn joined(a: &Bounds, b: &Bounds) -> Bounds {
     }
 }
 
-/// Squares spread evenly over `area`.
+/// Returns squares spread evenly over `area`.
 fn places(area: &MapArea) -> Vec<MapArea> {
     let side = |axis: usize| area.high[axis] - area.low[axis];
     let middle = |number: u32, axis: usize| area.low[axis] + (f64::from(number) + 0.5) / f64::from(PLACES) * side(axis);
@@ -187,7 +187,7 @@ fn places(area: &MapArea) -> Vec<MapArea> {
     numbers.map(place).collect()
 }
 
-/// Bits in which those of similar numbers have nothing in common.
+/// Mixes bits so that similar numbers give independent bits.
 ///
 /// # Source
 /// The finaliser of SplitMix64 (Steele, Lea & Flood 2014).

@@ -1,4 +1,4 @@
-//! The points of a rectangle of the survey, the same in every tile that reads them.
+//! Points of a rectangle of the survey, the same in every tile that reads them.
 
 use crate::columns::append;
 use crate::grid::{MapArea, block_area, block_of};
@@ -11,17 +11,17 @@ use belvedere::{Error, Frame, PointCloud, Result};
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-/// The points of the plan's files within `area`, in the order of the files and of their points.
+/// Reads the points of the plan's files within `area`, in the order of the files and of their points.
 ///
 /// # Errors
-/// Those of [`read_batches`], and [`Error::Malformed`] for a file that is no longer what it was.
+/// Those of [`read_batches`], and [`Error::Malformed`] for a changed file.
 pub(crate) fn read(plan: &Plan, area: &MapArea, control: &Control<'_>) -> Result<PointCloud> {
     let mut cloud = PointCloud::in_frame(plan.frame()?);
     each_batch(plan, area, control, |batch| append(&mut cloud, batch, plan.columns))?;
     Ok(cloud)
 }
 
-/// Gives `take` the points of [`read`], part by part.
+/// Passes the points of [`read`] to `take`, part by part.
 pub(crate) fn each_batch(
     plan: &Plan,
     area: &MapArea,
@@ -45,7 +45,7 @@ pub(crate) fn each_batch(
     Ok(())
 }
 
-/// Refuses points of a run that are not those that the plan counted in the blocks of `area`, all of which they hold.
+/// Refuses points of a run whose counts differ from the plan. `cloud` has all points of the blocks of `area`.
 ///
 /// # Errors
 /// [`Error::Malformed`] for a file that hides points, or has more.
@@ -91,7 +91,7 @@ pub(crate) fn options(
     }
 }
 
-/// Whether nothing is there, which is no failure for a tile.
+/// Returns true if the error only means an empty tile, which is no failure.
 pub(crate) fn is_nothing(error: &Error) -> bool {
     matches!(error, Error::NoPoints { .. } | Error::NoSurface { .. })
 }

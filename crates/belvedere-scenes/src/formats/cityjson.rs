@@ -10,24 +10,24 @@ use crate::vector::{cross, sub, unit};
 const STEP: f64 = 0.001;
 /// Level of detail of every geometry: the exact shape, roof overhangs and balconies included.
 const LEVEL_OF_DETAIL: &str = "3";
-/// A surface counts as level where its normal is steeper than this above or below the horizon, as a sine: 45°.
+/// Minimum absolute sine of the elevation of the normal of a level surface: 45°.
 const LEVEL_SINE: f64 = 0.707;
-/// Height above the lowest corner of a part up to which an underside is its floor on the ground, metres.
+/// Maximum height of a floor on the ground above the lowest corner of its part, metres.
 const FLOOR_REACH: f64 = 1.0;
 
 impl TriangleScene {
-    /// CityJSON 2.0 text: one city object per object of the scene, named alike (blanks and other signs turned into
-    /// underscores).
+    /// Returns CityJSON 2.0 text: one city object per object of the scene, with its name. Blanks and other signs become
+    /// underscores.
     ///
-    /// What has roofs or walls is a `Building` with a `BuildingPart` for each of its parts, named `building_3-1`…,
-    /// whose triangles carry `RoofSurface`, `WallSurface`, `GroundSurface`, `OuterFloorSurface` or
+    /// Objects with roofs or walls become a `Building` with a `BuildingPart` for each part, named `building_3-1`….
+    /// Their triangles have the types `RoofSurface`, `WallSurface`, `GroundSurface`, `OuterFloorSurface` or
     /// `OuterCeilingSurface`, by material and slope. Ground is a `TINRelief`, trees are `SolitaryVegetationObject`s,
-    /// bridges `Bridge`s, fences, masts and wires `CityFurniture`, all else `GenericCityObject`s. A closed part is a
-    /// `Solid`; several closed pieces make a `MultiSolid`, or a `MultiSurface` within a building. Coordinates have
-    /// millimetres.
+    /// bridges `Bridge`s, fences, masts and wires `CityFurniture`. Other objects are `GenericCityObject`s. A closed
+    /// part is a `Solid`. Several closed pieces make a `MultiSolid`, or a `MultiSurface` within a building. Coordinates
+    /// have millimetres.
     ///
-    /// `parts` (T) says to which part of its object each triangle belongs, by any number; where it is empty, triangles
-    /// that share vertices form a part. `epsg` is the code of the reference system.
+    /// `parts` (T) gives the number of the part of each triangle, within its object. If it is empty, triangles that
+    /// share vertices form a part. `epsg` is the code of the reference system.
     ///
     /// # Source
     /// CityJSON 2.0.1 specification, sections 2 (city objects), 3 (geometry and semantics) and 4 (transform).
@@ -84,7 +84,7 @@ impl TriangleScene {
         text
     }
 
-    /// Number of the piece of surface of each triangle, (T): triangles that share a vertex are of one piece.
+    /// Returns the number of the connected piece of each triangle, (T): triangles that share a vertex are of one piece.
     fn connected_pieces(&self) -> Vec<u32> {
         let mut parent: Vec<u32> = (0..index_u32(self.vertices.len())).collect();
         let root = |parent: &mut Vec<u32>, mut vertex: u32| {
@@ -112,7 +112,7 @@ impl TriangleScene {
         self.triangles.iter().map(|&[a, ..]| root(&mut parent, a)).collect()
     }
 
-    /// Triangles with the same `key`, in the order of their first one.
+    /// Groups triangles by `key`, in the order of their first one.
     fn triangles_by(&self, key: impl Fn(usize) -> u32) -> Vec<Vec<usize>> {
         group(&(0..self.triangles.len()).collect::<Vec<_>>(), key)
     }
@@ -121,7 +121,7 @@ impl TriangleScene {
         self.materials.get(triangle).copied().unwrap_or(Material::Slab)
     }
 
-    /// Type of the city object that `triangles` make up.
+    /// Returns the type of the city object of `triangles`.
     fn kind_of(&self, triangles: &[usize]) -> &'static str {
         let has = |wanted: &[Material]| triangles.iter().any(|&t| wanted.contains(&self.material(t)));
         let kinds: [(&[Material], &str); 5] = [
@@ -134,7 +134,7 @@ impl TriangleScene {
         kinds.iter().find(|(materials, _)| has(materials)).map_or("GenericCityObject", |(_, kind)| kind)
     }
 
-    /// Geometry object of `triangles`.
+    /// Returns the geometry object of `triangles`.
     fn geometry(&self, triangles: &[usize], pieces: &[u32], semantics: Semantics) -> String {
         let is_sheet = triangles.iter().all(|&t| self.material(t) == Material::Terrain);
         let shells = group(triangles, |t| pieces.get(t).copied().unwrap_or(0));
@@ -167,7 +167,7 @@ impl TriangleScene {
         text
     }
 
-    /// The kinds of surface among `triangles`, and which of them each triangle is.
+    /// Returns the kinds of surface among `triangles`, and for each triangle the index of its kind.
     fn building_surfaces(&self, triangles: &[usize]) -> (Vec<&'static str>, Vec<usize>) {
         let corners = |t: usize| self.corners(t).unwrap_or_default();
         let lowest = triangles.iter().flat_map(|&t| corners(t)).map(|corner| corner[2]).fold(f64::INFINITY, f64::min);
@@ -193,14 +193,14 @@ impl TriangleScene {
     }
 }
 
-/// Whether surfaces carry their meaning.
+/// Semantics of surfaces: types for buildings, or none.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Semantics {
     Building,
     Without,
 }
 
-/// `triangles` with the same `key`, in the order of their first one.
+/// Groups `triangles` by `key`, in the order of their first one.
 fn group(triangles: &[usize], key: impl Fn(usize) -> u32) -> Vec<Vec<usize>> {
     let mut places: BTreeMap<u32, usize> = BTreeMap::new();
     let mut groups: Vec<Vec<usize>> = Vec::new();
@@ -214,7 +214,7 @@ fn group(triangles: &[usize], key: impl Fn(usize) -> u32) -> Vec<Vec<usize>> {
     groups
 }
 
-/// `wanted` in letters, digits, `-` and `_`, made different from all names before.
+/// Returns `wanted` in letters, digits, `-` and `_`, made different from all earlier names.
 fn unused_name(names: &mut HashSet<String>, wanted: &str) -> String {
     let plain: String =
         wanted.chars().map(|c| if c.is_alphanumeric() || c == '-' || c == '_' { c } else { '_' }).collect();

@@ -1,4 +1,4 @@
-//! Scenes as text that other programs read.
+//! Text formats of scenes for other programs.
 
 mod cityjson;
 mod obj;

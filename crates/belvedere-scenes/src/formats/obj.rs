@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use crate::scene::TriangleScene;
 
 impl TriangleScene {
-    /// Wavefront OBJ text: vertices with millimetres in absolute coordinates, one `o` group per object (blanks of its
-    /// name turned into underscores), `usemtl` with [`crate::Material::name`].
+    /// Returns Wavefront OBJ text: vertices with millimetres in absolute coordinates, and one `o` group per object.
+    /// Blanks in the name of an object become underscores. `usemtl` has the name of [`crate::Material::name`].
     #[must_use]
     pub fn to_obj(&self) -> String {
         let mut text = String::with_capacity(self.vertices.len() * 36 + self.triangles.len() * 24);

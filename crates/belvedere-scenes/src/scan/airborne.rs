@@ -1,4 +1,4 @@
-//! An airborne laser scanner over parallel flight strips.
+//! Airborne laser scanner over parallel flight strips.
 
 use rayon::prelude::*;
 
@@ -11,14 +11,14 @@ use crate::scan::scan_pattern::{PulseSweep, ScanPattern};
 use crate::scene::TriangleScene;
 use crate::truth::Truth;
 
-/// Pulses per m² where no number is wanted: what national surveys have.
+/// Default number of pulses per m², usual in national surveys.
 pub const DENSITY: f64 = 10.0;
 
-/// How a scene is flown. Values outside their ranges that leave nothing to fly (a height, speed, density or angle that
-/// is not positive) give a scan without points.
+/// Parameters of an airborne survey. A height, speed, density or angle that is not positive leaves nothing to fly, and
+/// gives a scan without points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AirborneParams {
-    /// Any number; another one gives other noise and another wander. Default 1.
+    /// Seed of noise and wander, any number. Default 1.
     pub seed: u64,
     /// Path of the pulses over the ground. Default rotating.
     pub pattern: ScanPattern,
@@ -29,22 +29,22 @@ pub struct AirborneParams {
     /// Heading of the first strip, radians clockwise from north; every second strip is flown back. Default π/6: oblique
     /// to the streets, so that walls of all sides get points, about one per m² with the other defaults.
     pub heading: f64,
-    /// Strips, 1 to 1000. Default 2.
+    /// Number of strips, 1 to 1000. Default 2.
     pub strip_count: u16,
-    /// Distance between strips, metres. Default 260: with the default height and angle, strips of 420 m overlap by 38
-    /// %, and the default town lies in the overlap, seen under 9° to 23° from either side.
+    /// Distance between strips, metres. Default 260. With the default height and angle, strips of 420 m then overlap by
+    /// 38 %. The default town lies in the overlap, seen under 9° to 23° from either side.
     pub strip_spacing: f64,
-    /// Further strips at right angles to the others, as far apart, 0 to 1000. Default 0.
+    /// Number of further strips at right angles to the others, with the same spacing, 0 to 1000. Default 0.
     pub cross_strip_count: u16,
-    /// Greatest angle from nadir, radians, 0 to 1.2; a conical pattern has its own. Default 25°.
+    /// Maximum angle from nadir, radians, 0 to 1.2; a conical pattern has its own. Default 25°.
     pub half_angle: f64,
-    /// Pulses per m² and strip on level ground, mean over the strip, 0.01 to 100. Default 5.5: two strips give about
-    /// ten. It sets [`AirborneParams::line_rate`] and [`AirborneParams::pulse_rate`].
+    /// Mean number of pulses per m² in a strip on level ground, 0.01 to 100. Default 5.5: two strips give about ten. It
+    /// sets [`AirborneParams::line_rate`] and [`AirborneParams::pulse_rate`].
     pub pulses_per_m2: f64,
     /// Shape of the pulses.
     pub beam: BeamParams,
-    /// Standard deviation of a range, metres, 0 to 0.1; at most a tenth of the range resolution keeps returns of a
-    /// pulse in order. Default 0.02, as data sheets state.
+    /// Standard deviation of a range, metres, 0 to 0.1. Up to a tenth of the range resolution, returns of a pulse stay
+    /// in order. Default 0.02, as in data sheets.
     pub range_sd: f64,
     /// Standard deviation of the direction of a pulse about each of two axes, radians, 0 to 0.001. Default 4e-5: 2 cm
     /// on the ground.
@@ -54,7 +54,7 @@ pub struct AirborneParams {
     pub boresight_sd: f64,
     /// Share of pulses lost, 0 to 1. Default 0.01.
     pub dropout: f64,
-    /// Amplitude of the sideways departure from the straight line, metres, 0 to 20; half of it up and down. Default 1.
+    /// Amplitude of the sideways deviation from the straight line, metres, 0 to 20; half of it up and down. Default 1.
     pub wander: f64,
     /// Adjusted standard GPS time at the start, seconds. Default 3e8, a day in March 2021.
     pub start_time: f64,
@@ -88,18 +88,18 @@ impl Default for AirborneParams {
 }
 
 impl AirborneParams {
-    /// A survey of `scene`, whatever its size, with `pulses_per_m2` in all: strips that let every place be seen from
-    /// both sides, and crowns that pulses enter ([`BeamParams::in_leaf`]); the other parameters are the defaults.
+    /// Returns the parameters of a survey of `scene`, for any size, with `pulses_per_m2` in total. Strips see every
+    /// place from both sides, and pulses enter crowns ([`BeamParams::in_leaf`]). The other parameters are the defaults.
     #[must_use]
     pub fn covering(scene: &TriangleScene, pulses_per_m2: f64) -> Self {
         Self { beam: BeamParams::in_leaf(), ..Self::default() }.spread_over(scene, None, pulses_per_m2)
     }
 
-    /// The same scanner with strips and pulses for `scene`: the outer strips over its edges, as many between them as
-    /// `strip_count` says, and `pulses_per_m2` on the mean over its ground, all strips together.
+    /// Returns this scanner with strips and pulses for `scene`. The outer strips lie over its edges, with `strip_count`
+    /// strips in total. All strips together have a mean of `pulses_per_m2` over its ground.
     ///
-    /// Without a count strips are at most half their width apart, so that every place lies between two that see it from
-    /// either side: two for a town of 150 m with the default height and angle, three for 300 m.
+    /// Without a count, strips are at most half their width apart, so that two strips see every place from either side.
+    /// With the default height and angle, a town of 150 m gets two strips, and one of 300 m three.
     #[must_use]
     pub fn spread_over(mut self, scene: &TriangleScene, strip_count: Option<u16>, pulses_per_m2: f64) -> Self {
         if !self.leaves_something_to_fly() {
@@ -116,8 +116,9 @@ impl AirborneParams {
         self
     }
 
-    /// Scan lines (sweeps of the mirror, turns of the cone) per second, chosen so that lines are as far apart as pulses
-    /// within a line are on average; under the aircraft for a cone, whose two lines there cross every place.
+    /// Returns the number of scan lines (sweeps of the mirror, turns of the cone) per second. Lines are as far apart as
+    /// pulses within a line are on average. For a cone this holds below the aircraft, where two lines cross every
+    /// place.
     #[must_use]
     pub fn line_rate(&self) -> f64 {
         match self.pattern {
@@ -126,19 +127,19 @@ impl AirborneParams {
         }
     }
 
-    /// Pulses per second. All of them fall within the scan angle, whereas a real mirror wastes some.
+    /// Returns the number of pulses per second. All of them fall within the scan angle; a real mirror wastes some.
     #[must_use]
     pub fn pulse_rate(&self) -> f64 {
         f64::from(self.pulses_per_line()) * self.line_rate()
     }
 
-    /// Width of the ground that a strip covers, metres.
+    /// Returns the width of the ground that a strip covers, metres.
     #[must_use]
     pub fn swath(&self) -> f64 {
         2.0 * self.flying_height * self.greatest_angle().tan()
     }
 
-    /// Greatest angle of a pulse from nadir, radians.
+    /// Returns the maximum angle of a pulse from nadir, radians.
     #[must_use]
     pub fn greatest_angle(&self) -> f64 {
         if let ScanPattern::Conical { half_angle } = self.pattern { half_angle } else { self.half_angle }
@@ -153,7 +154,7 @@ impl AirborneParams {
             ScanPattern::Rotating | ScanPattern::Oscillating(_) => {
                 saturating_count(self.swath() * self.pulses_per_m2.sqrt())
             }
-            // around the circle, as far apart as the circles are
+            // Around the circle, pulses are as far apart as the circles are.
             ScanPattern::Conical { .. } => {
                 saturating_count(self.swath() * (std::f64::consts::PI * self.pulses_per_m2).sqrt())
             }
@@ -167,17 +168,17 @@ impl AirborneParams {
     }
 }
 
-/// Most strips that [`AirborneParams::spread_over`] makes of itself.
+/// Maximum number of strips that [`AirborneParams::spread_over`] chooses without a count.
 const MAX_STRIPS: u32 = 1000;
 
-/// Flies over `scene` and returns what the scanner records.
+/// Flies over `scene` and returns the recorded scan.
 ///
 /// Each pulse draws its noise from its own stream, so the scan has the same bits for any number of threads. The cost is
-/// that of seven rays for each pulse that meets the scene. Pulses point where [`AirborneParams::pattern`] says; the
-/// aircraft neither rolls, pitches nor yaws.
+/// that of seven rays for each pulse that meets the scene. [`AirborneParams::pattern`] sets the directions of the
+/// pulses. The aircraft does not roll, pitch or yaw.
 ///
-/// The scan angle is the part of the angle from nadir across the flight, as files of conical scanners carry it too:
-/// theirs runs from -20° to 20° and is 0 straight ahead and behind, although every pulse is 20° from nadir.
+/// The scan angle is the component of the angle from nadir across the flight, as in files of conical scanners. For a
+/// cone of 20° it runs from -20° to 20° and is 0 straight ahead and behind, although every pulse is 20° from nadir.
 #[must_use]
 pub fn scan_airborne(scene: &TriangleScene, params: &AirborneParams) -> Scan {
     let mut scan = Scan::default();
@@ -197,7 +198,7 @@ pub fn scan_airborne(scene: &TriangleScene, params: &AirborneParams) -> Scan {
     scan
 }
 
-/// Returns of one line of a strip.
+/// Returns the scan of one line of a strip.
 fn scan_line(scene: &TriangleScene, truth: &Truth, params: &AirborneParams, strip: &FlightStrip, line: u32) -> Scan {
     let mut scan = Scan::default();
     let recorder = Recorder {

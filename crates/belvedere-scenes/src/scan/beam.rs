@@ -1,29 +1,30 @@
-//! A laser pulse: a narrow cone that may meet several surfaces.
+//! Laser pulse: a narrow cone that may meet several surfaces.
 
 use crate::random::Random;
 use crate::scene::{Material, TriangleScene};
 use crate::truth::{CONTACT, Truth};
 use crate::vector::{add_scaled, cross, dot, sub, unit};
 
-/// Shape of a pulse and how its echoes are separated.
+/// Shape of a pulse and separation of its echoes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BeamParams {
-    /// Full angle of the cone that holds all but 1/e² of the energy, radians, 0 to 0.01. Default 0.0004: usual for
+    /// Full angle of the cone that contains all but 1/e² of the energy, radians, 0 to 0.01. Default 0.0004: usual for
     /// airborne scanners, 18 cm on the ground from 450 m.
     pub divergence: f64,
-    /// Echoes closer together than this merge into one, metres, 0.1 to 10. Default 0.8: a pulse of 5 ns.
+    /// Minimum distance between two echoes, metres, 0.1 to 10; closer ones merge. Default 0.8: a pulse of 5 ns.
     pub range_resolution: f64,
-    /// Share of the energy of the pulse below which an echo goes unnoticed, 0 to 1. Default 0.15: more than one of the
+    /// Share of the energy of the pulse below which an echo is not detected, 0 to 1. Default 0.15: more than one of the
     /// six outer rays, less than the centre ray.
     pub weakest_echo: f64,
-    /// Most echoes recorded per pulse, the first ones, 1 to 15. Default 5.
+    /// Maximum number of echoes recorded per pulse, the first ones, 1 to 15. Default 5.
     pub max_returns: u8,
-    /// Probability that a ray passes through the hull of a crown, at entry and (without [`BeamParams::foliage_depth`])
-    /// again at exit, 0 to 1. Default 0.35: a seventh of the energy reaches the ground below, as in trees in leaf.
+    /// Probability that a ray passes through the hull of a crown at entry, 0 to 1. Without
+    /// [`BeamParams::foliage_depth`] it applies again at exit. Default 0.35: a seventh of the energy reaches the ground
+    /// below, as in trees in leaf.
     pub crown_porosity: f64,
-    /// Mean free path of a ray among the leaves inside a crown, metres, 0 to 100. Default 0: rays are stopped by the
-    /// hull alone, so that every return lies on a triangle. Otherwise a ray that passed the hull is stopped after an
-    /// exponentially distributed path, inside the crown, or leaves the crown freely.
+    /// Mean free path of a ray among the leaves inside a crown, metres, 0 to 100. Default 0: only the hull stops rays,
+    /// so that every return lies on a triangle. Otherwise a ray that passed the hull is stopped after an exponentially
+    /// distributed path inside the crown, or leaves the crown freely.
     pub foliage_depth: f64,
 }
 
@@ -41,71 +42,71 @@ impl Default for BeamParams {
 }
 
 impl BeamParams {
-    /// The default pulse in crowns that it enters, before a receiver that notices weak echoes: half of the rays pass
-    /// the hull and then get 1.5 m deep on average.
+    /// Returns a pulse that enters crowns, for a receiver that detects weak echoes; other values are the defaults. Half
+    /// of the rays pass the hull and then reach a mean depth of 1.5 m.
     ///
-    /// Four fifths of the pulses that meet a crown then give several returns, a quarter reach the ground, and half of
-    /// the returns inside crowns lie within a metre of the hull. Over a town a twelfth of whose ground lies under
-    /// crowns that makes 7 % of all pulses; in AHN3 over Delft, with more trees, it is 21 %.
+    /// Four fifths of the pulses that meet a crown then give several returns, and a quarter reach the ground. Half of
+    /// the returns inside crowns lie within a metre of the hull. Over a town with a twelfth of its ground under crowns,
+    /// 7 % of all pulses give several returns. In AHN3 over Delft, with more trees, it is 21 %.
     #[must_use]
     pub fn in_leaf() -> Self {
         Self { weakest_echo: 0.1, crown_porosity: 0.5, foliage_depth: 1.5, ..Self::default() }
     }
 }
 
-/// Rays that represent a pulse: one in the centre, six on a ring.
+/// Number of rays on a ring that represent a pulse, besides one in the centre.
 const RING: u8 = 6;
-/// Energy of the centre ray: what a Gaussian beam holds within 0.4 of its 1/e² radius, 1 − exp(−2 · 0.4²).
+/// Energy of the centre ray: the share of a Gaussian beam within 0.4 of its 1/e² radius, 1 − exp(−2 · 0.4²).
 const CENTRE_ENERGY: f64 = 0.274;
-/// Radius of the ring in 1/e² radii: half of the energy outside the centre lies within, 1 − exp(−2 · 0.71²) ≈ 0.637.
+/// Radius of the ring in 1/e² radii. Half of the energy outside the centre lies within it, 1 − exp(−2 · 0.71²) ≈ 0.637.
 const RING_RADIUS: f64 = 0.71;
 
-/// Where a pulse starts and points.
+/// Origin and direction of a pulse.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Axis {
     pub(crate) origin: [f64; 3],
     /// Unit vector along the pulse.
     pub(crate) direction: [f64; 3],
-    /// Unit vectors across the pulse and each other.
+    /// Unit vectors perpendicular to the pulse and to each other.
     pub(crate) across: [[f64; 3]; 2],
 }
 
 impl Axis {
-    /// Unit vector at small angles from the axis, radians along each of `across`.
+    /// Returns the unit vector at small angles from the axis, radians along each of `across`.
     pub(crate) fn tilted(&self, direction: [f64; 3], angles: [f64; 2]) -> [f64; 3] {
         let tilted = add_scaled(add_scaled(direction, self.across[0], angles[0]), self.across[1], angles[1]);
         unit(tilted).unwrap_or(direction)
     }
 }
 
-/// An echo of a pulse.
+/// Echo of a pulse.
 ///
-/// It represents the strongest of the rays that make it up, not for their mean: that ray met one surface, or leaves
-/// inside one crown. A scanner knows the range of an echo but not which part of the beam met something. It therefore
-/// reports the echo at this range on the axis of the pulse, up to half a beam beside the surface that was met.
+/// Range and direction of the echo are those of the strongest of its rays, not a mean. That ray met one surface, or
+/// leaves inside one crown. A scanner knows the range of an echo but not the part of the beam that met a surface. It
+/// therefore reports the echo at this range on the axis of the pulse, up to half a beam beside the surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Echo {
     pub(crate) range: f64,
-    /// Unit vector of the ray that represents the echo, which ends on what was met; not the axis of the pulse.
+    /// Unit vector of the ray that represents the echo, which ends on the surface; not the axis of the pulse.
     pub(crate) direction: [f64; 3],
-    /// Triangle met; within a crown, where the ray entered it.
+    /// Triangle that the ray met; for leaves in a crown, the triangle through which the ray entered.
     pub(crate) triangle: u32,
     pub(crate) material: Material,
     /// Share of the energy of the pulse that met the surfaces of this echo.
     pub(crate) energy: f64,
-    /// Share that comes back: energy times reflectance times cosine of incidence.
+    /// Share of the energy that returns: energy times reflectance times cosine of incidence.
     pub(crate) brightness: f64,
 }
 
 /// Echoes of one pulse.
 pub(crate) struct PulseEchoes {
-    /// By increasing range, farther apart than the range resolution.
+    /// Echoes by increasing range, farther apart than the range resolution.
     pub(crate) echoes: Vec<Echo>,
-    /// Echoes left out as too weak or too many.
+    /// Number of echoes left out as too weak or too many.
     pub(crate) dropped: usize,
 }
 
-/// Sends a pulse into a scene; what lies farther than `max_range` metres gives no echo.
+/// Sends a pulse into a scene; surfaces farther than `max_range` metres give no echo.
 pub(crate) fn pulse_echoes(
     scene: &TriangleScene,
     truth: &Truth,
@@ -137,7 +138,7 @@ pub(crate) fn pulse_echoes(
     PulseEchoes { dropped: cluster_count - echoes.len(), echoes }
 }
 
-/// Angles from the axis and energy of each ray of a pulse.
+/// Returns the angles from the axis and the energy of each ray of a pulse.
 fn sub_rays(divergence: f64) -> impl Iterator<Item = ([f64; 2], f64)> {
     let ring_energy = (1.0 - CENTRE_ENERGY) / f64::from(RING);
     let ring = (0..RING).map(move |i| {
@@ -165,19 +166,19 @@ impl SubRay {
     }
 }
 
-/// Cosine of incidence on a leaf: the mean over leaves that face all ways alike.
+/// Cosine of incidence on a leaf: the mean over leaves of all orientations.
 const LEAF_COSINE: f64 = 0.5;
 
-/// Where a ray that is inside crowns will be stopped.
+/// Planned end of a ray inside crowns.
 struct CrownStop {
     range: f64,
-    /// Where the ray entered.
+    /// Triangle through which the ray entered.
     triangle: u32,
-    /// Crowns entered and not left: those of neighbouring trees may overlap.
+    /// Number of crowns that the ray is in; those of neighbouring trees may overlap.
     crown_count: u32,
 }
 
-/// What stops a ray, or `None` where it leaves the scene.
+/// Returns the echo of the surface that stops a ray; `None` for a ray that leaves the scene.
 fn ray_echo(
     scene: &TriangleScene,
     truth: &Truth,
@@ -229,7 +230,7 @@ mod tests {
         Axis { origin: [x, 0.0, 500.0], direction: [0.0, 0.0, -1.0], across: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] }
     }
 
-    /// A plate 1 m high that ends at x = 0, over a plate that reaches on to x = 20.
+    /// Returns a plate that ends at x = 0, `height` metres above a plate that continues to x = 20.
     fn step(height: f64) -> TriangleScene {
         let mut scene = TriangleScene::default();
         let at = |x| PlanPlacement { origin: [x, 0.0], angle: 0.0 };
@@ -274,7 +275,7 @@ mod tests {
         assert!((surplus.echoes[0].range - 495.0).abs() < 1e-3, "the first echo is the one kept");
     }
 
-    /// A crown of 8 m over the ground, seen from above, as a block of leaves.
+    /// Returns a crown of 8 m over the ground, as a block of leaves.
     fn crown_over_ground() -> TriangleScene {
         let mut scene = TriangleScene::default();
         let at = PlanPlacement { origin: [0.0, 0.0], angle: 0.0 };
@@ -288,7 +289,7 @@ mod tests {
     fn rays_in_a_crown_are_stopped_after_an_exponential_path() {
         let scene = crown_over_ground();
         let truth = Truth::new(&scene);
-        // one ray a pulse, and a pulse without width, so that the share of the rays shows itself
+        // One ray per pulse and a pulse without width, so that the share of the rays is visible.
         let beam = BeamParams { divergence: 0.0, foliage_depth: 3.0, crown_porosity: 0.6, ..BeamParams::default() };
         let ray = SubRay { origin: [1.0, 2.0, 500.0], direction: [0.0, 0.0, -1.0], energy: 1.0, max_range: 1e9 };
         let ranges: Vec<f64> = (0..40_000)
@@ -297,7 +298,7 @@ mod tests {
         assert_eq!(ranges.len(), 40_000, "the ground stops what the crown lets through");
         let share =
             |from: f64, to: f64| ranges.iter().filter(|r| (from..=to).contains(r)).count() as f64 / ranges.len() as f64;
-        // Shares of 40 000 rays stray by 0.0025 at most (one deviation); four of them.
+        // The shares of 40 000 rays have a standard deviation of 0.0025 at most; the tolerance is four of them.
         let expected = |from: f64, to: f64| 0.6 * ((-from / 3.0).exp() - (-to / 3.0).exp());
         for (found, exact) in [
             (share(488.0 - 1e-6, 488.0 + 1e-6), 0.4),
@@ -324,7 +325,7 @@ mod tests {
             assert_eq!((Some(echo.triangle), echo.material), (top, Material::TreeCrown));
             count += 1;
         }
-        // 1 − 1/e of 1000, give or take four deviations of 15
+        // 1 − 1/e of 1000, with a tolerance of four standard deviations of 15.
         assert!((572..=692).contains(&count), "{count}");
     }
 }

@@ -9,28 +9,28 @@ use crate::scan::scan_pattern::{FlightAxes, ScanPattern};
 use crate::scene::TriangleScene;
 use crate::vector::add_scaled;
 
-/// Time flown straight before the first and after the last pulse of a strip, seconds: interpolation in the path needs
-/// neighbours on both sides.
+/// Time of straight flight before the first and after the last pulse of a strip, seconds. Interpolation in the path
+/// needs neighbours on both sides.
 const RUN_UP: f64 = 1.0;
-/// Distance between positions of the path, seconds: 20 Hz, so that a straight line between two of them stays within a
+/// Time between positions of the path, seconds. At 20 Hz a straight line between two positions stays within a
 /// millimetre of the wandering path.
 const PATH_STEP: f64 = 0.05;
-/// Ground flown over beyond the scene at both ends, metres.
+/// Length of the flight beyond the scene at both ends, metres.
 const OVERSHOOT: f64 = 5.0;
-/// Periods of the wander, seconds: an aircraft held by an autopilot.
+/// Periods of the wander, seconds, for an aircraft with an autopilot.
 const WANDER_PERIODS: [f64; 2] = [9.0, 5.5];
 
 /// One pass over a scene.
 #[derive(Clone, Debug)]
 pub(crate) struct FlightStrip {
-    /// Counted from 0.
+    /// Number of the strip, counted from 0.
     pub(crate) number: u16,
     pub(crate) course: FlightAxes,
     /// Direction of the flight, radians clockwise from north, 0 to 2π.
     heading: f64,
-    /// GPS time of the first pulse.
+    /// GPS time of the first pulse, seconds.
     pub(crate) start_time: f64,
-    /// Seconds from the first pulse to the last.
+    /// Time from the first pulse to the last, seconds.
     pub(crate) duration: f64,
     /// Constant error of the mounting of the scanner, radians about the axes across a pulse.
     pub(crate) boresight: [f64; 2],
@@ -42,7 +42,7 @@ pub(crate) struct FlightStrip {
 }
 
 impl FlightStrip {
-    /// Position of the scanner `seconds` after the first pulse, absolute, metres.
+    /// Returns the position of the scanner `seconds` after the first pulse, absolute, metres.
     pub(crate) fn position(&self, seconds: f64) -> [f64; 3] {
         let wave = |i: usize| (TAU * seconds / WANDER_PERIODS[i] + self.phases[i]).sin();
         let on_line = add_scaled(self.start, self.course.forward, self.speed * seconds);
@@ -50,7 +50,7 @@ impl FlightStrip {
         [aside[0], aside[1], aside[2] + 0.5 * self.wander * wave(1)]
     }
 
-    /// The path flown, run-up included.
+    /// Returns the path of the flight, run-up included.
     pub(crate) fn path(&self) -> SensorPath {
         let mut path = SensorPath::default();
         let mut step = 0_u32;
@@ -67,7 +67,8 @@ impl FlightStrip {
     }
 }
 
-/// Strips side by side over the middle of `scene`, flown to and fro, then those across them. None over an empty scene.
+/// Returns strips side by side over the middle of `scene`, flown to and fro, then the strips across them. An empty
+/// scene has no strips.
 pub(crate) fn strips(scene: &TriangleScene, params: &AirborneParams) -> Vec<FlightStrip> {
     let along = strips_towards(scene, params, params.heading, 0..params.strip_count, params.start_time + RUN_UP);
     let start_time = along.last().map_or(params.start_time + RUN_UP, |last| next_start(last, params));
@@ -78,13 +79,13 @@ pub(crate) fn strips(scene: &TriangleScene, params: &AirborneParams) -> Vec<Flig
     strips
 }
 
-/// Time of the first pulse of the strip after `strip`.
+/// Returns the time of the first pulse of the strip after `strip`.
 fn next_start(strip: &FlightStrip, params: &AirborneParams) -> f64 {
-    // A turn lasts at least as long as the run-ups, or else times would run backwards.
+    // A turn lasts at least as long as the run-ups; otherwise times would run backwards.
     strip.start_time + (strip.duration + params.turn_time.max(4.0 * RUN_UP))
 }
 
-/// The strips `numbers`, flown to and fro along `heading`, the first from `start_time` on.
+/// Returns the strips `numbers`, flown to and fro along `heading`, the first from `start_time` on.
 fn strips_towards(
     scene: &TriangleScene,
     params: &AirborneParams,
@@ -96,7 +97,7 @@ fn strips_towards(
     let height = scene.mean_ground_height() + params.flying_height;
     let centre = [low[0] / 2.0 + high[0] / 2.0, low[1] / 2.0 + high[1] / 2.0, height];
     let (sin, cos) = heading.sin_cos();
-    // A cone looks ahead: the part of the circle behind the aircraft has to pass the far edge, too.
+    // A cone looks ahead: the part of the circle behind the aircraft must pass the far edge, too.
     let look_ahead = match params.pattern {
         ScanPattern::Rotating | ScanPattern::Oscillating(_) => 0.0,
         ScanPattern::Conical { .. } => params.swath() / 2.0,
@@ -132,18 +133,18 @@ fn strips_towards(
         .collect()
 }
 
-/// Width of the ground of `scene` across a flight along `heading`, metres; 0 for an empty scene.
+/// Returns the width of the ground of `scene` across a flight along `heading`, metres; 0 for an empty scene.
 pub(crate) fn width_across(scene: &TriangleScene, heading: f64) -> f64 {
     let Some((low, high)) = scene.bounds() else { return 0.0 };
     let (sin, cos) = heading.sin_cos();
     cos.abs() * (high[0] - low[0]) + sin.abs() * (high[1] - low[1])
 }
 
-/// Places along each side of a scene at which coverage is looked up.
+/// Number of places along each side of a scene at which coverage is computed.
 const COVERAGE_STEPS: u32 = 60;
 
-/// How many strips see a place of `scene`, mean over its ground, each weighted with how dense its pulses are there
-/// against the mean of the strip.
+/// Returns the mean number of strips that see a place of `scene`. Each strip is weighted with the density of its pulses
+/// at the place, divided by the mean of the strip.
 pub(crate) fn mean_coverage(scene: &TriangleScene, params: &AirborneParams) -> f64 {
     let Some((low, high)) = scene.bounds() else { return 0.0 };
     let sweep = params.sweep();

@@ -13,30 +13,30 @@ use crate::scene::{Material, TriangleScene};
 use crate::truth::Truth;
 use crate::vector::cross;
 
-/// How a scene is scanned from a car. Values outside their ranges that leave nothing to scan (a range, speed or rate
-/// that is not positive) give a scan without points.
+/// Parameters of a scan from a car. A range, speed or rate that is not positive leaves nothing to scan, and gives a
+/// scan without points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MobileParams {
-    /// Any number; another one gives other noise. Default 1.
+    /// Seed of the noise, any number. Default 1.
     pub seed: u64,
     /// Both ends of each run, (R, 2, 2), metres, absolute; runs beyond 65 535 are left out. Default none.
     pub runs: Vec<[[f64; 2]; 2]>,
     /// Height of the scanners above the ground, metres, 0.5 to 10. Default 2.2.
     pub scanner_height: f64,
-    /// Metres per second, 0.1 to 40. Default 8.
+    /// Speed, metres per second, 0.1 to 40. Default 8.
     pub speed: f64,
     /// Turns of each mirror per second, 1 to 1000. Default 100: 8 cm from line to line.
     pub line_rate: f64,
-    /// Pulses in a turn of a mirror, 10 to 100 000. Default 1000: 4 cm at 6 m.
+    /// Number of pulses in a turn of a mirror, 10 to 100 000. Default 1000: 4 cm at 6 m.
     pub pulses_per_line: u32,
-    /// Farthest surface that gives an echo, metres, 1 to 5000. Default 100.
+    /// Maximum range of a surface that gives an echo, metres, 1 to 5000. Default 100.
     pub max_range: f64,
     /// Shape of the pulses. Default 0.4 mrad wide, in crowns as [`BeamParams::in_leaf`].
     pub beam: BeamParams,
     /// Standard deviation of a range, metres, 0 to 0.1. Default 0.005.
     pub range_sd: f64,
-    /// Standard deviation of the direction of a pulse about each of two axes, radians, 0 to 0.001. Default 2e-4: what
-    /// is left of a trajectory's errors within one run.
+    /// Standard deviation of the direction of a pulse about each of two axes, radians, 0 to 0.001. Default 2e-4: the
+    /// remaining errors of a trajectory within one run.
     pub pointing_sd: f64,
     /// Share of pulses lost, 0 to 1. Default 0.01.
     pub dropout: f64,
@@ -63,20 +63,20 @@ impl Default for MobileParams {
     }
 }
 
-/// Angles of the planes that the two mirrors turn in, radians from across the car: both sides of every corner are seen.
+/// Angles of the planes of the two mirrors, radians from across the car. Both sides of every corner are seen.
 const PLANES: [f64; 2] = [FRAC_PI_4, -FRAC_PI_4];
-/// Distance between entries of the path, seconds.
+/// Time between entries of the path, seconds.
 const PATH_STEP: f64 = 0.05;
 /// Time between two runs, seconds: longer than readers interpolate over.
 const TURN_TIME: f64 = 30.0;
-/// Turns of the mirrors before the first and after the last line for which the path is written down.
+/// Time before the first and after the last line for which the path is recorded, seconds.
 const SETTLED: f64 = 0.5;
 
-/// Drives a car with two scanners along the runs and returns what they record.
+/// Drives a car with two scanners along the runs and returns the recorded scan.
 ///
-/// The mirrors turn about level axes, 45° to either side of the way ahead. Returns of a run carry its number as point
-/// source id, the scanners are channels of one instrument in the same place. Each pulse draws its noise from its own
-/// stream, so the scan has the same bits for any number of threads.
+/// The mirrors turn about level axes, 45° to either side of the driving direction. Returns of a run have its number as
+/// point source id. The scanners are channels of one instrument in the same place. Each pulse draws its noise from its
+/// own stream, so the scan has the same bits for any number of threads.
 #[must_use]
 pub fn scan_mobile(scene: &TriangleScene, params: &MobileParams) -> Scan {
     let mut scan = Scan::default();
@@ -102,7 +102,7 @@ pub fn scan_mobile(scene: &TriangleScene, params: &MobileParams) -> Scan {
 
 /// One straight drive.
 struct StraightDrive {
-    /// Counted from 1.
+    /// Number of the run, counted from 1.
     number: u16,
     from: [f64; 2],
     /// Unit vector along the run.
@@ -115,10 +115,10 @@ struct StraightDrive {
 }
 
 impl StraightDrive {
-    /// Distance between heights of the ground that are looked up, metres: a car rides over what is shorter.
+    /// Distance between sampled heights of the ground, metres: a car rides over shorter bumps.
     const STEP: f64 = 2.0;
 
-    /// `None` for a run without length, or with an end where no ground is.
+    /// Creates a run; `None` for a run without length, or with a sampled place without ground.
     fn new(
         scene: &TriangleScene,
         truth: &Truth,
@@ -141,7 +141,8 @@ impl StraightDrive {
         (length > 0.0).then_some(Self { number, from, ahead, heights, start_time, duration, speed: params.speed })
     }
 
-    /// Where the scanners are `seconds` after the start of the run, which may be before it or after its end.
+    /// Returns the position of the scanners `seconds` after the start of the run, also before the start or after the
+    /// end.
     fn position(&self, seconds: f64) -> [f64; 3] {
         let along = self.speed * seconds;
         let place = (along / Self::STEP).clamp(0.0, (self.heights.len() - 2) as f64);
@@ -164,7 +165,7 @@ impl StraightDrive {
     }
 }
 
-/// Height of the ground or of a bridge at a place: crowns and decks above it are passed through.
+/// Returns the height of the ground or of a bridge at a place. Crowns and decks above it are ignored.
 fn lowest_ground(scene: &TriangleScene, truth: &Truth, [x, y]: [f64; 2], sky: f64) -> Option<f64> {
     let mut top = sky;
     while let Some(hit) = truth.first_hit([x, y, top], [0.0, 0.0, -1.0], f64::INFINITY) {
@@ -177,7 +178,7 @@ fn lowest_ground(scene: &TriangleScene, truth: &Truth, [x, y]: [f64; 2], sky: f6
     None
 }
 
-/// Returns of both scanners during one turn of their mirrors.
+/// Returns the scan of both scanners during one turn of their mirrors.
 fn scan_line(scene: &TriangleScene, truth: &Truth, params: &MobileParams, run: &StraightDrive, line: u32) -> Scan {
     let mut scan = Scan::default();
     let recorder = Recorder {
@@ -195,7 +196,7 @@ fn scan_line(scene: &TriangleScene, truth: &Truth, params: &MobileParams, run: &
     let pulses = params.pulses_per_line;
     for pulse in 0..pulses {
         for (scanner, plane) in (0_u32..).zip(PLANES) {
-            // the second mirror is half a pulse behind, so that no two pulses share a time
+            // The second mirror is half a pulse behind, so that no two pulses share a time.
             let turn = (f64::from(pulse) + 0.5 * f64::from(scanner)) / f64::from(pulses);
             let seconds = (f64::from(line) + turn) / params.line_rate;
             let number = (u64::from(line) * u64::from(pulses) + u64::from(pulse)) * 2 + u64::from(scanner);
@@ -212,7 +213,8 @@ fn scan_line(scene: &TriangleScene, truth: &Truth, params: &MobileParams, run: &
     scan
 }
 
-/// The pulse at `angle` from straight down of a mirror whose plane is turned by `plane` from across the way `ahead`.
+/// Returns the pulse of a mirror at `angle` from straight down. The plane of the mirror is turned by `plane` from
+/// across the driving direction `ahead`.
 fn axis(origin: [f64; 3], ahead: [f64; 2], plane: f64, angle: f64) -> Axis {
     let (sin, cos) = plane.sin_cos();
     let right = [ahead[1], -ahead[0]];

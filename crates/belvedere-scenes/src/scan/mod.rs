@@ -1,4 +1,4 @@
-//! What a simulated scan hands out: returns as columns, and the path of the scanner.
+//! Result of a simulated scan: returns as columns, and the path of the scanner.
 
 pub(crate) mod airborne;
 pub(crate) mod beam;
@@ -20,8 +20,8 @@ use crate::scene::TriangleScene;
 use crate::truth::Truth;
 use crate::vector::{add_scaled, cross, sub, unit};
 
-/// A simulated laser scan. Columns have one value per return, ordered by strip, time and return number where
-/// [`Scan::in_order`] has not changed that.
+/// Simulated laser scan. Columns have one value per return, ordered by strip, time and return number, unless
+/// [`Scan::in_order`] changed the order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scan {
     /// East, metres, absolute, with noise.
@@ -30,56 +30,55 @@ pub struct Scan {
     pub y: Vec<f64>,
     /// Height, metres, with noise.
     pub z: Vec<f64>,
-    /// Adjusted standard GPS time (GPS seconds minus 1e9); another one for each pulse, and all returns of a pulse share
-    /// it.
+    /// Adjusted standard GPS time, seconds (GPS seconds minus 1e9). Each pulse has its own time, which all its returns
+    /// share.
     pub gps_time: Vec<f64>,
-    /// Which return of its pulse a point is, from 1, by increasing range.
+    /// Number of the return within its pulse, from 1, by increasing range.
     pub return_number: Vec<u8>,
-    /// How many returns its pulse has.
+    /// Number of returns of the pulse.
     pub return_count: Vec<u8>,
-    /// Angle of the pulse from nadir in degrees (LAS 1.4): across the flight and negative to its left for an airborne
-    /// scanner; 0 to 180, where 90 is level, for one on a tripod; −180 to 180 about the axis of the mirror for one on a
-    /// car.
+    /// Angle of the pulse from nadir, degrees (LAS 1.4). For an airborne scanner: across the flight, negative to its
+    /// left. On a tripod: 0 to 180, with 90 level. On a car: −180 to 180 about the axis of the mirror.
     pub scan_angle_deg: Vec<f32>,
-    /// Strip, tripod position or run of a car, from 1.
+    /// Number of the strip, tripod position or run of a car, from 1.
     pub point_source_id: Vec<u16>,
     /// ASPRS class of the surface, see [`crate::Material::asprs_class`].
     pub classification: Vec<u8>,
-    /// Strength of the echo, grows with reflectance, share of the beam and steepness of incidence; arbitrary unit.
+    /// Strength of the echo, arbitrary unit. It grows with reflectance, share of the beam and steepness of incidence.
     pub intensity: Vec<u16>,
-    /// Truth: index of the triangle of the scene that sent the echo back; for a return from inside a crown (only with
-    /// [`crate::BeamParams::foliage_depth`]) the triangle of the crown's hull through which the ray entered.
+    /// Truth: index of the triangle of the scene that reflected the echo. For a return from inside a crown (only with
+    /// [`crate::BeamParams::foliage_depth`]) it is the triangle of the crown's hull through which the ray entered.
     pub triangle: Vec<u32>,
-    /// Truth: where the surface was met, (N, 3), metres, absolute: on that triangle, or behind it on the ray where
-    /// leaves inside the crown stopped it.
+    /// Truth: place of reflection, (N, 3), metres, absolute. It is on that triangle, or behind it on the ray if leaves
+    /// inside the crown stopped the ray.
     ///
-    /// A return lies elsewhere for two reasons. The scanner reports the range of this place along the axis of the
-    /// beam, although it may lie up to half a beam beside the axis: returns of an edge lie on both sides of it. Noise
-    /// then moves the return along the axis and, by pointing errors, across. Class, triangle and light are those of
+    /// A return lies elsewhere for two reasons. First, this place may be up to half a beam beside the axis of the beam,
+    /// but the scanner reports its range along the axis. Returns of an edge therefore lie on both sides of it. Second,
+    /// noise moves the return along the axis and, by pointing errors, across. Class, triangle and light are those of
     /// this place.
     pub exact_positions: Vec<[f64; 3]>,
     /// Path of the scanner over all strips, or its position on each tripod during the scan there.
     pub sensor_path: SensorPath,
     /// Centre of the scanner at each tripod position, (S, 3), metres, absolute; empty for an airborne scan.
     pub stations: Vec<[f64; 3]>,
-    /// What became of the pulses.
+    /// Counts of pulses and echoes.
     pub report: ScanReport,
 }
 
-/// How far outside its surface a point is put before one asks what lights it, metres: beyond the unevenness of a mesh
-/// with millimetres, and short of everything that could matter.
+/// Distance outside its surface from which the light of a point is tested, metres. It is larger than the unevenness of
+/// a mesh with millimetres, and too small to change the light.
 const STAND_OFF: f64 = 0.03;
 
 /// Counts of a scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ScanReport {
-    /// Pulses sent.
+    /// Number of pulses sent.
     pub pulses: u64,
-    /// Pulses that met the scene but were lost as drop-outs.
+    /// Number of pulses that met the scene but were lost as drop-outs.
     pub dropped_pulses: u64,
-    /// Pulses that met nothing because they passed beyond the edge of the scene.
+    /// Number of pulses without an echo because they passed beyond the edge of the scene.
     pub missed_pulses: u64,
-    /// Echoes left out because they were too weak or came after the last one the scanner records.
+    /// Number of echoes left out because they were too weak or came after the last one that the scanner records.
     pub dropped_echoes: u64,
 }
 
@@ -90,13 +89,13 @@ pub struct SensorPath {
     pub times: Vec<f64>,
     /// Positions, (M, 3), metres, absolute, without noise.
     pub positions: Vec<[f64; 3]>,
-    /// Where the nose of the aircraft points at each time, radians clockwise from grid north, 0 to 2π, (M); 0 on a
+    /// Direction of the nose of the aircraft at each time, radians clockwise from grid north, 0 to 2π, (M); 0 on a
     /// tripod.
     pub headings: Vec<f64>,
 }
 
 impl SensorPath {
-    /// CSV text: the header `time,x,y,z`, then a line per position with microseconds and millimetres.
+    /// Returns CSV text: the header `time,x,y,z`, then a line per position with microseconds and millimetres.
     #[must_use]
     pub fn to_csv(&self) -> String {
         let mut text = String::from("time,x,y,z\n");
@@ -123,20 +122,20 @@ pub(crate) struct Return {
 }
 
 impl Scan {
-    /// Number of returns.
+    /// Returns the number of returns.
     #[must_use]
     pub fn len(&self) -> usize {
         self.x.len()
     }
 
-    /// Whether there is no return at all.
+    /// Returns true if the scan has no return.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.x.is_empty()
     }
 
-    /// CSV text of the tripod positions: the header `station,x,y,z`, then a line per station with its number (the point
-    /// source id of its returns) and millimetres.
+    /// Returns CSV text of the tripod positions: the header `station,x,y,z`, then a line per station. A line has the
+    /// number of the station (the point source id of its returns) and coordinates with millimetres.
     #[must_use]
     pub fn stations_to_csv(&self) -> String {
         let mut text = String::from("station,x,y,z\n");
@@ -147,8 +146,9 @@ impl Scan {
         text
     }
 
-    /// Whether light from `direction`, such as that of the sun, reaches each return, (N): from its exact position, 3 cm
-    /// outside along the normal of its triangle. `truth` must be made of `scene`, and `scene` the one scanned.
+    /// Flags the returns, (N), that light from `direction`, such as that of the sun, reaches. The light is tested 3 cm
+    /// outside the exact position, along the normal of the triangle. `truth` must be made of `scene`, and `scene` must
+    /// be the scanned one.
     ///
     /// Crowns block as opaque solids do, so that a return from inside a crown is in shadow.
     #[must_use]

@@ -1,19 +1,19 @@
-//! In which order the points of a scan stand in a file.
+//! Order of the points of a scan in a file.
 
 use rayon::prelude::*;
 
 use crate::random::Random;
 use crate::scan::Scan;
 
-/// Order of the points of a file. Surveys are delivered in any of these.
+/// Order of the points of a file. Surveys are delivered in any of these orders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum PointOrder {
-    /// As they were measured: by strip, time and return number.
+    /// Order of measurement: by strip, time and return number.
     #[default]
     Flight,
-    /// In squares of 20 m, row by row from the south-west; as they were measured within each.
+    /// Order of squares of 20 m, row by row from the south-west; within a square the order of measurement.
     Squares,
-    /// At random.
+    /// Random order.
     Shuffled,
 }
 
@@ -21,10 +21,10 @@ pub enum PointOrder {
 const SQUARE: f64 = 20.0;
 
 impl PointOrder {
-    /// Every order.
+    /// All orders.
     pub const ALL: [Self; 3] = [Self::Flight, Self::Squares, Self::Shuffled];
 
-    /// Name on the command line.
+    /// Returns the name on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -36,8 +36,8 @@ impl PointOrder {
 }
 
 impl Scan {
-    /// The same scan with its columns in another order; the path and the counts stay. Another `seed` shuffles
-    /// differently. The order of flight is that of a scan as it was made, and leaves it as it is.
+    /// Returns the scan with its columns in another order; the path and the counts stay. Another `seed` shuffles
+    /// differently. The order of flight leaves a new scan unchanged.
     #[must_use]
     pub fn in_order(mut self, order: PointOrder, seed: u64) -> Self {
         let mut rows: Vec<usize> = (0..self.len()).collect();
@@ -47,7 +47,7 @@ impl Scan {
                 let square = |row: usize| [self.y[row], self.x[row]].map(|v| whole(v / SQUARE));
                 rows.par_sort_by_key(|&row| square(row));
             }
-            // every point draws its place from its own stream, so that threads need not share one
+            // Every point draws its place from its own stream, so that threads need not share one.
             PointOrder::Shuffled => rows.par_sort_by_cached_key(|&row| Random::new(seed, row as u64).next_u64()),
         }
         reorder(&mut self.x, &rows);

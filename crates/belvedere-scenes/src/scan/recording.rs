@@ -1,4 +1,4 @@
-//! What a scanner writes down of a pulse: echoes with noise, or nothing where the pulse was lost.
+//! Records of a scanner for a pulse: echoes with noise, or none for a lost pulse.
 
 use crate::random::Random;
 use crate::scan::beam::{Axis, BeamParams, Echo, pulse_echoes};
@@ -7,13 +7,13 @@ use crate::scene::TriangleScene;
 use crate::truth::Truth;
 use crate::vector::add_scaled;
 
-/// A scanner in its place.
+/// Scanner in its place.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Recorder<'a> {
     pub(crate) scene: &'a TriangleScene,
     pub(crate) truth: &'a Truth,
     pub(crate) beam: &'a BeamParams,
-    /// Surfaces farther away give no echo, metres.
+    /// Maximum range of a surface that gives an echo, metres.
     pub(crate) max_range: f64,
     /// Standard deviation of a range, metres.
     pub(crate) range_sd: f64,
@@ -21,20 +21,20 @@ pub(crate) struct Recorder<'a> {
     pub(crate) pointing_sd: f64,
     /// Constant error of the direction, radians about the axes across a pulse.
     pub(crate) boresight: [f64; 2],
-    /// Share of pulses lost.
+    /// Share of pulses lost, 0 to 1.
     pub(crate) dropout: f64,
     pub(crate) point_source_id: u16,
-    /// Range at which echoes count with their full brightness, metres, farther ones with less; `None` where the scanner
-    /// evens out the range.
+    /// Range at which echoes have their full brightness, metres; farther ones have less. `None` for a scanner that
+    /// corrects for the range.
     pub(crate) intensity_range: Option<f64>,
 }
 
-/// One pulse to be sent.
+/// Pulse to be sent.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shot {
     pub(crate) axis: Axis,
     pub(crate) gps_time: f64,
-    /// Radians.
+    /// Angle of the pulse, radians.
     pub(crate) scan_angle: f64,
 }
 
@@ -73,8 +73,8 @@ impl Recorder<'_> {
         }
     }
 
-    /// Intensity that leaves room above a perfect white target: an echo at the range of full brightness that sends
-    /// everything back has 50 000.
+    /// Returns the intensity of an echo. An echo of a perfect white target at the range of full brightness has 50 000,
+    /// which leaves room for brighter ones.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the range of u16")]
     fn intensity(&self, echo: &Echo) -> u16 {
         let spreading = self.intensity_range.map_or(1.0, |full| (full / echo.range).powi(2));

@@ -1,4 +1,4 @@
-//! Scanners and what they scan by name, so that a comparison can go through all of them.
+//! Scanners and their scenes by name, so that a comparison can go through all of them.
 
 use crate::room::furnished_rooms;
 use crate::scan::Scan;
@@ -13,55 +13,56 @@ use crate::town::roofs::RoofDetails;
 use crate::town::trees::CrownMaterial;
 use crate::town::{TownParams, town};
 
-/// Tripods in a town: a few metres see what none of the others does.
+/// Number of tripods in a town: each sees places that no other sees, over a few metres.
 const TRIPODS: u16 = 12;
-/// Angle between their pulses, radians: 9 cm at 10 m, coarse, because all sizes that matter here are larger.
+/// Angle between their pulses, radians: 9 cm at 10 m. It is coarse, because all relevant sizes here are larger.
 const TRIPOD_STEP: f64 = 0.5 / 180.0 * std::f64::consts::PI;
-/// Lines of the car per second, and pulses in each: 20 cm from line to line, as coarse.
+/// Lines of the car per second, and pulses in each: 20 cm from line to line, equally coarse.
 const CAR_LINES: f64 = 40.0;
 const CAR_PULSES: u32 = 400;
-/// Height of the drone, metres, its speed, metres per second, and its greatest angle from nadir, radians.
+/// Height of the drone, metres, its speed, metres per second, and its maximum angle from nadir, radians.
 const DRONE: (f64, f64, f64) = (60.0, 10.0, 0.6);
 
-/// A scanner and its scene. All but [`Regime::Room`] scan a town; each but the first differs from that in one way.
+/// Scanner and its scene. All except [`Regime::Room`] scan a town. Every other regime differs from the first in one
+/// respect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Regime {
     /// [`AirborneParams::covering`]: 450 m up, a rotating mirror, 2 cm of noise, a beam of 0.4 mrad.
     Air,
-    /// Without noise of ranges and directions.
+    /// No noise of ranges and directions.
     NoNoise,
-    /// With 5 cm of noise of ranges.
+    /// Noise of ranges of 5 cm.
     MuchNoise,
-    /// With a beam that has no width.
+    /// Beam without width.
     ThinBeam,
-    /// With a beam of 1 mrad, half a metre on the ground.
+    /// Beam of 1 mrad, half a metre on the ground.
     WideBeam,
-    /// With an oscillating mirror.
+    /// Oscillating mirror.
     Oscillating,
-    /// With a cone of 20°.
+    /// Cone of 20°.
     Conical,
-    /// From 60 m, up to 34° from nadir.
+    /// Drone at 60 m, with angles up to 34° from nadir.
     Drone,
-    /// Over trees of single leaves with gaps, instead of closed crowns.
+    /// Trees of single leaves with gaps, instead of closed crowns.
     Leaves,
-    /// Over trees without leaves: trunks and branches.
+    /// Trees without leaves: trunks and branches.
     Bare,
-    /// Over roofs without eaves, parapets and boxes.
+    /// Roofs without eaves, parapets and boxes.
     PlainRoofs,
-    /// Over houses that all have eaves, and flat roofs that all have parapets.
+    /// Eaves on all houses, and parapets on all flat roofs.
     Eaves,
-    /// With the points of the file in random order.
+    /// Points of the file in random order.
     Shuffled,
     /// Twelve tripods, half a degree from pulse to pulse.
     Tripods,
-    /// A car along each street, 20 cm from line to line. Towns below 100 m have no street.
+    /// Car along each street, 20 cm from line to line. Towns below 100 m have no street.
     Car,
     /// Two furnished rooms instead of a town, with a tripod in each, half a degree from pulse to pulse.
     Room,
 }
 
 impl Regime {
-    /// Every one.
+    /// All regimes.
     pub const ALL: [Self; 16] = [
         Self::Air,
         Self::NoNoise,
@@ -81,7 +82,7 @@ impl Regime {
         Self::Room,
     ];
 
-    /// Name on the command line.
+    /// Returns the name on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -104,13 +105,13 @@ impl Regime {
         }
     }
 
-    /// Whether the scanner flies: only then its pulses have a density to choose.
+    /// Returns true if the scanner flies. Only then can the density of pulses be chosen.
     #[must_use]
     pub fn flies(self) -> bool {
         !matches!(self, Self::Tripods | Self::Car | Self::Room)
     }
 
-    /// The town as this needs it.
+    /// Returns the town with the changes that this regime needs.
     #[must_use]
     pub fn town(self, params: TownParams) -> TownParams {
         match self {
@@ -125,14 +126,14 @@ impl Regime {
         }
     }
 
-    /// What is scanned: the town of `params`, or the rooms of their seed.
+    /// Returns the scanned scene: the town of `params`, or the rooms of their seed.
     #[must_use]
     pub fn scene(self, params: &TownParams) -> TriangleScene {
         if self == Self::Room { furnished_rooms(params.seed).0 } else { town(params) }
     }
 
-    /// A survey of `scene`, which [`Regime::scene`] made of `params`, with their seed, and with `pulses_per_m2` where
-    /// the scanner flies.
+    /// Returns a survey of `scene`, which [`Regime::scene`] made of `params`, with their seed. A flying scanner has
+    /// `pulses_per_m2`.
     #[must_use]
     pub fn scan(self, scene: &TriangleScene, params: &TownParams, pulses_per_m2: f64) -> Scan {
         let seed = params.seed;

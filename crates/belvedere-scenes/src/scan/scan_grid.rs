@@ -1,4 +1,4 @@
-//! A scan from a tripod as the grid of its pulses.
+//! Scan from a tripod as the grid of its pulses.
 
 use std::fmt::Write as _;
 
@@ -6,20 +6,20 @@ use crate::scan::Scan;
 use crate::scan::terrestrial::TerrestrialParams;
 use crate::vector::sub;
 
-/// All pulses of one place of a tripod, with those that returned nothing.
+/// All pulses of one place of a tripod, including pulses without a return.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ScanGrid {
-    /// The centre of the instrument, metres, absolute.
+    /// Centre of the instrument, metres, absolute.
     pub station: [f64; 3],
-    /// Rows, from below upwards; columns go around.
+    /// Number of rows, from below upwards; columns go around.
     pub rows: usize,
-    /// The first return of each pulse, metres, absolute, column by column, (C × R).
+    /// First return of each pulse, metres, absolute, column by column, (C × R).
     pub returns: Vec<Option<[f64; 3]>>,
 }
 
 impl ScanGrid {
-    /// PTX text of the scan, with positions about the station in tenths of a millimetre; pulses without a return are
-    /// zeros.
+    /// Returns PTX text of the scan, with positions relative to the station in tenths of a millimetre. Pulses without a
+    /// return are zeros.
     #[must_use]
     pub fn to_ptx(&self) -> String {
         let [x, y, z] = self.station;
@@ -38,7 +38,7 @@ impl ScanGrid {
 }
 
 impl TerrestrialParams {
-    /// The pulses of `scan`, which these parameters made, as a grid for each place of the tripod.
+    /// Returns the pulses of `scan`, made by these parameters, as a grid for each place of the tripod.
     #[must_use]
     pub fn grids(&self, scan: &Scan) -> Vec<ScanGrid> {
         let [columns, rows] = self.grid().map(|count| count as usize);

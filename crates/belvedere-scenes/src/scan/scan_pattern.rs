@@ -1,4 +1,4 @@
-//! How an airborne scanner sweeps the ground: where each pulse points, and how dense that makes the pulses.
+//! Scan patterns of an airborne scanner: direction of each pulse, and density of the pulses on the ground.
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,31 +8,31 @@ use crate::vector::{add_scaled, scale};
 /// Path of the pulses over the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ScanPattern {
-    /// A rotating polygon: parallel lines across the flight, equal steps of the angle.
+    /// Rotating polygon: parallel lines across the flight, equal steps of the angle.
     #[default]
     Rotating,
-    /// An oscillating mirror: a zig-zag across the flight.
+    /// Oscillating mirror: a zig-zag across the flight.
     Oscillating(MirrorMotion),
-    /// A tilted mirror that spins about the vertical: a circle that moves along, so that every place is seen from ahead
-    /// and from behind, and walls across the flight as well as those along it.
+    /// Tilted mirror that spins about the vertical: a circle that moves along. Every place is seen from ahead and from
+    /// behind, and so are walls across and along the flight.
     Conical {
         /// Angle of all pulses from nadir, radians, 0 to 1.2. 20° is usual.
         half_angle: f64,
     },
 }
 
-/// How an oscillating mirror moves.
+/// Motion of an oscillating mirror.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MirrorMotion {
-    /// As a spring does, slow at the turning points: pulses crowd at both edges of the strip.
+    /// Motion of a spring, slow at the turning points: pulses crowd at both edges of the strip.
     #[default]
     Sinusoidal,
-    /// At constant speed to and fro: equal steps of the angle.
+    /// Constant speed to and fro: equal steps of the angle.
     Triangular,
 }
 
 impl ScanPattern {
-    /// 20° all round, as conical scanners over towns have it.
+    /// Cone of 20°, as usual for conical scanners over towns.
     pub const CONICAL_20: Self = Self::Conical { half_angle: 20.0 * PI / 180.0 };
 }
 
@@ -43,18 +43,18 @@ pub(crate) struct FlightAxes {
     pub(crate) right: [f64; 3],
 }
 
-/// The pulses of one line: a sweep of the mirror, or a turn of the cone.
+/// Pulses of one line: a sweep of the mirror, or a turn of the cone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PulseSweep {
     pub(crate) pattern: ScanPattern,
-    /// Greatest angle from nadir across the flight, radians.
+    /// Maximum angle from nadir across the flight, radians.
     pub(crate) half_angle: f64,
     pub(crate) pulses_per_line: u32,
 }
 
 impl PulseSweep {
-    /// Pulse `step` of `line` sent from `origin`, and its angle from nadir across the flight, radians, positive to the
-    /// right.
+    /// Returns pulse `step` of `line`, sent from `origin`. The second value is its angle from nadir across the flight,
+    /// radians, positive to the right.
     pub(crate) fn pulse(&self, origin: [f64; 3], course: &FlightAxes, line: u32, step: u32) -> (Axis, f64) {
         let count = f64::from(self.pulses_per_line);
         let share = (f64::from(step) + 0.5) / count;
@@ -72,10 +72,10 @@ impl PulseSweep {
         (Axis { origin, direction, across: [course.forward, outwards] }, angle)
     }
 
-    /// Pulses per m² at `offset` metres beside the path of an aircraft `height` metres up, as a multiple of the mean
-    /// over the strip.
+    /// Returns the pulses per m² as a multiple of the mean over the strip. The place lies `offset` metres beside the
+    /// path of an aircraft `height` metres up.
     pub(crate) fn relative_density(&self, offset: f64, height: f64) -> f64 {
-        // A mirror that turns round has no speed there; beams of finite width keep the density finite.
+        // A mirror that turns back has no speed there; beams of finite width keep the density finite.
         let slowest = 0.05;
         let angle = offset.atan2(height);
         let per_angle = self.half_angle.tan() * angle.cos().powi(2);
@@ -93,7 +93,8 @@ impl PulseSweep {
     }
 }
 
-/// The pulse of a cone towards `azimuth`, radians clockwise from the flight direction.
+/// Returns the pulse of a cone towards `azimuth`, radians clockwise from the flight direction, and its angle across the
+/// flight.
 fn conical_pulse(origin: [f64; 3], course: &FlightAxes, half_angle: f64, azimuth: f64) -> (Axis, f64) {
     let (sin, cos) = half_angle.sin_cos();
     let (right, ahead) = azimuth.sin_cos();
@@ -169,11 +170,11 @@ mod tests {
                     *count += f64::from(bins) / f64::from(sweep.pulses_per_line);
                 }
             }
-            // The outer bins hold the turning points, where the density is cut off.
+            // The outer bins contain the turning points, where the density is cut off.
             for (bin, count) in counts.iter().enumerate().skip(1).take(bins as usize - 2) {
                 let middle = ((bin as f64 + 0.5) / f64::from(bins) * 2.0 - 1.0) * half_width;
                 let expected = sweep.relative_density(middle, height);
-                // A bin of a twentieth of the strip, over which the density of turning mirrors bends by up to 5 %.
+                // A bin is a twentieth of the strip, over which the density of turning mirrors varies by up to 5 %.
                 assert!((count / expected - 1.0).abs() < 0.06, "{pattern:?} {bin}: {count} {expected}");
             }
             assert_eq!(sweep.relative_density(1.01 * half_width, height), 0.0);

@@ -7,23 +7,24 @@ use rayon::prelude::*;
 use crate::scene::{Material, TriangleScene};
 use crate::truth::Truth;
 
-/// Room about a tripod, metres, tried in turn: nobody sets one up against a wall while the middle of a street is free.
+/// Minimum distances of obstacles from a tripod, metres, tried in turn. A tripod does not stand against a wall while
+/// the middle of a street is free.
 const CLEARANCES: [f64; 3] = [2.5, 1.2, 0.5];
-/// Directions in which that room must be free.
+/// Number of directions in which that space must be free.
 const DIRECTIONS: u32 = 16;
-/// Distance between places that are tried, metres, in scenes of up to [`PLACES_ACROSS`] of them.
+/// Distance between tried places, metres, in scenes of up to [`PLACES_ACROSS`] places along a side.
 const STEP: f64 = 2.0;
-/// Most places tried along each side.
+/// Maximum number of places along each side.
 const PLACES_ACROSS: f64 = 150.0;
-/// Height above the foot at which room must be free, metres, besides the height of the instrument: above kerbs and
-/// cars' wheels, below hedges.
+/// Height above the foot at which space must be free, metres, besides the height of the instrument. It is above kerbs
+/// and cars' wheels, and below hedges.
 const KNEE: f64 = 0.6;
 
-/// Up to `count` positions of an instrument `height` metres above open ground, (S, 3), metres, absolute.
+/// Returns up to `count` positions of an instrument `height` metres above open ground, (S, 3), metres, absolute.
 ///
-/// Open ground has nothing above it and nothing beside it for a few metres. Each open place is as near as can be to one
-/// of the positions: they start far from each other and then move to the middle of the places that are nearest to them.
-/// Fewer where there is less room, none in a scene without ground.
+/// Open ground has nothing above it and nothing beside it for a few metres. Each open place is as near as possible to
+/// one of the positions. The positions start far from each other and then move to the middle of their nearest places.
+/// There are fewer positions if there is less room, and none in a scene without ground.
 ///
 /// # Source
 /// Start: farthest-point sampling, Gonzalez 1985. Moves: Lloyd 1982.
@@ -41,7 +42,7 @@ pub(crate) fn free_stations(scene: &TriangleScene, truth: &Truth, count: u16, he
     Vec::new()
 }
 
-/// Ground that one looks down on from the sky, on a grid.
+/// Returns the places on a grid with ground directly below the sky.
 fn open_ground(scene: &TriangleScene, truth: &Truth, (low, high): ([f64; 3], [f64; 3])) -> Vec<[f64; 3]> {
     let sides = [0, 1].map(|axis| high[axis] - low[axis]);
     let step = STEP.max(sides[0].max(sides[1]) / PLACES_ACROSS);
@@ -69,10 +70,10 @@ fn has_room(truth: &Truth, [x, y, z]: [f64; 3], height: f64, clearance: f64) -> 
     })
 }
 
-/// Rounds of moving stations to the middle of their surroundings; after ten hardly one moves.
+/// Number of rounds in which stations move to the middle of their surroundings; after ten hardly any moves.
 const ROUNDS: u32 = 10;
 
-/// Up to `count` of `places`, spread evenly over them.
+/// Returns up to `count` of `places`, spread evenly over them.
 fn spread(places: &[[f64; 3]], count: u16) -> Vec<[f64; 3]> {
     let mut chosen = far_apart(places, count);
     for _ in 0..ROUNDS {
@@ -91,12 +92,12 @@ fn spread(places: &[[f64; 3]], count: u16) -> Vec<[f64; 3]> {
     chosen
 }
 
-/// Up to `count` of `places`, each the farthest from those before, the first the first of all.
+/// Returns up to `count` of `places`, each the farthest from the earlier ones. The first is the first of all.
 fn far_apart(places: &[[f64; 3]], count: u16) -> Vec<[f64; 3]> {
     let mut gaps = vec![f64::INFINITY; places.len()];
     let mut chosen = Vec::new();
     for _ in 0..count {
-        // The first of equals, so that the choice does not depend on how the search runs.
+        // The first of equals, so that the choice does not depend on the order of the search.
         let best = gaps.iter().enumerate().reduce(|a, b| if b.1 > a.1 { b } else { a });
         let Some((index, _)) = best.filter(|(_, gap)| **gap > 0.0) else { break };
         let Some(&place) = places.get(index) else { break };
@@ -108,7 +109,7 @@ fn far_apart(places: &[[f64; 3]], count: u16) -> Vec<[f64; 3]> {
     chosen
 }
 
-/// Index of the first of `places` nearest to `place` on the map.
+/// Returns the index of the first of `places` nearest to `place` on the map.
 fn nearest(places: &[[f64; 3]], place: [f64; 3]) -> Option<usize> {
     let gaps = places.iter().map(|&p| level_distance(p, place)).enumerate();
     gaps.reduce(|a, b| if b.1 < a.1 { b } else { a }).map(|(index, _)| index)

@@ -1,4 +1,4 @@
-//! A laser scanner on a tripod, set up at several places.
+//! Laser scanner on a tripod, set up at several places.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -13,39 +13,41 @@ use crate::scan::{Scan, SensorPath};
 use crate::scene::TriangleScene;
 use crate::truth::Truth;
 
-/// Where the tripod is set up.
+/// Positions of the tripod.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stations {
-    /// This many places on open ground, in streets and squares, far from each other; fewer where there is less room.
+    /// Number of chosen places on open ground, in streets and squares, far from each other; fewer if there is less
+    /// room.
     Chosen(u16),
-    /// These positions of the centre of the instrument, (S, 3), metres, absolute; those beyond 65 535 are left out.
+    /// Given positions of the centre of the instrument, (S, 3), metres, absolute; positions beyond 65 535 are left out.
     At(Vec<[f64; 3]>),
 }
 
-/// How a scene is scanned from tripods. Values outside their ranges that leave nothing to scan (a range, step or rate
-/// that is not positive) give a scan without points.
+/// Parameters of a scan from tripods. A range, step or rate that is not positive leaves nothing to scan, and gives a
+/// scan without points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TerrestrialParams {
-    /// Any number; another one gives other noise. Default 1.
+    /// Seed of the noise, any number. Default 1.
     pub seed: u64,
-    /// Where the tripod is set up. Default four chosen places.
+    /// Positions of the tripod. Default four chosen places.
     pub stations: Stations,
     /// Height of the instrument above ground at chosen places, metres, 0.5 to 10. Default 1.8.
     pub instrument_height: f64,
-    /// Angle between neighbouring pulses, around and up, radians, 1e-4 to 0.1. Default 0.25°: 4 cm at 10 m, half a
-    /// million points a station; surveys take a fifth of it and thin out afterwards.
+    /// Angle between neighbouring pulses, horizontal and vertical, radians, 1e-4 to 0.1. Default 0.25°: 4 cm at 10 m,
+    /// half a million points a station. Surveys use a fifth of this angle and thin out afterwards.
     pub angular_step: f64,
-    /// Lowest pulse, radians from the horizon, -π/2 to π/2. Default -60°: the tripod hides the ground below itself.
+    /// Elevation of the lowest pulse, radians from the horizon, -π/2 to π/2. Default -60°: the tripod hides the ground
+    /// below itself.
     pub lowest_elevation: f64,
-    /// Highest pulse, radians from the horizon. Default π/2, the zenith.
+    /// Elevation of the highest pulse, radians from the horizon. Default π/2, the zenith.
     pub highest_elevation: f64,
-    /// Farthest surface that gives an echo, metres, 1 to 5000. Default 120, as for medium-range scanners.
+    /// Maximum range of a surface that gives an echo, metres, 1 to 5000. Default 120, as for medium-range scanners.
     pub max_range: f64,
-    /// Pulses per second, 1000 to 10 million. Default 100 000.
+    /// Number of pulses per second, 1000 to 10 million. Default 100 000.
     pub pulse_rate: f64,
     /// Shape of the pulses. Default 0.3 mrad wide, in crowns as [`BeamParams::in_leaf`].
     pub beam: BeamParams,
-    /// Standard deviation of a range, metres, 0 to 0.1. Default 0.005, as data sheets state.
+    /// Standard deviation of a range, metres, 0 to 0.1. Default 0.005, as in data sheets.
     pub range_sd: f64,
     /// Standard deviation of the direction of a pulse about each of two axes, radians, 0 to 0.001. Default 4e-5.
     pub pointing_sd: f64,
@@ -53,7 +55,7 @@ pub struct TerrestrialParams {
     pub dropout: f64,
     /// Adjusted standard GPS time at the start, seconds. Default 3e8, a day in March 2021.
     pub start_time: f64,
-    /// Time to carry the tripod to its next place, seconds, at least 4. Default 300.
+    /// Time between two stations, in which the tripod is carried, seconds, at least 4. Default 300.
     pub move_time: f64,
 }
 
@@ -78,32 +80,32 @@ impl Default for TerrestrialParams {
     }
 }
 
-/// Time for which the position is written down before the first and after the last pulse of a station, seconds.
+/// Time before the first and after the last pulse of a station for which the position is recorded, seconds.
 const SETTLED: f64 = 1.0;
-/// Distance between entries of the path, seconds: readers interpolate over two seconds at most.
+/// Time between entries of the path, seconds: readers interpolate over two seconds at most.
 const PATH_STEP: f64 = 0.5;
 
 impl TerrestrialParams {
-    /// Pulses sent from each place.
+    /// Returns the number of pulses sent from each place.
     #[must_use]
     pub fn pulses_per_station(&self) -> u64 {
         let [columns, rows] = self.grid();
         u64::from(columns) * u64::from(rows)
     }
 
-    /// Columns and rows of pulses: around, and from below upwards.
+    /// Returns the columns of pulses around, and the rows from below upwards.
     pub(crate) fn grid(&self) -> [u32; 2] {
         let height = self.highest_elevation.min(FRAC_PI_2) - self.lowest_elevation.max(-FRAC_PI_2);
         [TAU, height].map(|angle| saturating_count(angle / self.angular_step))
     }
 
-    /// Time that a station takes to turn once, seconds.
+    /// Returns the time that a station takes to turn once, seconds.
     fn duration(&self) -> f64 {
         let [columns, rows] = self.grid();
         f64::from(columns) * f64::from(rows) / self.pulse_rate
     }
 
-    /// GPS time of the first pulse of a station, counted from 0.
+    /// Returns the GPS time of the first pulse of a station, counted from 0.
     pub(crate) fn start_of(&self, station: usize) -> f64 {
         self.start_time + SETTLED + station as f64 * (self.duration() + self.move_time.max(4.0 * SETTLED))
     }
@@ -114,12 +116,12 @@ impl TerrestrialParams {
     }
 }
 
-/// Sets the tripod up in `scene` and returns what the scanner records from all places together.
+/// Sets the tripod up in `scene` and returns the recorded scan of all places together.
 ///
 /// Each station turns once, clockwise from north, while the pulses of each column run from below upwards. Returns of a
-/// station carry its number as point source id, [`Scan::stations`] its position; the path tells the same by time. Each
-/// pulse draws its noise from its own stream, so the scan has the same bits for any number of threads. Intensities do
-/// not depend on the range, as if the scanner had evened that out.
+/// station have its number as point source id, and [`Scan::stations`] has its position. The path has the same positions
+/// by time. Each pulse draws its noise from its own stream, so the scan has the same bits for any number of threads.
+/// Intensities do not depend on the range, as if the scanner had corrected for it.
 #[must_use]
 pub fn scan_terrestrial(scene: &TriangleScene, params: &TerrestrialParams) -> Scan {
     let mut scan = Scan::default();
@@ -149,10 +151,10 @@ pub fn scan_terrestrial(scene: &TriangleScene, params: &TerrestrialParams) -> Sc
 
 /// One place of the tripod.
 struct Station {
-    /// Counted from 1.
+    /// Number of the station, counted from 1.
     number: u16,
     position: [f64; 3],
-    /// GPS time of the first pulse.
+    /// GPS time of the first pulse, seconds.
     start_time: f64,
 }
 
@@ -167,7 +169,7 @@ impl Station {
     }
 }
 
-/// Returns of one column of pulses.
+/// Returns the scan of one column of pulses.
 fn scan_column(
     scene: &TriangleScene,
     truth: &Truth,
@@ -205,7 +207,7 @@ fn scan_column(
     scan
 }
 
-/// The pulse towards `azimuth`, clockwise from north, and `elevation`, both in radians.
+/// Returns the pulse towards `azimuth`, clockwise from north, and `elevation`, both in radians.
 fn axis(origin: [f64; 3], azimuth: f64, elevation: f64) -> Axis {
     let (east, north) = azimuth.sin_cos();
     let (up, level) = elevation.sin_cos();

@@ -1,10 +1,9 @@
-//! What buildings carry: arcades, dormers, chimneys, balconies; and spires.
+//! Parts of buildings: arcades, dormers, chimneys, balconies; and spires.
 
 use crate::scene::{Material, ObjectPart};
 use crate::solids::{JOINT, PlanPlacement, extruded, prism, ridged, swept};
 
-/// Ridge, eaves and size of a house with its ridge along u, on which dormers and chimneys sit. Metres, absolute
-/// heights.
+/// Ridge, eaves and size of a house with its ridge along u, for dormers and chimneys. Metres, absolute heights.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RoofShape {
     pub(crate) length: f64,
@@ -14,20 +13,20 @@ pub(crate) struct RoofShape {
 }
 
 impl RoofShape {
-    /// Height of the roof at a distance from the wall under the eaves.
+    /// Returns the height of the roof at a distance from the wall under the eaves.
     fn height(&self, inset: f64) -> f64 {
         self.eaves + (self.ridge - self.eaves) * inset / (self.width / 2.0)
     }
 }
 
-/// Chimney that comes out of the roof near the ridge, `along` metres from the middle of the house.
+/// Returns a chimney that comes out of the roof near the ridge, `along` metres from the middle of the house.
 pub(crate) fn chimney(house: &PlanPlacement, roof: &RoofShape, along: f64) -> ObjectPart {
     let footprint = house.moved(along, 0.7, 0.0).rectangle(0.75, 0.55);
     prism(&footprint, roof.eaves, roof.ridge + 0.8, Material::Facade)
 }
 
-/// Gabled dormer in the slope towards −v, `along` metres from the middle of the house; `None` where the roof is too
-/// low.
+/// Returns a gabled dormer in the slope towards −v, `along` metres from the middle of the house; `None` if the roof is
+/// too low.
 pub(crate) fn dormer(house: &PlanPlacement, roof: &RoofShape, along: f64) -> Option<ObjectPart> {
     let inset = 0.8;
     let eaves = roof.height(inset) + 1.1;
@@ -41,8 +40,8 @@ pub(crate) fn dormer(house: &PlanPlacement, roof: &RoofShape, along: f64) -> Opt
     Some(ridged(&middle.rectangle(depth, 1.8), roof.eaves - JOINT, eaves, ridge, 0.0))
 }
 
-/// Balcony in front of a wall that faces −v and runs through the origin: a slab 16 cm thick whose upper side lies at
-/// `floor`, with a parapet about it. One solid with a hollow, its back buried in the wall.
+/// Returns a balcony in front of a wall that faces −v and runs through the origin. It is a slab 16 cm thick with a
+/// parapet around it, and its upper side lies at `floor`. It is one solid with a hollow, its back buried in the wall.
 pub(crate) fn balcony(wall: &PlanPlacement, width: f64, depth: f64, floor: f64) -> ObjectPart {
     let (thickness, parapet_height, parapet_width) = (0.16, 1.0, 0.08);
     let rectangle = |inset: f64, height: f64, back: f64| {
@@ -63,8 +62,8 @@ pub(crate) fn balcony(wall: &PlanPlacement, width: f64, depth: f64, floor: f64) 
     swept(&rings, &[Material::Slab], Material::Slab)
 }
 
-/// House over an arcade: its ground floor towards −v stands back by `setback` behind pillars, the floors above reach
-/// out to the full `roof` outline and rest on a ceiling at height `ceiling`. The house, then its pillars.
+/// Returns a house over an arcade, then its pillars. Its ground floor towards −v stands back by `setback` behind
+/// pillars. The floors above extend to the full `roof` outline and rest on a ceiling at height `ceiling`.
 pub(crate) fn arcaded(
     house: &PlanPlacement,
     roof: &RoofShape,
@@ -103,7 +102,7 @@ pub(crate) fn arcaded(
     parts
 }
 
-/// Tower of a church: a square shaft with a pyramid on it.
+/// Returns the tower of a church: a square shaft with a pyramid on it.
 pub(crate) fn steeple(placement: &PlanPlacement, side: f64, bottom: f64, eaves: f64, top: f64) -> Vec<ObjectPart> {
     let pyramid: [[f64; 3]; 4] = placement.rectangle(side + 0.6, side + 0.6).map(|[x, y]| [x, y, eaves - JOINT]);
     // The point is a square of a centimetre, which keeps the solid closed without a special case.

@@ -1,4 +1,4 @@
-//! A town from a short description: streets, blocks of buildings and trees on undulating ground.
+//! Town from a short description: streets, blocks of buildings and trees on undulating ground.
 
 pub(crate) mod buildings;
 pub(crate) mod open_blocks;
@@ -23,10 +23,10 @@ use crate::town::site::{Clearance, TownSite};
 use crate::town::terrain::Terrain;
 use crate::town::trees::CrownMaterial;
 
-/// Lanes that a street has room for.
+/// Number of lanes that fit across a street.
 const LANES_ACROSS: f64 = 4.5;
 
-/// What a block of a town holds.
+/// Kind of a block in a town.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BlockPlan {
     /// Two rows of plain terraced houses with sheds in the gardens between them.
@@ -37,78 +37,78 @@ pub enum BlockPlan {
     TowerAndHall,
     /// Six plain detached houses with gables and hips.
     DetachedHouses,
-    /// Two rows of houses that share party walls, with different eaves, chimneys, dormers, balconies over fenced
+    /// Two rows of houses that share party walls, with different eaves, chimneys, dormers, and balconies over fenced
     /// gardens.
     RowHouses,
     /// Houses that share party walls on all four sides of a courtyard, some over arcades.
     Perimeter,
-    /// By turns one building around a courtyard, and a U-shaped one about a court with a canopy and balconies.
+    /// Alternately one building around a courtyard, and a U-shaped one about a court with a canopy and balconies.
     Courtyard,
     /// Two high-rise buildings with balconies, joined by a deck on posts, and a car park.
     HighRise,
     /// A square with a church, houses over arcades, a market hall without walls, stalls, masts and wires.
     Square,
-    /// A petrol station: a canopy over nothing, a shop, cars.
+    /// A petrol station: a canopy over open ground, a shop, cars.
     PetrolStation,
     /// Four detached houses with chimneys and dormers in fenced gardens, a car in front.
     Gardens,
-    /// A lawn with a pavilion and a lookout platform, low fences about it.
+    /// A lawn with a pavilion and a lookout platform, and low fences around it.
     Lawn,
 }
 
-/// Where the trees of streets stand.
+/// Place of the trees of streets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StreetTrees {
     /// Along the middle of each street.
     Middle,
-    /// Small ones in line with the parked cars.
+    /// Small trees in line with the parked cars.
     Kerb,
-    /// Streets have none.
+    /// No trees in streets.
     Without,
 }
 
-/// What [`town`] builds. Values outside the stated ranges count as the nearest within.
+/// Parameters of [`town`]. Values out of range count as the nearest value within.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TownParams {
-    /// Side of the square of ground, metres, 60 to 5000. Below 100 there is one block, from
-    /// there on at least two by two. Default 120: a scan of it stays near 200 000 points.
+    /// Side of the square of ground, metres, 60 to 5000. Below 100 there is one block, from there on at least two by
+    /// two. Default 120: a scan of it stays near 200 000 points.
     pub extent: f64,
-    /// Any number; another one gives another town. Default 1.
+    /// Seed of the town, any number. Default 1.
     pub seed: u64,
-    /// Centre of the town in the projected frame, and height of the ground there before hills, metres. Default (155
-    /// 000, 463 000, 0): the middle of the Dutch grid (EPSG:28992, with heights EPSG:7415), so that code that squeezes
-    /// grid coordinates into f32 shows itself.
+    /// Centre of the town in the projected frame, and height of the ground there without hills, metres. Default (155
+    /// 000, 463 000, 0), the middle of the Dutch grid (EPSG:28992, with heights EPSG:7415). Code that squeezes grid
+    /// coordinates into f32 then fails visibly.
     pub origin: [f64; 3],
-    /// Rise of the ground, metres per metre, 0 to 0.1. Default 0.03: 3.6 m across the town, clearly not a plane z = 0.
+    /// Slope of the ground, metres per metre, 0 to 0.1. Default 0.03: 3.6 m across the town, clearly not a plane z = 0.
     pub slope: f64,
     /// Height of the hills above and below the inclined plane, metres, 0 to 5. Default 1.2.
     pub hill_height: f64,
     /// Depth of a dry canal through the middle of the town, crossed by bridges, metres, 0 (none) to 3. It needs two
     /// rows of blocks that stay 33 m deep beside it, or it is left out. Default 0.
     pub canal_depth: f64,
-    /// Direction of the streets, radians counter-clockwise from east, 0 to π/4. Default 0.14: walls that run along the
+    /// Direction of the streets, radians counter-clockwise from east, 0 to π/4. Default 0.14, because walls along the
     /// rows of a raster flatter every raster method.
     pub street_angle: f64,
-    /// Width of the streets between the blocks, metres, 4 to 12: wider ones would push the houses of the smallest town
+    /// Width of the streets between the blocks, metres, 4 to 12. Wider ones would push the houses of the smallest town
     /// into each other. Default 9.
     pub street_width: f64,
-    /// Least distance between the middles of blocks, metres, 44 to 80; the blocks share what is left over. Default 52.
+    /// Minimum distance between the middles of blocks, metres, 44 to 80; blocks share the remaining space. Default 52.
     pub block_pitch: f64,
-    /// Kinds of blocks and how often each occurs beside the others. The first blocks are one of each, in this order.
-    /// Without any, the ground stays open. Default: terraces, L-shapes, tower and hall, detached houses, equally often.
+    /// Kinds of blocks with their relative frequencies. The first blocks are one of each, in this order. Without any,
+    /// the ground stays open. Default: terraces, L-shapes, tower and hall, detached houses, equally often.
     pub blocks: Vec<(BlockPlan, u32)>,
-    /// How many roofs have eaves, parapets, boxes and chimneys. Default [`RoofDetails::PLAIN`].
+    /// Shares of roofs with eaves, parapets, boxes and chimneys. Default [`RoofDetails::PLAIN`].
     pub roofs: RoofDetails,
-    /// What crowns are made of. Default opaque.
+    /// Material of crowns. Default opaque.
     pub crowns: CrownMaterial,
-    /// Lowest and highest tree, metres, 3 to 22. Default 7 to 13.
+    /// Heights of the lowest and the highest tree, metres, 3 to 22. Default 7 to 13.
     pub tree_heights: [f64; 2],
-    /// Ground per tree that is tried in gardens, courts and about the town, m², 20 or more; a half of the tries or
-    /// fewer find room. Default 130.
+    /// Ground per attempt to plant a tree in gardens, courts and around the town, m², 20 or more. At most half of the
+    /// attempts find room. Default 130.
     pub area_per_garden_tree: f64,
-    /// Where the trees of the streets stand. Default in the middle.
+    /// Place of the trees of streets. Default in the middle.
     pub street_trees: StreetTrees,
-    /// How much of the room for parked cars, masts with wires and bus stops in the streets is used, 0 to 1. Default 0.
+    /// Share of the room for parked cars, masts with wires and bus stops in streets that is used, 0 to 1. Default 0.
     pub street_furniture: f64,
 }
 
@@ -141,27 +141,27 @@ impl Default for TownParams {
 }
 
 impl TownParams {
-    /// The ground of the town as a formula.
+    /// Returns the ground of the town as a formula.
     #[must_use]
     pub fn terrain(&self) -> Terrain {
         Terrain::new(self.origin, self.slope, self.hill_height, self.seed)
             .with_canal(TownLayout::new(&self.within_limits()).trench())
     }
 
-    /// A lane along each street between the blocks, from one end of the town to the other, (R, 2, 2), metres, absolute:
-    /// beside the trees and clear of parked cars and masts.
+    /// Returns a lane along each street between the blocks, from one end of the town to the other, (R, 2, 2), metres,
+    /// absolute. Lanes lie beside the trees and clear of parked cars and masts.
     #[must_use]
     pub fn lanes(&self) -> Vec<[[f64; 2]; 2]> {
         let params = self.within_limits();
         let layout = TownLayout::new(&params);
         let (half, beside) = (layout.side / 2.0, params.street_width / LANES_ACROSS);
         let along_u = layout.streets_along_u.iter().map(|v| [-half, half].map(|u| layout.centre.at(u, v + beside)));
-        // along v a side further left is one of lower u
+        // For streets along v, a lane further left has a lower u.
         let along_v = layout.streets_along_v.iter().map(|u| [-half, half].map(|v| layout.centre.at(u - beside, v)));
         along_u.chain(along_v).collect()
     }
 
-    /// The same description with everything that shapes the plan brought to values that can be built.
+    /// Returns the description with all parameters of the plan within the limits that can be built.
     fn within_limits(&self) -> Self {
         Self {
             extent: within(self.extent, [60.0, 5000.0]),
@@ -177,16 +177,16 @@ impl TownParams {
     }
 }
 
-/// The nearest value between the two; the lower one for NaN.
+/// Returns the nearest value between the two; the lower one for NaN.
 fn within(value: f64, [low, high]: [f64; 2]) -> f64 {
     if value > low { value.min(high) } else { low }
 }
 
-/// Builds a town of the described blocks, with trees in gardens and streets, and what stands about in the streets.
+/// Builds a town of the described blocks, with trees in gardens and streets, and furniture in the streets.
 ///
-/// Object 0 is the terrain, then come `building 1`…, `tree 1`…, `deck 1`…, `canopy 1`…, `bridge 1`…, `fence 1`…,
-/// `mast 1`…, `wire 1`… and `car 1`… as they were built; coordinates are absolute. The same parameters give the same
-/// town.
+/// Object 0 is the terrain. The next objects are `building 1`…, `tree 1`…, `deck 1`…, `canopy 1`…, `bridge 1`…, `fence
+/// 1`…, `mast 1`…, `wire 1`… and `car 1`…, in the order of building. Coordinates are absolute. The same parameters give
+/// the same town.
 #[must_use]
 pub fn town(params: &TownParams) -> TriangleScene {
     let params = &params.within_limits();
@@ -222,7 +222,7 @@ pub fn town(params: &TownParams) -> TriangleScene {
     site.scene
 }
 
-/// The kind of block number `number`: one of each first, then at random by weight.
+/// Returns the kind of block number `number`: one of each first, then at random by weight.
 fn choose(blocks: &[(BlockPlan, u32)], number: usize, random: &mut Random) -> Option<BlockPlan> {
     if let Some(&(kind, _)) = blocks.get(number) {
         return Some(kind);

@@ -10,7 +10,7 @@ use crate::town::row_blocks::{BALCONY_DEPTH, RowStyle, STOREY};
 use crate::town::site::TownSite;
 
 impl TownSite {
-    /// A tower and a long building with balconies, a deck between them, a car park with a shelter.
+    /// Builds a tower and a long building with balconies, a deck between them, and a car park with a shelter.
     pub(crate) fn high_rise(&mut self, plan: &BlockRectangle) {
         let [half_u, half_v] = plan.half_sides();
         let (tower_side, slab_depth) = (14.0, 10.5);
@@ -47,8 +47,8 @@ impl TownSite {
         }
     }
 
-    /// Flat-roofed building with a machine room and rows of balconies, from the given storey up, on the walls that face
-    /// −v after a turn by each of `faces`.
+    /// Builds a flat-roofed building with a machine room and rows of balconies, from the given storey up. The balconies
+    /// are on the walls that face −v after a turn by each of `faces`.
     fn balconied(&mut self, place: &PlanPlacement, size: [f64; 2], height: f64, faces: &[f64], first_storey: u32) {
         let footprint = place.rectangle(size[0], size[1]);
         let ground = self.ground(place.origin);
@@ -71,7 +71,7 @@ impl TownSite {
         self.add("building", &parts);
     }
 
-    /// Church, houses over arcades, market hall and stalls.
+    /// Builds a church, houses over arcades, a market hall and stalls.
     pub(crate) fn square(&mut self, plan: &BlockRectangle) {
         let [half_u, half_v] = plan.half_sides();
         let style = RowStyle {
@@ -110,7 +110,7 @@ impl TownSite {
         self.park(plan.centre.moved(half_u - 5.0, -half_v + 5.5, PI));
     }
 
-    /// Canopy over the pumps, shop, cars and a fence at the back.
+    /// Builds a canopy over the pumps, a shop, cars and a fence at the back.
     pub(crate) fn petrol_station(&mut self, plan: &BlockRectangle) {
         let [half_u, half_v] = plan.half_sides();
         self.park(plan.centre.moved(-2.0, -0.25 * half_v - 2.0, 0.0));
@@ -125,11 +125,11 @@ impl TownSite {
         self.wired_masts([-0.9, 0.9].map(|u| plan.centre.moved(u * half_u, -0.9 * half_v, 0.0)));
     }
 
-    /// Four detached houses in fenced gardens.
+    /// Builds four detached houses in fenced gardens.
     pub(crate) fn gardens(&mut self, plan: &BlockRectangle) {
         let [half_u, half_v] = plan.half_sides();
         for (side_u, side_v) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
-            // Fronts towards −v as placed, so gardens of the upper row are turned about.
+            // Fronts face −v as placed, so gardens of the upper row are turned about.
             let facing = if side_v < 0.0 { 0.0 } else { PI };
             let turn = self.random.between(-0.1, 0.1);
             let house = plan.centre.moved(side_u * 0.52 * half_u, side_v * 0.58 * half_v, facing + turn);
@@ -155,7 +155,7 @@ impl TownSite {
         }
     }
 
-    /// House with its front towards −v, a chimney, dormers or hips.
+    /// Builds a house with its front towards −v, a chimney, dormers or hips.
     fn detached_house(&mut self, house: &PlanPlacement) {
         let size = [self.random.between(9.5, 11.5), self.random.between(7.5, 8.8)];
         let footprint = house.rectangle(size[0], size[1]);
@@ -178,7 +178,7 @@ impl TownSite {
         self.add("building", &parts);
     }
 
-    /// Pavilion, lookout platform and low fences.
+    /// Builds a pavilion, a lookout platform and low fences.
     pub(crate) fn lawn(&mut self, plan: &BlockRectangle) {
         let [half_u, half_v] = plan.half_sides();
         let pavilion = plan.centre.moved(0.3 * half_u, 0.2 * half_v, self.random.between(0.0, FRAC_PI_2));

@@ -1,4 +1,4 @@
-//! Blocks of plain solids: terraces, L-shapes, a tower and a hall, detached houses. The default town is made of them.
+//! Blocks of plain solids: terraces, L-shapes, a tower and a hall, detached houses. The default town consists of them.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -7,7 +7,7 @@ use crate::town::plan::BlockRectangle;
 use crate::town::site::TownSite;
 
 impl TownSite {
-    /// Two rows of terraced houses with sheds in the gardens between them.
+    /// Builds two rows of terraced houses with sheds in the gardens between them.
     pub(crate) fn terraces(&mut self, plan: &BlockRectangle) {
         for (v, angle) in [(-14.5, 0.0), (14.5, 2.0 * FRAC_PI_2)] {
             for u in [-10.5, 10.5] {
@@ -21,7 +21,7 @@ impl TownSite {
         }
     }
 
-    /// A gabled and a flat-roofed L about a courtyard.
+    /// Builds a gabled and a flat-roofed L about a courtyard.
     pub(crate) fn l_shapes(&mut self, plan: &BlockRectangle) {
         let turn = if self.random.chance(0.5) { 0.0 } else { 2.0 * FRAC_PI_2 };
         let turned = BlockRectangle { centre: plan.centre.moved(0.0, 0.0, turn), scale: plan.scale };
@@ -47,13 +47,13 @@ impl TownSite {
         self.take(corner.moved(width / 2.0, length_v / 2.0, 0.0), width, length_v);
     }
 
-    /// A tower with a machine room on its roof, a hall with a flat roof and one with a ridge.
+    /// Builds a tower with a machine room on its roof, a hall with a flat roof and one with a ridge.
     pub(crate) fn tower_and_hall(&mut self, plan: &BlockRectangle) {
         let placement = plan.at(-9.0, 8.0, 0.0);
         let footprint = placement.rectangle(13.0, 13.0);
         let top = self.ground(placement.origin) + self.random.between(34.0, 40.0);
         let tower = extruded(&footprint, self.bottom(&footprint), top);
-        // Sunk into the roof: a solid that only touches another would leave the scanner a seam to look into.
+        // Sunk into the roof: a solid that only touches another would leave a seam that the scanner sees into.
         let room = extruded(&placement.moved(1.5, -1.0, 0.0).rectangle(5.0, 4.0), top - 0.5, top + 3.0);
         self.take(placement, 13.0, 13.0);
         self.add("building", &[tower, room]);
@@ -61,7 +61,7 @@ impl TownSite {
         self.house(plan.at(-3.0, -13.0, 0.0), [24.0, 10.0], 4.5, 3.0, 0.0);
     }
 
-    /// Six detached houses, each turned a little from the street, with gables or hips.
+    /// Builds six detached houses, each turned a little from the street, with gables or hips.
     pub(crate) fn detached_houses(&mut self, plan: &BlockRectangle) {
         for (number, (u, v)) in [-13.5, 0.0, 13.5].iter().flat_map(|&u| [(u, -12.0), (u, 12.0)]).enumerate() {
             let quarter = if self.random.chance(0.5) { 0.0 } else { FRAC_PI_2 };

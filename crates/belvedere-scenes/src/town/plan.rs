@@ -1,42 +1,43 @@
-//! The plan of a town: rows of blocks, streets between them, a canal.
+//! Plan of a town: rows of blocks, streets between them, a canal.
 
 use crate::solids::PlanPlacement;
 use crate::town::TownParams;
 use crate::town::terrain::Canal;
 
-/// Half the side of the square within a block that the block plans are drawn for, metres.
+/// Half the side of the square within a block for which the block plans are drawn, metres.
 const PLAN_HALF_SIDE: f64 = 20.0;
-/// Ground kept free of buildings at the edge of the scene, metres.
+/// Width of the edge of the scene that is free of buildings, metres.
 const EDGE: f64 = 4.0;
-/// Least side of the ground for two by two blocks, metres.
+/// Minimum side of the ground for two by two blocks, metres.
 const MIN_EXTENT_OF_FOUR: f64 = 100.0;
-/// Ground that a canal takes between two rows of blocks besides the street, metres, and how much of it is trench.
+/// Width of the ground of a canal between two rows of blocks, besides the street, and width of its trench, metres.
 const CANAL_STRIP: f64 = 15.0;
 const CANAL_WIDTH: f64 = 12.0;
-/// Least side of a block next to a canal, metres; where it would be less there is no canal.
+/// Minimum side of a block next to a canal, metres; with smaller blocks there is no canal.
 const MIN_BLOCK_AT_CANAL: f64 = 33.0;
-/// How far a bridge reaches beyond the banks, metres.
+/// Length of a bridge beyond each bank, metres.
 const BRIDGE_END: f64 = 1.2;
 
-/// The rectangle of a block: a square of ±[`PLAN_HALF_SIDE`] plan metres, stretched to the block.
+/// Rectangle of a block: a square of ±[`PLAN_HALF_SIDE`] plan metres, stretched to the block.
 pub(crate) struct BlockRectangle {
     pub(crate) centre: PlanPlacement,
     pub(crate) scale: [f64; 2],
 }
 
 impl BlockRectangle {
-    /// Placement at plan position (u, v), turned by `angle`. Only positions stretch, buildings keep their size.
+    /// Returns the placement at plan position (u, v), turned by `angle`. Only positions stretch; buildings keep their
+    /// size.
     pub(crate) fn at(&self, u: f64, v: f64, angle: f64) -> PlanPlacement {
         self.centre.moved(u * self.scale[0], v * self.scale[1], angle)
     }
 
-    /// Half the sides of the block, metres.
+    /// Returns half the sides of the block, metres.
     pub(crate) fn half_sides(&self) -> [f64; 2] {
         self.scale.map(|scale| scale * PLAN_HALF_SIDE)
     }
 }
 
-/// Where blocks, streets and the canal of a town lie.
+/// Layout of the blocks, streets and the canal of a town.
 pub(crate) struct TownLayout {
     pub(crate) extent: f64,
     /// Middle of the town, u along the streets of one direction.
@@ -46,20 +47,20 @@ pub(crate) struct TownLayout {
     /// Middles of the columns and rows of blocks.
     pub(crate) columns: Vec<f64>,
     pub(crate) rows: Vec<f64>,
-    /// Middles of the streets that run along v, by u, and along u, by v.
+    /// Middles of the streets: streets along v by their u, and streets along u by their v.
     pub(crate) streets_along_v: Vec<f64>,
     pub(crate) streets_along_u: Vec<f64>,
-    /// Middle line of the canal, which runs along u, by v.
+    /// Middle line of the canal, which runs along u, by its v.
     pub(crate) canal: Option<f64>,
     canal_depth: f64,
     scale: [f64; 2],
 }
 
 impl TownLayout {
-    /// From parameters within their limits.
+    /// Creates the layout from parameters within their limits.
     pub(crate) fn new(params: &TownParams) -> Self {
         let extent = params.extent;
-        // The turned grid of blocks has to fit into the upright square.
+        // The turned grid of blocks must fit into the upright square.
         let (sin, cos) = params.street_angle.sin_cos();
         let side = (extent - 2.0 * EDGE) / (sin.abs() + cos.abs());
         let street = params.street_width;
@@ -93,30 +94,30 @@ impl TownLayout {
         Self { extent, centre, side, columns, rows, streets_along_v, streets_along_u, canal, canal_depth, scale }
     }
 
-    /// Blocks row by row.
+    /// Returns the blocks, row by row.
     pub(crate) fn plans(&self) -> Vec<BlockRectangle> {
         let positions = self.rows.iter().flat_map(|&v| self.columns.iter().map(move |&u| (u, v)));
         positions.map(|(u, v)| BlockRectangle { centre: self.centre.moved(u, v, 0.0), scale: self.scale }).collect()
     }
 
-    /// Half the sides of a block, metres.
+    /// Returns half the sides of a block, metres.
     pub(crate) fn block_half_sides(&self) -> [f64; 2] {
         self.scale.map(|scale| scale * PLAN_HALF_SIDE)
     }
 
-    /// The trench of the canal.
+    /// Returns the trench of the canal; `None` without a canal.
     pub(crate) fn trench(&self) -> Option<Canal> {
         let placement = self.centre.moved(0.0, self.canal?, 0.0);
         Some(Canal { placement, width: CANAL_WIDTH, depth: self.canal_depth })
     }
 
-    /// The ground that the canal takes, and its sides along u and v in metres.
+    /// Returns the placement of the ground of the canal, and its sides along u and v in metres.
     pub(crate) fn canal_ground(&self) -> Option<(PlanPlacement, [f64; 2])> {
         // Twice the extent is past the edge in any direction.
         Some((self.centre.moved(0.0, self.canal?, 0.0), [2.0 * self.extent, CANAL_WIDTH]))
     }
 
-    /// Ends of the bridges that carry the streets over the canal.
+    /// Returns the ends of the bridges that carry the streets over the canal.
     pub(crate) fn bridges(&self) -> Vec<[[f64; 2]; 2]> {
         let reach = CANAL_WIDTH / 2.0 + BRIDGE_END;
         let ends = |u: f64, v: f64| [self.centre.at(u, v - reach), self.centre.at(u, v + reach)];
@@ -124,7 +125,7 @@ impl TownLayout {
     }
 }
 
-/// `count` positions `step` apart, symmetric about 0.
+/// Returns `count` positions `step` apart, symmetric about 0.
 fn centred_steps(count: f64, step: f64) -> Vec<f64> {
     let first = -step * (count - 1.0) / 2.0;
     std::iter::successors(Some(first), |previous| Some(previous + step))

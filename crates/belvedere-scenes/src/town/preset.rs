@@ -4,11 +4,11 @@ use crate::town::roofs::RoofDetails;
 use crate::town::trees::CrownMaterial;
 use crate::town::{BlockPlan, StreetTrees, TownParams};
 
-/// Side of a town where none is wanted, metres: a few blocks, and a scan of a few hundred thousand points.
+/// Default side of a town, metres: a few blocks, and a scan of a few hundred thousand points.
 pub const EXTENT: f64 = 150.0;
 
-/// A kind of town, at any size and seed. A third to two thirds of its sloped roofs have eaves, and half or more of the
-/// flat ones parapets ([`TownParams::roofs`]).
+/// Kind of town, at any size and seed. A third to two thirds of its sloped roofs have eaves, and half or more of the
+/// flat ones have parapets ([`TownParams::roofs`]).
 ///
 /// ```
 /// use belvedere_scenes::{CrownMaterial, Preset, TownParams, blocks, town};
@@ -25,21 +25,21 @@ pub enum Preset {
     /// ground.
     Village,
     /// Rows of houses with party walls, high-rise with balconies and decks, a market square with arcades, courtyards, a
-    /// petrol station, a dry canal with bridges; cars, fences, masts and wires, opaque trees.
+    /// petrol station. Also a dry canal with bridges, cars, fences, masts and wires, and opaque trees.
     Town,
     /// Narrow streets, party walls, courtyards, arcades, a canal.
     OldTown,
-    /// High-rise blocks with balconies, decks and canopies between them.
+    /// High-rise blocks with balconies, and decks and canopies between them.
     Towers,
     /// Many porous trees, pavilions, lookout decks and footbridges over a trench.
     Park,
 }
 
 impl Preset {
-    /// Every preset.
+    /// All presets.
     pub const ALL: [Self; 5] = [Self::Village, Self::Town, Self::OldTown, Self::Towers, Self::Park];
 
-    /// Name on the command line: `village`, `town`, `old-town`, `towers`, `park`.
+    /// Returns the name on the command line: `village`, `town`, `old-town`, `towers`, `park`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -51,8 +51,8 @@ impl Preset {
         }
     }
 
-    /// Parameters of a town of this kind: a square of `extent` metres. What the kind promises is there from 120 m on;
-    /// smaller ones hold the first of its blocks.
+    /// Returns the parameters of a town of this kind: a square of `extent` metres. All kinds of blocks occur from 120 m
+    /// on; smaller towns have only the first of them.
     #[must_use]
     pub fn params(self, extent: f64, seed: u64) -> TownParams {
         let usual = TownParams { extent, seed, street_trees: StreetTrees::Kerb, ..TownParams::default() };

@@ -11,27 +11,27 @@ use crate::town::street_furniture::fence;
 
 /// Height of a storey, metres.
 pub(crate) const STOREY: f64 = 2.9;
-/// How far a balcony sticks out, metres.
+/// Depth of a balcony in front of the wall, metres.
 pub(crate) const BALCONY_DEPTH: f64 = 1.4;
 /// Width of a balcony, metres.
 const BALCONY_WIDTH: f64 = 3.0;
-/// How far neighbours reach into each other, metres: party walls without a seam.
+/// Overlap of neighbouring houses, metres: party walls without a seam.
 const PARTY_WALL: f64 = 0.06;
 
-/// Houses of one row. Lengths in metres; chances from 0 to 1 per house.
+/// Houses of one row. Lengths are in metres, chances from 0 to 1 per house.
 pub(crate) struct RowStyle {
     pub(crate) house_width: f64,
     pub(crate) depth: f64,
     pub(crate) eaves: [f64; 2],
     pub(crate) arcades: f64,
     pub(crate) balconies: f64,
-    /// Length at either end of the row whose back other houses stand against: no balconies there.
+    /// Length at either end of the row with other houses behind, and therefore without balconies.
     pub(crate) corner: f64,
     pub(crate) dormers: f64,
 }
 
 impl TownSite {
-    /// Two rows of houses with fenced gardens between them.
+    /// Builds two rows of houses with fenced gardens between them.
     pub(crate) fn row_houses(&mut self, plan: &BlockRectangle) {
         let [half_u, half_v] = plan.half_sides();
         let style = RowStyle {
@@ -53,7 +53,7 @@ impl TownSite {
             let width = 2.0 * half_u / f64::from(count);
             for boundary in 1..count {
                 let u = -half_u + width * f64::from(boundary);
-                // From inside the house, wherever its back wall is, to the fence at the end of the garden.
+                // From inside the house, for any place of its back wall, to the fence at the end of the garden.
                 self.fence([garden.at(u, -back - 1.0), garden.at(u, 0.02)], 1.5);
             }
             for house in 0..count {
@@ -68,7 +68,7 @@ impl TownSite {
         }
     }
 
-    /// Houses on four sides of a courtyard, with a canopy in it.
+    /// Builds houses on four sides of a courtyard, with a canopy in it.
     pub(crate) fn perimeter(&mut self, plan: &BlockRectangle) {
         let [half_u, half_v] = plan.half_sides();
         let depth = 8.0;
@@ -102,7 +102,7 @@ impl TownSite {
         }
     }
 
-    /// By turns a building around a courtyard and one about three sides of a court.
+    /// Builds alternately a building around a courtyard and one around three sides of a court.
     pub(crate) fn courtyard(&mut self, plan: &BlockRectangle) {
         let [a, b] = plan.half_sides().map(|half| half - 0.9);
         let depth = 9.5;
@@ -158,14 +158,14 @@ impl TownSite {
         self.take(plan.centre.moved(0.0, -b + depth + BALCONY_DEPTH / 2.0, 0.0), 2.0 * (a - depth), BALCONY_DEPTH);
     }
 
-    /// One balcony per storey from the first floor up on a wall that faces −v and runs through the origin.
+    /// Returns one balcony per storey from the first floor up, on a wall that faces −v and runs through the origin.
     pub(crate) fn balconies(&self, wall: &PlanPlacement, ground: f64, top: f64) -> Vec<ObjectPart> {
         let floors = std::iter::successors(Some(ground + STOREY), |floor| Some(floor + STOREY));
         let below = floors.take_while(|floor| floor + 1.6 < top);
         below.map(|floor| balcony(wall, BALCONY_WIDTH, BALCONY_DEPTH, floor)).collect()
     }
 
-    /// A row of houses along u about `row`, their fronts towards −v. Returns how many.
+    /// Builds a row of houses along u about `row`, with their fronts towards −v. Returns their number.
     pub(crate) fn row(&mut self, row: &PlanPlacement, length: f64, style: &RowStyle) -> u32 {
         let count = crate::town::street_furniture::pieces(length, style.house_width * 1.15);
         let width = length / f64::from(count);
@@ -179,7 +179,8 @@ impl TownSite {
     }
 
     fn party_house(&mut self, place: &PlanPlacement, width: f64, style: &RowStyle) {
-        // No two fronts, backs or roofs in one plane: where they overlap, it would be open which of them a ray meets.
+        // No two fronts, backs or roofs lie in one plane. In an overlap of such faces, the first surface of a ray would
+        // be undefined.
         let depth = style.depth + self.random.between(-0.4, 0.4);
         let forward = self.random.between(0.0, 0.3);
         let house = place.moved(0.0, (depth - style.depth) / 2.0 - forward, 0.0);

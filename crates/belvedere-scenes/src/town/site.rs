@@ -1,4 +1,4 @@
-//! A town under construction: what stands where already, and how things are put there.
+//! Town under construction: taken ground, and placement of new objects.
 
 use std::collections::HashMap;
 
@@ -10,32 +10,32 @@ use crate::town::roofs::RoofDetails;
 use crate::town::terrain::Terrain;
 use crate::town::trees::{CrownMaterial, TreeShape, tree};
 
-/// How far solids reach below the lowest ground they stand on, metres.
+/// Depth of solids below the lowest ground they stand on, metres.
 pub(crate) const BURIED: f64 = 1.0;
-/// Least gap between a crown and a building or another crown, metres.
+/// Minimum gap between a crown and a building or another crown, metres.
 const CROWN_GAP: f64 = 0.3;
-/// Least gap between the middle of a trunk and what its crown may hang over, metres.
+/// Minimum gap between the middle of a trunk and objects that its crown may overhang, metres.
 const TRUNK_GAP: f64 = 0.8;
-/// Side of the cells in which taken ground is looked up, metres.
+/// Side of the cells for look-ups of taken ground, metres.
 const CELL: f64 = 16.0;
-/// Farthest from a point that taken ground may matter, metres: the widest crown and its gap.
+/// Maximum distance from a point of taken ground that can affect it, metres: the widest crown and its gap.
 const REACH: f64 = 8.0;
-/// How far a crown may bulge beyond its mean radius, as a factor.
+/// Maximum radius of a crown as a multiple of its mean radius.
 const CROWN_BULGE: f64 = 1.15;
 
-/// Longest short side of a shed, whose flat roof has neither parapet nor boxes, metres.
+/// Maximum short side of a shed, whose flat roof has neither parapet nor boxes, metres.
 const SHED_SIDE: f64 = 4.0;
 
-/// What keeps its distance from taken ground.
+/// Part of a tree that keeps its distance from taken ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Clearance {
-    /// The whole crown, and everything else.
+    /// The whole crown, and all other objects.
     Crown,
-    /// The trunk and everything else; crowns may hang over.
+    /// The trunk and all other objects; crowns may overhang.
     Trunk,
 }
 
-/// Ground that something stands on already: a rectangle, or a disc where its half sides are zero.
+/// Ground taken by an object: a rectangle, or a disc if its half sides are zero.
 struct Taken {
     placement: PlanPlacement,
     half_sides: [f64; 2],
@@ -44,7 +44,7 @@ struct Taken {
 }
 
 impl Taken {
-    /// Distance from `point` to the outline, metres, negative inside.
+    /// Returns the distance from `point` to the outline, metres, negative inside.
     fn distance(&self, point: [f64; 2]) -> f64 {
         let (sin, cos) = self.placement.angle.sin_cos();
         let (dx, dy) = (point[0] - self.placement.origin[0], point[1] - self.placement.origin[1]);
@@ -53,7 +53,7 @@ impl Taken {
         outside_u.hypot(outside_v) - self.margin
     }
 
-    /// Half the sides of the upright box around it.
+    /// Returns half the sides of the upright box around it.
     fn half_box(&self) -> [f64; 2] {
         let (sin, cos) = self.placement.angle.sin_cos();
         let [u, v] = self.half_sides;
@@ -61,7 +61,7 @@ impl Taken {
     }
 }
 
-/// Taken ground by cells, so that a city is built in time that grows with its area.
+/// Taken ground by cells, so that the time to build a city grows in proportion to its area.
 #[derive(Default)]
 struct TakenGround {
     all: Vec<Taken>,
@@ -71,7 +71,7 @@ struct TakenGround {
 impl TakenGround {
     fn push(&mut self, taken: Taken) {
         let half = taken.half_box();
-        // Nothing is built at infinity, and its cells would be without end.
+        // No object lies at infinity, and its cells would be without end.
         if !taken.placement.origin.iter().chain(&half).all(|v| v.is_finite()) {
             return;
         }
@@ -98,16 +98,16 @@ fn cell(coordinate: f64) -> i64 {
     (coordinate / CELL).floor() as i64
 }
 
-/// A town under construction.
+/// Town under construction.
 pub(crate) struct TownSite {
     pub(crate) scene: TriangleScene,
     pub(crate) terrain: Terrain,
     pub(crate) random: Random,
-    /// Middle and side of the upright square of ground.
+    /// Middle and side of the upright square of ground, metres.
     pub(crate) centre: [f64; 2],
     pub(crate) extent: f64,
     pub(crate) roofs: RoofDetails,
-    /// For random numbers that change nothing but what they are drawn for.
+    /// Seed of independent random numbers, so that one detail does not change others.
     pub(crate) seed: u64,
     pub(crate) crowns: CrownMaterial,
     pub(crate) tree_heights: [f64; 2],
@@ -117,7 +117,7 @@ pub(crate) struct TownSite {
 }
 
 impl TownSite {
-    /// The bare square of ground of side `extent` about `centre`.
+    /// Creates the bare square of ground of side `extent` about `centre`.
     pub(crate) fn new(terrain: Terrain, random: Random, centre: [f64; 2], extent: f64) -> Self {
         let mut scene = TriangleScene::default();
         scene.add_object("terrain", &[terrain.mesh(extent)]);
@@ -141,7 +141,7 @@ impl TownSite {
         self.terrain.height(x, y)
     }
 
-    /// Height at which solids over `footprint` end below the ground.
+    /// Returns the height at which solids over `footprint` end below the ground.
     pub(crate) fn bottom(&self, footprint: &[[f64; 2]]) -> f64 {
         self.terrain.lowest(footprint) - BURIED
     }
@@ -153,12 +153,12 @@ impl TownSite {
         self.scene.add_object(format!("{kind} {count}"), parts);
     }
 
-    /// How many objects of a kind there are.
+    /// Returns the number of objects of a kind.
     pub(crate) fn count(&self, kind: &str) -> u32 {
         self.counts.get(kind).copied().unwrap_or(0)
     }
 
-    /// 0 and 1 by turns: which kind of courtyard comes next.
+    /// Returns the kind of the next courtyard, 0 and 1 alternately.
     pub(crate) fn next_courtyard(&mut self) -> u32 {
         let count = self.courtyards;
         self.courtyards += 1;
@@ -174,8 +174,8 @@ impl TownSite {
         self.taken.push(Taken { placement, half_sides, margin: 0.0, clearance });
     }
 
-    /// Whether a rectangle lies inside the square and `gap` metres off everything that stands already, crowns excepted
-    /// where only trunks count. Looked at in points a metre apart, so corners of others may reach in by half a metre.
+    /// Returns true if a rectangle lies inside the square and `gap` metres off all taken ground. It is tested at points
+    /// a metre apart, so corners of other objects may extend into it by half a metre.
     pub(crate) fn is_free(&self, placement: &PlanPlacement, [length, width]: [f64; 2], gap: f64) -> bool {
         let steps = [length, width].map(|side| crate::town::street_furniture::pieces(side, 1.0));
         let share = |step: u32, steps: u32| f64::from(step) / f64::from(steps) - 0.5;
@@ -185,12 +185,12 @@ impl TownSite {
         })
     }
 
-    /// Whether the square reaches `reach` metres beyond `point` on all sides.
+    /// Returns true if the square extends `reach` metres beyond `point` on all sides.
     fn is_inside(&self, point: [f64; 2], reach: f64) -> bool {
         [0, 1].iter().all(|&i| (point[i] - self.centre[i]).abs() + reach < self.extent / 2.0)
     }
 
-    /// House of `length` by `width` centred on `placement`, ridge along u.
+    /// Adds a house of `length` by `width` centred on `placement`, ridge along u.
     pub(crate) fn house(&mut self, placement: PlanPlacement, size: [f64; 2], eaves: f64, roof_height: f64, hip: f64) {
         let footprint = placement.rectangle(size[0], size[1]);
         let eaves = self.ground(placement.origin) + eaves;
@@ -201,7 +201,7 @@ impl TownSite {
         self.add("building", &parts);
     }
 
-    /// Box of `length` by `width` centred on `placement`.
+    /// Adds a box of `length` by `width` centred on `placement`.
     pub(crate) fn flat_block(&mut self, placement: PlanPlacement, size: [f64; 2], height: f64) {
         let footprint = placement.rectangle(size[0], size[1]);
         let top = self.ground(placement.origin) + height;
@@ -214,13 +214,13 @@ impl TownSite {
         self.add("building", &parts);
     }
 
-    /// Plants a tree of a random size where its crown fits.
+    /// Plants a tree of a random size if its crown fits.
     pub(crate) fn plant(&mut self, point: [f64; 2]) {
         let shape = TreeShape::random(self.tree_heights, &mut self.random);
         self.plant_shaped(point, &shape);
     }
 
-    /// Plants a tree where its crown fits.
+    /// Plants a tree if its crown fits.
     pub(crate) fn plant_shaped(&mut self, point: [f64; 2], shape: &TreeShape) {
         let reach = shape.crown_radius * CROWN_BULGE;
         let gap = |taken: &Taken| match taken.clearance {

@@ -1,13 +1,13 @@
-//! What stands about in streets, squares and gardens: cars, fences, masts and wires, canopies, decks, bridges.
+//! Furniture of streets, squares and gardens: cars, fences, masts and wires, canopies, decks, bridges.
 
 use crate::scene::{Material, ObjectPart};
 use crate::solids::{JOINT, PlanPlacement, prism, swept};
 use crate::town::terrain::Terrain;
 
-/// Height of the ground as the solids that stand on it need it.
+/// Height of the ground at a place, for the solids that stand on it, metres.
 pub(crate) type GroundHeight<'a> = &'a dyn Fn([f64; 2]) -> f64;
 
-/// Car that heads along u: a body that reaches into the ground, so that it stands on slopes, and a cabin.
+/// Returns a car that heads along u: a body that extends into the ground, so that it stands on slopes, and a cabin.
 pub(crate) fn car(placement: &PlanPlacement, ground: f64) -> Vec<ObjectPart> {
     let at = |height: f64| move |[x, y]: [f64; 2]| [x, y, ground + height];
     let cabin = placement.moved(-0.2, 0.0, 0.0);
@@ -16,8 +16,8 @@ pub(crate) fn car(placement: &PlanPlacement, ground: f64) -> Vec<ObjectPart> {
     [body, cabin].iter().map(|rings| swept(rings, &[Material::Car], Material::Car)).collect()
 }
 
-/// Strip of rectangular section along the straight line between two points: `width` across, from `bottom` to `top`
-/// metres at each share of the way, 0 to 1, in `steps` pieces.
+/// Returns a strip of rectangular section, `width` across, along the straight line between two points. `heights` gives
+/// bottom and top, metres, for each share of the line, 0 to 1. The strip has `steps` pieces.
 fn strip(
     [from, to]: [[f64; 2]; 2],
     width: f64,
@@ -45,13 +45,13 @@ fn strip(
     swept(&rings, &[material], material)
 }
 
-/// Number of pieces of at most `longest` metres that a line of `length` metres is cut into.
+/// Returns the number of pieces of at most `longest` metres into which a line of `length` metres is divided.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates, lengths are not negative")]
 pub(crate) fn pieces(length: f64, longest: f64) -> u32 {
     (length / longest).ceil().max(1.0) as u32
 }
 
-/// Fence from one point to another that follows the ground: `height` metres high, 6 cm thick.
+/// Returns a fence from one point to another that follows the ground: `height` metres high, 6 cm thick.
 pub(crate) fn fence(ends: [[f64; 2]; 2], height: f64, ground: GroundHeight<'_>) -> ObjectPart {
     let length = (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1]);
     let heights = |_: f64, point: [f64; 2]| {
@@ -61,8 +61,8 @@ pub(crate) fn fence(ends: [[f64; 2]; 2], height: f64, ground: GroundHeight<'_>) 
     strip(ends, 0.06, pieces(length, 2.0), heights, Material::Fence)
 }
 
-/// Bridge along a straight line between two points on the ground, with a slightly arched deck 40 cm thick and parapets;
-/// its ends run into the ground.
+/// Returns a bridge along a straight line between two points on the ground, with a slightly arched deck 40 cm thick and
+/// parapets. Its ends run into the ground.
 pub(crate) fn bridge(ends: [[f64; 2]; 2], width: f64, ground: GroundHeight<'_>) -> Vec<ObjectPart> {
     let grounds = ends.map(ground);
     let crown = 0.55;
@@ -84,8 +84,8 @@ pub(crate) fn bridge(ends: [[f64; 2]; 2], width: f64, ground: GroundHeight<'_>) 
     std::iter::once(deck).chain(parapets).collect()
 }
 
-/// Slab of `size` about the origin with its underside at height `underside`, on square posts along its edge that stand
-/// `inset` metres inside it and at most `spacing` metres apart. Metres.
+/// Slab on square posts, in metres: `size` about the origin, with its underside at height `underside`. The posts stand
+/// along its edge, `inset` metres inside it and at most `spacing` metres apart.
 pub(crate) struct PostedSlab {
     pub(crate) size: [f64; 2],
     pub(crate) underside: f64,
@@ -95,7 +95,8 @@ pub(crate) struct PostedSlab {
     pub(crate) spacing: f64,
 }
 
-/// Slab on posts over open ground: canopy, deck, market stall. The slab, then its posts.
+/// Returns a slab on posts over open ground, such as a canopy, deck or market stall. The slab comes first, then its
+/// posts.
 pub(crate) fn posted_slab(placement: &PlanPlacement, shape: &PostedSlab, terrain: &Terrain) -> Vec<ObjectPart> {
     let [length, width] = shape.size;
     let top = shape.underside + shape.thickness;
@@ -119,7 +120,7 @@ pub(crate) fn posted_slab(placement: &PlanPlacement, shape: &PostedSlab, terrain
     parts
 }
 
-/// Six-sided lamp mast with an arm along v.
+/// Returns a six-sided lamp mast with an arm along v.
 pub(crate) fn mast(placement: &PlanPlacement, ground: f64, height: f64) -> Vec<ObjectPart> {
     let ring = |radius: f64, height: f64| -> [[f64; 3]; 6] {
         std::array::from_fn(|i| {
@@ -133,7 +134,7 @@ pub(crate) fn mast(placement: &PlanPlacement, ground: f64, height: f64) -> Vec<O
     vec![shaft, prism(&arm, ground + height - 0.2, ground + height - 0.08, Material::Mast)]
 }
 
-/// Wire of 3 cm between two points, sagging by `sag` metres in the middle.
+/// Returns a wire of 3 cm between two points, sagging by `sag` metres in the middle.
 pub(crate) fn wire(from: [f64; 3], to: [f64; 3], sag: f64) -> ObjectPart {
     let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     let length = dx.hypot(dy);

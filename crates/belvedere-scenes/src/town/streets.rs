@@ -1,4 +1,4 @@
-//! What stands in streets and over the canal, and the trees of a town.
+//! Furniture of streets, bridges over the canal, and trees of a town.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -12,15 +12,15 @@ use crate::town::{StreetTrees, TownParams};
 
 /// Distance between trees in the middle of a street, metres.
 const STREET_TREE_SPACING: f64 = 11.0;
-/// Least width of a street with parked cars, and with bus stops besides, metres.
+/// Minimum width of a street with parked cars, and of one with bus stops too, metres.
 const MIN_WIDTH_FOR_CARS: f64 = 6.5;
 const MIN_WIDTH_FOR_BUSES: f64 = 8.0;
-/// Kerb per parked car, metres; every third place may hold a tree.
+/// Length of kerb per parked car, metres; every third place may have a tree.
 const PARKING_PLACE: f64 = 5.6;
 const MAST_HEIGHT: f64 = 7.0;
 
 impl TownSite {
-    /// A row of trees along the middle of each street between the blocks.
+    /// Plants a row of trees along the middle of each street between the blocks.
     pub(crate) fn street_trees(&mut self, layout: &TownLayout) {
         let (centre, side) = (layout.centre, layout.side);
         for (&u, &v) in layout.streets_along_v.iter().zip(&layout.streets_along_u) {
@@ -34,7 +34,7 @@ impl TownSite {
         }
     }
 
-    /// Trees at random places that are free: in gardens, courtyards and the green belt about the town.
+    /// Plants trees at random free places: in gardens, courtyards and the green belt around the town.
     pub(crate) fn garden_trees(&mut self, area_per_tree: f64) {
         let (centre, extent) = (self.centre, self.extent);
         let mut area_left = extent * extent;
@@ -45,7 +45,7 @@ impl TownSite {
         }
     }
 
-    /// Bridges between the given ends, in streets of the given width.
+    /// Builds bridges between the given ends, in streets of the given width.
     pub(crate) fn bridges(&mut self, ends: &[[[f64; 2]; 2]], street_width: f64) {
         for &ends in ends {
             let parts = bridge(ends, (street_width - 2.0).clamp(2.5, 7.0), &|point| self.ground(point));
@@ -53,7 +53,7 @@ impl TownSite {
         }
     }
 
-    /// Cars, small trees, masts, wires and bus stops along the blocks, clear of the crossings.
+    /// Adds cars, small trees, masts, wires and bus stops along the blocks, clear of the crossings.
     pub(crate) fn furnish_streets(&mut self, layout: &TownLayout, params: &TownParams) {
         if !(params.street_furniture > 0.0) && params.street_trees != StreetTrees::Kerb {
             return;
@@ -71,7 +71,8 @@ impl TownSite {
         }
     }
 
-    /// One side of a block: `middle` lies in the middle of the street, which runs along u for `half_length` each way.
+    /// Furnishes one side of a block. `middle` lies in the middle of the street, which runs along u for `half_length`
+    /// each way.
     fn furnish_street(&mut self, middle: &PlanPlacement, half_length: f64, params: &TownParams) {
         let (share, half_width) = (params.street_furniture, params.street_width / 2.0);
         if share > 0.0 && self.random.chance(share) {
@@ -99,7 +100,7 @@ impl TownSite {
         }
     }
 
-    /// Parks a car where there is room.
+    /// Parks a car if there is room.
     pub(crate) fn park(&mut self, placement: PlanPlacement) {
         let size = [4.4, 1.9];
         if self.is_free(&placement, size, 0.3) {
@@ -109,7 +110,7 @@ impl TownSite {
         }
     }
 
-    /// Two masts with a pair of wires between them, where there is room for both masts.
+    /// Adds two masts with a pair of wires between them, if there is room for both masts.
     pub(crate) fn wired_masts(&mut self, placements: [PlanPlacement; 2]) {
         if !placements.iter().all(|placement| self.is_free(placement, [0.3, 0.3], 0.2)) {
             return;
@@ -138,8 +139,8 @@ impl TownSite {
         }
     }
 
-    /// Roof over nothing: a slab of `size` with its underside `clear` metres above the ground at its middle, on posts
-    /// at most `spacing` metres apart.
+    /// Adds a roof over open ground: a slab of `size` with its underside `clear` metres above the ground at its middle.
+    /// Its posts are at most `spacing` metres apart.
     pub(crate) fn canopy(
         &mut self,
         placement: PlanPlacement,
@@ -152,7 +153,7 @@ impl TownSite {
         self.add("canopy", &parts);
     }
 
-    /// The solids of a canopy, the slab first, for others to be put on it; takes its ground.
+    /// Returns the solids of a canopy, the slab first, so that others can be put on it. Takes the ground of the canopy.
     pub(crate) fn canopy_parts(
         &mut self,
         placement: PlanPlacement,
@@ -169,7 +170,8 @@ impl TownSite {
         posted_slab(&placement, &shape, &self.terrain)
     }
 
-    /// Deck to walk on and under, as a canopy with a thicker slab; its ends may lie inside buildings by [`JOINT`].
+    /// Adds a deck to walk on and under, as a canopy with a thicker slab. Its ends may lie inside buildings by
+    /// [`JOINT`].
     pub(crate) fn deck(&mut self, placement: PlanPlacement, size: [f64; 2], clear: f64) {
         let underside = self.ground(placement.origin) + clear;
         let inset = 1.0 + JOINT;

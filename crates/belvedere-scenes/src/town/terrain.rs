@@ -6,7 +6,7 @@ use crate::random::Random;
 use crate::scene::{Material, ObjectPart};
 use crate::solids::PlanPlacement;
 
-/// Ground: an inclined plane with gentle hills, known as a formula.
+/// Ground as a formula: an inclined plane with gentle hills.
 ///
 /// The mesh of a scene has its vertices on the formula and flat triangles between, see [`Terrain::height`].
 #[derive(Clone, Debug)]
@@ -17,19 +17,19 @@ pub struct Terrain {
     canal: Option<Canal>,
 }
 
-/// A dry canal: a straight trench with smooth banks, right across the scene.
+/// Dry canal: a straight trench with smooth banks, right across the scene.
 #[derive(Clone, Debug)]
 pub(crate) struct Canal {
-    /// On the middle line, u along it.
+    /// Place on the middle line, with u along it.
     pub(crate) placement: PlanPlacement,
-    /// From bank to bank, metres.
+    /// Width from bank to bank, metres.
     pub(crate) width: f64,
-    /// Below the ground at its middle, metres.
+    /// Depth below the ground at its middle, metres.
     pub(crate) depth: f64,
 }
 
 impl Canal {
-    /// Metres that the bed lies below the ground that would be there without the canal.
+    /// Returns the depth of the bed below the ground without the canal, metres.
     fn depth_at(&self, x: f64, y: f64) -> f64 {
         let (sin, cos) = self.placement.angle.sin_cos();
         let across = (y - self.placement.origin[1]) * cos - (x - self.placement.origin[0]) * sin;
@@ -38,7 +38,7 @@ impl Canal {
     }
 }
 
-/// A wave of the ground.
+/// Wave of the ground.
 #[derive(Clone, Debug)]
 struct Hill {
     amplitude: f64,
@@ -46,14 +46,14 @@ struct Hill {
     phase: f64,
 }
 
-/// Longest and shortest wave of the ground in metres: longer than a building, so that none stands on a ridge.
+/// Wavelengths of the ground, metres: longer than a building, so that none stands on a ridge.
 const WAVELENGTHS: [f64; 3] = [160.0, 110.0, 75.0];
-/// Side of the squares that the mesh is made of, metres.
+/// Side of the squares of the mesh, metres.
 pub(crate) const CELL: f64 = 2.0;
 
 impl Terrain {
-    /// Ground about `centre` (absolute, metres) that rises by `slope` (metres per metre) in a random direction, with
-    /// hills of up to `hill_height` metres above and below.
+    /// Returns ground about `centre` (absolute, metres) that rises by `slope` (metres per metre) in a random direction.
+    /// Hills rise and fall by up to `hill_height` metres.
     pub(crate) fn new(centre: [f64; 3], slope: f64, hill_height: f64, seed: u64) -> Self {
         let mut random = Random::new(seed, 1);
         let (sin, cos) = random.between(0.0, TAU).sin_cos();
@@ -69,17 +69,17 @@ impl Terrain {
         Self { centre, gradient: [slope * cos, slope * sin], hills: hills.collect(), canal: None }
     }
 
-    /// The same ground with a trench in it.
+    /// Returns this ground with a trench in it.
     pub(crate) fn with_canal(mut self, canal: Option<Canal>) -> Self {
         self.canal = canal;
         self
     }
 
-    /// Height of the ground at absolute (x, y), all in metres.
+    /// Returns the height of the ground at absolute (x, y), all in metres.
     ///
-    /// The mesh lies on this height at its vertices and departs from it by less than 4 mm per metre of hill height
-    /// between them (half the squared circumradius of its triangles times the greatest curvature). In a canal it
-    /// departs by up to 0.4 m, since its banks are steeper than the mesh is fine.
+    /// The mesh lies on this height at its vertices. Between them it departs from it by less than 4 mm per metre of
+    /// hill height. That is half the squared circumradius of its triangles times the greatest curvature. In a canal it
+    /// departs by up to 0.4 m, because the banks are steep for the size of the triangles.
     #[must_use]
     pub fn height(&self, x: f64, y: f64) -> f64 {
         let (dx, dy) = (x - self.centre[0], y - self.centre[1]);
@@ -88,7 +88,7 @@ impl Terrain {
         self.canal.as_ref().map_or(natural, |canal| natural - canal.depth_at(x, y))
     }
 
-    /// Lowest height within the box around `footprint`, sampled every metre.
+    /// Returns the lowest height within the box around `footprint`, sampled every metre.
     pub(crate) fn lowest(&self, footprint: &[[f64; 2]]) -> f64 {
         let fold =
             |axis: usize, start: f64, pick: fn(f64, f64) -> f64| footprint.iter().map(|p| p[axis]).fold(start, pick);
@@ -101,7 +101,7 @@ impl Terrain {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Mesh of the square of side `extent` about the centre.
+    /// Returns the mesh of the square of side `extent` about the centre.
     pub(crate) fn mesh(&self, extent: f64) -> ObjectPart {
         let cells = whole((extent / CELL).ceil()).max(1) as usize;
         let coordinate = |i: usize| extent * (i as f64 / cells as f64 - 0.5);

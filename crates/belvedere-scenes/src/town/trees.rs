@@ -1,4 +1,4 @@
-//! Trees: a stem and a crown, either a closed bumpy hull, many small leaves or bare branches.
+//! Trees: a stem and a crown, which is a closed bumpy hull, many small leaves or bare branches.
 
 use std::f64::consts::{PI, TAU};
 
@@ -16,7 +16,7 @@ pub(crate) struct TreeShape {
 }
 
 impl TreeShape {
-    /// A broad-leaved tree of a height between the two.
+    /// Returns a broad-leaved tree of a random height between the two.
     pub(crate) fn random([lowest, highest]: [f64; 2], random: &mut Random) -> Self {
         let height = random.between(lowest, highest);
         Self {
@@ -29,26 +29,26 @@ impl TreeShape {
 
 /// Share of the height of a tree that is bare stem.
 const BARE_STEM: f64 = 0.3;
-/// How far the crown bulges in and out, as a share of its radius.
+/// Amplitude of the bumps of the crown, as a share of its radius.
 const BUMP: f64 = 0.12;
-/// Rows and columns of the crown: facets of about a metre, the footprint of a few laser pulses.
+/// Number of rows and columns of the crown: facets of about a metre, the footprint of a few laser pulses.
 const ROWS: usize = 9;
 const COLUMNS: usize = 14;
 
-/// What the crowns of trees are made of.
+/// Material of the crowns of trees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CrownMaterial {
-    /// A closed hull that lets no light through ([`Material::TreeCrown`]); the scanner's beam passes through it in
-    /// part, if its parameters allow that.
+    /// Closed hull that lets no light through ([`Material::TreeCrown`]). Part of the scanner's beam passes through it
+    /// if its parameters allow that.
     Opaque,
-    /// Sprays of leaves, 0.2 to 0.4 m, in clumps with gaps between ([`Material::Leaf`]): about two in
-    /// five straight lines through the crown get past them.
+    /// Sprays of leaves, 0.2 to 0.4 m, in clumps with gaps between ([`Material::Leaf`]). About two in five straight
+    /// lines through the crown stay free.
     Porous,
     /// Trunk and branches only ([`Material::Trunk`]), as in winter.
     Bare,
 }
 
-/// Trunk and crown of a tree that stands at `foot`, absolute, metres, its trunk reaching `buried` metres below.
+/// Returns the trunk and the crown of a tree at `foot`, absolute, metres. Its trunk extends `buried` metres below.
 pub(crate) fn tree(
     foot: [f64; 3],
     shape: &TreeShape,
@@ -74,15 +74,16 @@ pub(crate) fn tree(
     [trunk, crown]
 }
 
-/// Sprays per crown: enough to look like foliage, few enough that hundreds of trees stay below a million triangles.
+/// Number of sprays per crown: enough for the look of foliage, few enough that hundreds of trees stay below a million
+/// triangles.
 const SPRAYS: u32 = 400;
-/// Clumps that the sprays gather in.
+/// Number of clumps of sprays.
 const CLUMPS: usize = 24;
-/// Area of the sprays seen from one side, as a share of that of the crown: about two in five lines through the inner
+/// Area of the sprays seen from one side, as a share of that of the crown. About two in five lines through the inner
 /// crown stay free.
 const COVER: f64 = 0.55;
 
-/// Sprays within an ellipsoid about `centre`: each a closed flat tetrahedron, turned at random.
+/// Returns sprays within an ellipsoid about `centre`: each a closed flat tetrahedron, turned at random.
 fn leaves(centre: [f64; 3], radius: f64, half_height: f64, random: &mut Random) -> ObjectPart {
     let mut part = ObjectPart::default();
     let clumps: Vec<[f64; 3]> = (0..CLUMPS).map(|_| scale(direction(random), random.between(0.45, 0.85))).collect();
@@ -98,7 +99,7 @@ fn leaves(centre: [f64; 3], radius: f64, half_height: f64, random: &mut Random) 
         let (normal, around) = (direction(random), direction(random));
         let along = unit(cross(normal, around)).unwrap_or([1.0, 0.0, 0.0]);
         let across = cross(normal, along);
-        // Two opposite edges at right angles, 4 cm apart: from above a square, from the side a sliver.
+        // Two opposite edges at right angles, 4 cm apart: a square from above, a sliver from the side.
         let corner = |axis: [f64; 3], share: f64, up: f64| {
             add_scaled(add_scaled(middle, axis, share * size / 2.0), normal, up * SPRAY_THICKNESS / 2.0)
         };
@@ -112,14 +113,14 @@ fn leaves(centre: [f64; 3], radius: f64, half_height: f64, random: &mut Random) 
     part
 }
 
-/// Limbs of a tree without leaves, and twigs on each: so many that every metre of the crown holds one.
+/// Number of limbs of a tree without leaves, and of twigs on each, so that every metre of the crown contains one.
 const LIMBS: u32 = 14;
 const TWIGS: u32 = 4;
 /// Radius of the tip of a limb or a twig, metres.
 const TIP_RADIUS: f64 = 0.01;
 
-/// Branches of a tree without leaves, within an ellipsoid about `centre`: each a closed prism that tapers. The trunk
-/// goes on to the top.
+/// Returns the branches of a tree without leaves, within an ellipsoid about `centre`: each a closed prism that tapers.
+/// The trunk continues to the top.
 fn branches(centre: [f64; 3], shape: &TreeShape, half_height: f64, random: &mut Random) -> ObjectPart {
     let TreeShape { crown_radius: radius, trunk_radius, .. } = *shape;
     let mut part = ObjectPart::default();
@@ -129,7 +130,7 @@ fn branches(centre: [f64; 3], shape: &TreeShape, half_height: f64, random: &mut 
         let share = (f64::from(limb) + random.uniform()) / f64::from(LIMBS);
         let from = [centre[0], centre[1], centre[2] + half_height * (1.4 * share - 0.8)];
         let (sin, cos) = random.between(0.0, TAU).sin_cos();
-        // longest in the middle of the crown, and rising
+        // Longest in the middle of the crown, and rising.
         let reach = radius * (1.0 - (1.4 * share - 0.8).powi(2)).sqrt() * random.between(0.7, 0.95);
         let end = add(from, [reach * cos, reach * sin, reach * random.between(0.3, 0.6)]);
         let thickness = trunk_radius * random.between(0.25, 0.4);
@@ -143,8 +144,8 @@ fn branches(centre: [f64; 3], shape: &TreeShape, half_height: f64, random: &mut 
     part
 }
 
-/// Adds a closed prism of three sides that tapers from `radius` at `from` to [`TIP_RADIUS`] at `to`; nothing where they
-/// coincide.
+/// Adds a closed prism of three sides that tapers from `radius` at `from` to [`TIP_RADIUS`] at `to`. Adds nothing if
+/// both coincide.
 fn add_branch(part: &mut ObjectPart, from: [f64; 3], to: [f64; 3], radius: f64) {
     let Some(along) = unit(sub(to, from)) else { return };
     let aside = if along[2].abs() < 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
@@ -169,14 +170,14 @@ fn add_branch(part: &mut ObjectPart, from: [f64; 3], to: [f64; 3], radius: f64) 
 /// Thickness of a spray, metres.
 const SPRAY_THICKNESS: f64 = 0.04;
 
-/// Unit vector, all directions alike.
+/// Returns a random unit vector, uniform over all directions.
 fn direction(random: &mut Random) -> [f64; 3] {
     let (height, turn) = (random.between(-1.0, 1.0), random.between(0.0, TAU));
     let across = (1.0 - height * height).sqrt();
     [across * turn.cos(), across * turn.sin(), height]
 }
 
-/// Closed bumpy ellipsoid about `centre`.
+/// Returns a closed bumpy ellipsoid about `centre`.
 fn crown(centre: [f64; 3], radius: f64, half_height: f64, random: &mut Random) -> ObjectPart {
     let mut part = ObjectPart::default();
     let phases: [f64; 3] = std::array::from_fn(|_| random.between(0.0, TAU));
@@ -207,7 +208,7 @@ fn crown(centre: [f64; 3], radius: f64, half_height: f64, random: &mut Random) -
     for column in 0..COLUMNS {
         part.add_polygon(&[0, vertex(1, column + 1), vertex(1, column)], Material::TreeCrown);
         for row in 1..ROWS - 1 {
-            // Two triangles rather than a polygon: the four corners do not lie in one plane.
+            // Two triangles instead of a polygon, because the four corners do not lie in one plane.
             let [a, b] = [vertex(row, column), vertex(row, column + 1)];
             let [c, d] = [vertex(row + 1, column + 1), vertex(row + 1, column)];
             part.add_polygon(&[a, b, c], Material::TreeCrown);
