@@ -24,7 +24,7 @@ const MAX_CELLS: usize = 1 << 28;
 /// Treatment of an unfinished run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum UnfinishedRun {
-    /// Error.
+    /// Refusal with an error.
     #[default]
     Refused,
     /// Merge of the existing results.

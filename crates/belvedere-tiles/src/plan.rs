@@ -133,7 +133,7 @@ struct Version {
 }
 
 impl Plan {
-    /// Returns whether the given reference system is refused or holds if the files contradict it.
+    /// Returns the treatment of a given reference system that contradicts the files.
     pub(crate) fn insistence(&self) -> Insistence {
         if self.crs_override { Insistence::Insist } else { Insistence::Refuse }
     }

@@ -124,7 +124,7 @@ fn unseen_steps(
     let mut of_blocks: Vec<([i32; 2], Vec<u32>)> = lines_of_blocks(lines, &pieces).into_iter().collect();
     // Blocks of one tile follow each other.
     of_blocks.sort_by_cached_key(|(block, _)| (plan.grid().tile_of(block_area(*block).low), *block));
-    // Maximum horizontal distance from a pulse to its return.
+    // Maximum horizontal distance from a place that a pulse passes near to its return.
     let reach = plan.statistics.max_lean * (top - f64::from(plan.low[2])).max(0.0) + plan.nearness + ROOM;
     let mut pulses = TilePulses { reach, tiles: BTreeMap::new() };
     for (block, rows) in of_blocks {

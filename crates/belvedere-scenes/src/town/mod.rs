@@ -184,9 +184,9 @@ fn within(value: f64, [low, high]: [f64; 2]) -> f64 {
 
 /// Builds a town of the described blocks, with trees in gardens and streets, and furniture in the streets.
 ///
-/// Object 0 is the terrain. The next objects are `building 1`…, `tree 1`…, `deck 1`…, `canopy 1`…, `bridge 1`…, `fence
-/// 1`…, `mast 1`…, `wire 1`… and `car 1`…, in the order of building. Coordinates are absolute. The same parameters give
-/// the same town.
+/// Object 0 is the terrain. The other names are `building 1`…, `tree 1`…, `deck 1`…, `canopy 1`…, `bridge 1`…, `fence
+/// 1`…, `mast 1`…, `wire 1`… and `car 1`…. The objects are in the order of building. Coordinates are absolute. The same
+/// parameters give the same town.
 #[must_use]
 pub fn town(params: &TownParams) -> TriangleScene {
     let params = &params.within_limits();

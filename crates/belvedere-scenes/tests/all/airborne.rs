@@ -1,4 +1,5 @@
-//! The simulated scan: on the mesh, in step with its path, as dense as real ones, the same for the same seed.
+//! Simulated airborne scan: on the mesh, consistent with its path, as dense as real scans, and the same for the same
+//! seed.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests may panic like the tests themselves")]
 
@@ -31,7 +32,7 @@ fn unit(a: [f64; 3]) -> [f64; 3] {
     a.map(|v| v / length)
 }
 
-/// Straight line between the two neighbours in time.
+/// Returns the position on the straight line between the two neighbours in time.
 fn sensor_at(path: &SensorPath, time: f64) -> [f64; 3] {
     let after = path.times.partition_point(|&t| t <= time);
     let (t0, t1) = (path.times[after - 1], path.times[after]);
@@ -40,7 +41,7 @@ fn sensor_at(path: &SensorPath, time: f64) -> [f64; 3] {
     std::array::from_fn(|i| p0[i] + (p1[i] - p0[i]) * (time - t0) / (t1 - t0))
 }
 
-/// Ranges of rows that belong to one pulse.
+/// Returns the ranges of rows that belong to one pulse.
 fn pulses(scan: &Scan) -> Vec<std::ops::Range<usize>> {
     let mut pulses = Vec::new();
     let mut start = 0;
@@ -77,7 +78,7 @@ fn exact_positions_lie_on_the_mesh_and_noisy_ones_within_their_noise() {
         assert!(along.abs() < 5.0 * params.range_sd + 1e-3, "{along}");
         let across = (dot(error, error) - along * along).max(0.0).sqrt();
         let pointing = (params.pointing_sd.powi(2) + params.boresight_sd.powi(2)).sqrt();
-        // the part of the beam that met the surface lies up to half the beam beside its axis
+        // The part of the beam that met the surface lies up to half the beam beside its axis.
         let beam = params.beam.divergence / 2.0;
         assert!(across < (beam + 5.0 * 2_f64.sqrt() * pointing) * range, "{across}");
     }
@@ -98,13 +99,13 @@ fn returns_without_noise_have_the_exact_range_on_the_axis_of_the_beam() {
             let error = sub([scan.x[i], scan.y[i], scan.z[i]], exact);
             let sensor = sensor_at(&scan.sensor_path, scan.gps_time[i]);
             let ray = sub(exact, sensor);
-            // A beam of 18 cm puts its edge 9 cm aside, over which a ray gets longer by 10 µm.
+            // The edge of a beam of 18 cm is 9 cm aside, which makes a ray longer by 10 µm.
             assert!(dot(error, unit(ray)).abs() < 2e-5, "{error:?}");
             let aside = dot(error, error).sqrt();
             assert!(aside < divergence / 2.0 * dot(ray, ray).sqrt() + 1e-6, "{error:?}");
             beside += usize::from(aside > 1e-6);
         }
-        // Only where the middle of the beam meets something else: at edges and crowns.
+        // Only where the middle of the beam meets another surface: at edges and crowns.
         let share = beside as f64 / scan.len() as f64;
         assert!(if divergence > 0.0 { (0.01..0.2).contains(&share) } else { beside == 0 }, "{share}");
     }
@@ -145,7 +146,7 @@ fn scan_angle_is_negative_to_the_left_of_the_flight() {
     let scan = scan_airborne(&scene, &north);
     let middle = scan.sensor_path.positions[0][0];
     for i in 0..scan.len() {
-        // A metre of wander and a wall's width of doubt.
+        // A metre of wander and a tolerance of a wall's width.
         if (scan.x[i] - middle).abs() > 3.0 {
             assert_eq!(scan.x[i] < middle, scan.scan_angle_deg[i] < 0.0, "west is left of north");
         }
@@ -198,7 +199,7 @@ fn columns_have_one_value_per_return_and_classes_follow_materials() {
     assert!(report.pulses >= accounted && report.pulses - accounted <= report.dropped_echoes);
 }
 
-/// Area above the ground and returns of the walls of `scene`.
+/// Returns the number of returns of the walls of `scene` per area above the ground, 1/m².
 fn facade_density(scene: &TriangleScene, scan: &Scan, params: &TownParams) -> f64 {
     let terrain = params.terrain();
     let mut area_above_ground = 0.0;
@@ -230,7 +231,8 @@ fn density_returns_and_overlap_are_those_of_a_real_survey() {
     let n = scan.len() as f64;
     assert!((130_000.0..220_000.0).contains(&n), "{n}");
 
-    // Two strips of 5.5 pulses per m² on average; equal steps of the angle make it cos² θ of that at nadir.
+    // Two strips of 5.5 pulses per m² on average. With equal steps of the angle, the density is cos² θ of that at
+    // nadir.
     let pulses = pulses(&scan);
     let pulse_density = pulses.len() as f64 / area;
     assert!((9.5..12.0).contains(&pulse_density), "{pulse_density}");
@@ -271,8 +273,8 @@ fn pulses_reach_the_ground_below_crowns_only_where_crowns_are_porous() {
     };
     let (open, closed) = (ground_after_crown(0.35), ground_after_crown(0.0));
     assert!((0.1..0.5).contains(&open), "{open}");
-    // Past an opaque crown only pulses at its outline reach the ground: 13 cm of a radius of about 2.5 m, twice 5 % of
-    // its area.
+    // Behind an opaque crown only pulses at its outline reach the ground: 13 cm of a radius of about 2.5 m, twice 5 %
+    // of its area.
     assert!(closed < 0.1 && closed > 0.0 && open > 2.0 * closed, "{closed} {open}");
 }
 

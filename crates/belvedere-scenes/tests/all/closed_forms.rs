@@ -1,4 +1,4 @@
-//! Shadows and views of the sky in the closed-form scenes, by exact rays against the formulas.
+//! Shadows and sky view factors in the closed-form scenes, by exact rays against the formulas.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests may panic like the tests themselves")]
 
@@ -8,15 +8,15 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use belvedere_scenes::closed_forms::{basin, box_on_plane, canyon, slab_over_plane, sphere_over_plane, stairs};
 use belvedere_scenes::{Material, TriangleScene, Truth};
 
-/// Azimuth clockwise from north and elevation, degrees.
+/// Azimuth, clockwise from north, and elevation of suns, degrees.
 const SUNS: [[f64; 2]; 3] = [[110.0, 25.0], [180.0, 52.0], [241.0, 35.0]];
-/// What an outline may be off by, metres: the claim under test.
+/// Tolerance of an outline, metres: the claim under test.
 const MILLIMETRE: f64 = 1e-3;
 
 struct Sun {
     direction: [f64; 3],
     elevation: f64,
-    /// Unit vector on the ground away from the sun.
+    /// Unit vector on the ground, away from the sun.
     away: [f64; 2],
 }
 
@@ -28,7 +28,8 @@ fn suns() -> [Sun; 3] {
     })
 }
 
-/// Distance on the ground from `start`, in the shadow, along `heading` to where the sun comes back, by halving.
+/// Returns the distance on the ground from `start`, in the shadow, along `heading` to the end of the shadow, by
+/// bisection.
 fn shadow_end(truth: &Truth, sun: &Sun, start: [f64; 2], heading: f64, farthest: f64) -> f64 {
     let at = |distance: f64| [start[0] + distance * heading.cos(), start[1] + distance * heading.sin(), 0.0];
     let dark = |distance: f64| truth.occluded_towards(at(distance), sun.direction);
@@ -41,7 +42,7 @@ fn shadow_end(truth: &Truth, sun: &Sun, start: [f64; 2], heading: f64, farthest:
     outside
 }
 
-/// Distance from `start` along `heading` to the edge of a convex polygon, corners counter-clockwise.
+/// Returns the distance from `start` along `heading` to the edge of a convex polygon, corners counter-clockwise.
 fn distance_to_edge(polygon: &[[f64; 2]], start: [f64; 2], heading: f64) -> f64 {
     let direction = [heading.cos(), heading.sin()];
     (0..polygon.len())
@@ -56,7 +57,7 @@ fn distance_to_edge(polygon: &[[f64; 2]], start: [f64; 2], heading: f64) -> f64 
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Convex hull, counter-clockwise (gift wrapping; the fewest points there are).
+/// Returns the convex hull, counter-clockwise (gift wrapping, sufficient for few points).
 fn hull(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let side = |a: [f64; 2], b: [f64; 2], p: [f64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
     let start = *points.iter().min_by(|a, b| a.partial_cmp(b).unwrap()).unwrap();
@@ -152,16 +153,17 @@ fn treads_are_shaded_over_rise_times_cosine_over_tangent() {
         let expected = rise * cos / elevation.tan();
         assert!(expected < tread);
         for step in 1..count {
-            // The tread before riser `step`, at x from (step − 1) · tread to step · tread.
+            // The tread in front of riser `step`, at x from (step − 1) · tread to step · tread.
             let (riser, height) = (f64::from(step) * tread, f64::from(step) * rise);
             let dark = |before: f64| truth.occluded_towards([riser - before, 0.3, height], sun);
             assert!(dark(expected - MILLIMETRE / 10.0) && !dark(expected + MILLIMETRE / 10.0), "{alpha} {step}");
         }
-        // The ground before the first riser.
+        // The ground in front of the first riser.
         let dark = |before: f64| truth.occluded_towards([-before, 0.3, 0.0], sun);
         assert!(dark(expected - MILLIMETRE / 10.0) && !dark(expected + MILLIMETRE / 10.0));
     }
-    // Lower than the stairs climb, the sun leaves all of them dark, and the ground as far as the top throws.
+    // A sun lower than the slope of the stairs leaves all of them dark. The ground is dark up to the end of the shadow
+    // of the top.
     let elevation = 12_f64.to_radians();
     let sun = [elevation.cos(), 0.0, elevation.sin()];
     let end = f64::from(count) * rise / elevation.tan() - f64::from(count - 1) * tread;
@@ -170,14 +172,14 @@ fn treads_are_shaded_over_rise_times_cosine_over_tangent() {
     }
 }
 
-/// Share of a hemisphere about `normal`, cosine-weighted, that is free of the scene, by `rows`² stratified rays: equal
-/// areas on the unit disc lifted to the hemisphere (Malley's method).
+/// Returns the cosine-weighted share of a hemisphere about `normal` that is free of the scene, by `rows`² stratified
+/// rays. Equal areas on the unit disc are lifted to the hemisphere (Malley's method).
 fn sky_view(truth: &Truth, point: [f64; 3], frame: [[f64; 3]; 3], rows: u32) -> f64 {
     let origins = vec![point; (rows * rows) as usize];
     let directions: Vec<[f64; 3]> = (0..rows)
         .flat_map(|i| (0..rows).map(move |j| (i, j)))
         .map(|(i, j)| {
-            // A lattice rather than a grid of columns, so that no formula's symmetry flatters it.
+            // A lattice instead of a grid of columns, so that the symmetry of a formula does not flatter it.
             let radius = ((f64::from(i) + 0.5) / f64::from(rows)).sqrt();
             let turn = TAU * (f64::from(j) + 0.5 + 0.618 * f64::from(i)) / f64::from(rows);
             let parts = [radius * turn.cos(), radius * turn.sin(), (1.0 - radius * radius).sqrt()];
@@ -189,8 +191,8 @@ fn sky_view(truth: &Truth, point: [f64; 3], frame: [[f64; 3]; 3], rows: u32) -> 
 }
 
 const UP: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-/// Rays per side, and the largest error from cells that a horizon cuts: about 4 cells per row lie on the horizon, each
-/// wrong by half at most and at random. Far above the error of the open ends of the canyon (2e-6).
+/// Number of rays per side, and maximum error from cells that a horizon cuts. About 4 cells per row lie on the horizon,
+/// each wrong by half at most and at random. The error is far above that of the open ends of the canyon (2e-6).
 const ROWS: u32 = 600;
 const SAMPLING: f64 = 1e-3;
 
@@ -204,7 +206,7 @@ fn sky_view_of_a_canyon_matches_the_closed_form() {
         let found = sky_view(&truth, [0.0, y, 0.0], UP, ROWS);
         assert!((found - expected).abs() < SAMPLING, "{y}: {found} {expected}");
     }
-    // The canyon's well-known number for its middle.
+    // The well-known value for the middle of the canyon.
     let middle = (2.0 * height / width).atan().cos();
     assert!((sky_view(&truth, [0.0; 3], UP, ROWS) - middle).abs() < SAMPLING);
     // On the wall at y = −6, which faces +y.

@@ -1,4 +1,4 @@
-//! LoD1 blocks: closed prisms over the footprints, as high as 70 % of the roof.
+//! LoD1 blocks: closed prisms over the footprints, up to the height that 70 % of the roof lies below.
 
 use std::collections::{HashMap, HashSet};
 
@@ -14,7 +14,7 @@ fn volume(scene: &TriangleScene, object: &str) -> f64 {
     ObjectPart { vertices: scene.vertices.clone(), materials: Vec::new(), triangles }.volume()
 }
 
-/// Volumes in the national grid are rounded at 1e-10 m times 1e2 m².
+/// Checks two volumes for equality. Volumes in the national grid are rounded at 1e-10 m times 1e2 m².
 fn near(found: f64, expected: f64) {
     assert!((found - expected).abs() < 1e-6 * expected, "{found} instead of {expected}");
 }
@@ -34,8 +34,8 @@ fn block_of_a_gable_roof_ends_at_seven_tenths_of_it() {
 fn block_of_a_pyramid_ends_where_it_has_shrunk_to_three_tenths() {
     let mut scene = TriangleScene::default();
     scene.add_object("tent", &[ridged(&UPRIGHT.rectangle(8.0, 8.0), 0.0, 4.0, 10.0, 3.999)]);
-    // The plan of a pyramid above height share s is (1 − s)² of all: 0.3 at s = 1 − √0.3. A ridge of 2 mm does not
-    // count.
+    // The plan of a pyramid above height share s is (1 − s)² of all: 0.3 at s = 1 − √0.3. A ridge of 2 mm is
+    // negligible.
     let expected = 64.0 * (4.0 + 6.0 * (1.0 - 0.3_f64.sqrt()));
     let found = volume(&blocks(&scene), "tent");
     assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
@@ -89,7 +89,7 @@ fn every_building_of_every_preset_becomes_a_closed_block_of_its_whole_outline() 
         }
         assert!(edges.iter().all(|(&(a, b), &count)| count == 1 && edges.get(&(b, a)) == Some(&1)), "{preset:?}");
 
-        // The first part of a building is one that stands on the ground; its roof covers its outline, arcades included.
+        // The first part of a building stands on the ground; its roof covers its outline, arcades included.
         let mut first_roof: HashMap<&str, (u32, f64)> = HashMap::new();
         for t in (0..scene.triangles.len()).filter(|&t| scene.materials[t] == Material::Roof) {
             let name = scene.object_names[scene.objects[t] as usize].as_str();

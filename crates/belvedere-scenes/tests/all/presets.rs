@@ -1,4 +1,4 @@
-//! Every preset: closed solids, what it promises, nothing afloat, trees where trees may stand.
+//! Presets: closed solids, the promised features, no floating objects, and trees only in free places.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests may panic like the tests themselves")]
 
@@ -10,7 +10,7 @@ use belvedere_scenes::{
     blocks, town,
 };
 
-/// Directed edges that have no opposite partner, or more than one.
+/// Returns the number of directed edges without exactly one opposite partner.
 fn open_edges(triangles: &[[u32; 3]]) -> usize {
     let mut edges: HashMap<(u32, u32), u32> = HashMap::new();
     for &[a, b, c] in triangles {
@@ -21,7 +21,7 @@ fn open_edges(triangles: &[[u32; 3]]) -> usize {
     edges.iter().filter(|&(&(a, b), &count)| count != 1 || edges.get(&(b, a)) != Some(&1)).count()
 }
 
-/// Triangles of each part.
+/// Returns the triangles of each part.
 fn parts(scene: &TriangleScene) -> Vec<Range<usize>> {
     let mut ranges: Vec<Range<usize>> = Vec::new();
     for t in 0..scene.triangles.len() {
@@ -48,7 +48,7 @@ fn count(scene: &TriangleScene, kind: &str) -> usize {
     scene.object_names.iter().filter(|name| name.split(' ').next() == Some(kind)).count()
 }
 
-/// Towns of every kind and several sizes and seeds.
+/// Returns towns of every kind, in several sizes and with several seeds.
 fn towns() -> Vec<(Preset, TownParams)> {
     let sizes = [(60.0, 0), (60.0, 4), (99.0, 1), (100.0, 2), (125.0, 3), (125.0, 7), (230.0, 5)];
     Preset::ALL.iter().flat_map(|&p| sizes.map(|(extent, seed)| (p, p.params(extent, seed)))).collect()
@@ -70,7 +70,7 @@ fn every_part_of_every_preset_is_a_closed_solid_with_a_material_per_triangle() {
             }
             let open = open_edges(&part.triangles);
             assert_eq!(open, 0, "{preset:?} {} {}: {name}", params.extent, params.seed);
-            // A wire of 30 m and 4 cm² is the least of all.
+            // A wire of 30 m and 4 cm² is the smallest of all.
             assert!(part.volume() > 5e-3, "{preset:?}: {name} {}", part.volume());
             for triangle in &part.triangles {
                 let [a, b, c] = triangle.map(|v| part.vertices[v as usize]);
@@ -86,7 +86,7 @@ fn area(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
     n.iter().map(|v| v * v).sum::<f64>().sqrt() / 2.0
 }
 
-/// What a scene contains, by its geometry, not by its parameters.
+/// Returns the features of a scene, from its geometry instead of its parameters.
 fn features(scene: &TriangleScene) -> BTreeSet<&'static str> {
     let mut found = BTreeSet::new();
     for range in parts(scene) {
@@ -109,13 +109,13 @@ fn features(scene: &TriangleScene) -> BTreeSet<&'static str> {
                 if roof.any(|(t, _)| up(t) < -1e-6) {
                     found.insert("eaves");
                 }
-                // Two rings of an L-shaped wall with or without a ridge; four stations of a U. Eaves are two vertices
-                // more for each corner, verges for each end of the ridge.
+                // Two rings of an L-shaped wall with or without a ridge; four stations of a U. Eaves add two vertices
+                // for each corner, verges two for each end of the ridge.
                 match part.vertices.len() {
                     12 | 15 => found.insert("l shape"),
                     20 if faces == 36 => found.insert("u shape"),
                     40 => found.insert("u shape"),
-                    // Two slopes of two triangles each; hips are a triangle more at either end.
+                    // Two slopes of two triangles each; hips add a triangle at either end.
                     10 | 18 | 22 => found.insert(if roof_faces == 6 { "hip roof" } else { "gable roof" }),
                     8 if high[2] - bounds(&part).0[2] < 2.15 => found.insert("roof box"),
                     _ => false,
@@ -141,7 +141,7 @@ fn features(scene: &TriangleScene) -> BTreeSet<&'static str> {
             "building" if has(Material::Slab) && part.triangles.len() == 28 => {
                 found.insert("balcony");
             }
-            // a ring of slab
+            // A ring of slab.
             "building"
                 if part.materials.iter().all(|&m| m == Material::Slab)
                     && part.vertices.len() + part.triangles.len() == part.triangles.len() * 3 / 2 =>
@@ -225,7 +225,7 @@ fn presets_hold_what_they_promise() {
             }
         }
     }
-    // What needs more than four blocks.
+    // Features that need more than four blocks.
     let large = features(&town(&Preset::Town.params(300.0, 1)));
     for feature in ["gable roof", "hip roof", "l shape", "u shape", "courtyard", "parapet", "roof box"] {
         assert!(large.contains(feature), "no {feature} in {large:?}");
@@ -241,14 +241,14 @@ fn roofs_have_eaves_and_parapets_as_often_as_the_town_says() {
     let share = |eaves: f64| {
         let roofs = RoofDetails { eaves, ..RoofDetails::PLAIN };
         let scene = town(&TownParams { roofs, ..Preset::Town.params(230.0, 1) });
-        // the same houses in the same places
+        // The same houses in the same places.
         assert_eq!(count(&scene, "building"), count(&plain, "building"));
         let mut reaches = Vec::new();
         let mut houses = 0;
         for range in parts(&scene) {
             let part = part(&scene, range);
             let materials: BTreeSet<_> = part.materials.iter().map(|m| m.name()).collect();
-            // houses of two slopes that stand on a floor of their own; dormers are lower
+            // Houses of two slopes that stand on a floor of their own; dormers are lower.
             let (low, high) = bounds(&part);
             let is_house = [10, 18, 22].contains(&part.vertices.len()) && high[2] - low[2] > 5.0;
             if materials != BTreeSet::from(["roof", "facade"]) || !is_house {
@@ -256,18 +256,19 @@ fn roofs_have_eaves_and_parapets_as_often_as_the_town_says() {
             }
             houses += 1;
             if part.vertices.len() > 10 {
-                // from the corner of the wall to that of the roof: the floor is the first vertices, eaves the last
+                // From the corner of the wall to that of the roof: the floor has the first vertices, eaves the last.
                 let (wall, edge) = (part.vertices[0], part.vertices[11]);
                 reaches.push((wall[0] - edge[0]).hypot(wall[1] - edge[1]));
             }
         }
         assert!(houses > 100, "{houses}");
-        // 0.3 to 0.6 m, and across the corner of a verge or of other eaves
+        // 0.3 to 0.6 m, and more across the corner of a verge or of other eaves.
         assert!(reaches.iter().all(|reach| (0.29..0.85).contains(reach)), "{reaches:?}");
         reaches.len() as f64 / f64::from(houses)
     };
     assert_eq!((share(0.0), share(1.0)), (0.0, 1.0));
-    // of some two hundred houses: three deviations of 0.035; which they are does not depend on the share
+    // Three standard deviations of 0.035 for about two hundred houses. The random numbers of a house do not depend on
+    // the share.
     let half = share(0.5);
     assert!((half - 0.5).abs() < 0.105, "{half}");
 }
@@ -296,7 +297,7 @@ fn town_of_300_metres_has_hundreds_of_buildings_and_trees_and_cities_grow_with_t
         let triangles = [300.0, 600.0].map(|extent| town(&preset.params(extent, 1)).triangles.len());
         assert!(triangles[0] < 1_000_000, "{preset:?}: {}", triangles[0]);
         let growth = triangles[1] as f64 / triangles[0] as f64;
-        // Four times the area, but the ground along the edges has trees only.
+        // Four times the area, but the ground along the edges has only trees.
         assert!((3.0..5.5).contains(&growth), "{preset:?}: {growth}");
     }
 }
@@ -331,7 +332,7 @@ fn objects_stand_in_the_ground_and_their_parts_hang_together() {
     }
 }
 
-/// Triangles of the floors of buildings, seen from above.
+/// Returns the triangles of the floors of buildings, seen from above.
 fn floors(scene: &TriangleScene) -> Vec<(u32, [[f64; 2]; 3])> {
     let blocks = blocks(scene);
     (0..blocks.triangles.len())
@@ -377,7 +378,7 @@ fn balconies_and_canopies_keep_out_of_other_buildings() {
             floors(&scene).into_iter().map(|(o, f)| (blocks.object_names[o as usize].as_str(), f)).collect();
         for range in parts(&scene) {
             let name = scene.object_names[scene.objects[range.start] as usize].as_str();
-            // Decks run into the buildings they join.
+            // Decks run into the buildings that they join.
             if name.starts_with("deck") || !range.clone().all(|t| scene.materials[t] == Material::Slab) {
                 continue;
             }
@@ -391,7 +392,8 @@ fn balconies_and_canopies_keep_out_of_other_buildings() {
 
 #[test]
 fn crowns_keep_clear_of_other_objects_seen_from_the_middle_of_each_crown() {
-    // The trunk ends in the middle of the crown: what lies around it within the crown's reach must be its own tree.
+    // The trunk ends in the middle of the crown. Surfaces around it within the crown's reach must belong to its own
+    // tree.
     let scene = town(&TownParams { crowns: CrownMaterial::Opaque, ..Preset::Village.params(125.0, 2) });
     let truth = Truth::new(&scene);
     let mut trees = 0;
@@ -437,7 +439,7 @@ fn one_can_stand_below_decks_canopies_and_bridges() {
             let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0];
             let foot = [middle[0], middle[1], terrain.height(middle[0], middle[1]) + 0.5];
             let hit = truth.first_hit(foot, [0.0, 0.0, 1.0], 10.0).unwrap();
-            // A head's height, and a car's over 0.5 m where stalls are lowest.
+            // At least the height of a head, 1.8 m above the ground, from 0.5 m up; stalls are the lowest.
             assert!(hit.range > 1.3, "{preset:?} {name}: {}", hit.range);
             seen.insert(name);
         }
@@ -464,7 +466,7 @@ fn bridges_span_a_trench() {
         let banks = height(0.0).min(height(1.0));
         assert!(banks - height(0.5) > 0.8 * params.canal_depth, "{banks} {}", height(0.5));
     }
-    // The mesh keeps to the formula as well as the documentation says.
+    // The mesh fits the formula as well as documented.
     let worst = (0..scene.triangles.len()).filter(|&t| scene.materials[t] == Material::Terrain).map(|t| {
         let [a, b, c] = scene.corners(t).unwrap();
         let middle: [f64; 3] = std::array::from_fn(|i| (a[i] + b[i] + c[i]) / 3.0);
@@ -492,7 +494,7 @@ fn porous_crowns_let_two_in_five_lines_pass_bare_ones_most_and_opaque_ones_none(
         for range in parts(&scene).into_iter().filter(|r| scene.materials[r.start] == material) {
             let crown = part(&scene, range);
             let (low, high) = bounds(&crown);
-            // trunks are of the material of branches
+            // Trunks have the material of branches.
             if high[0] - low[0] < 1.0 {
                 continue;
             }
@@ -501,7 +503,7 @@ fn porous_crowns_let_two_in_five_lines_pass_bare_ones_most_and_opaque_ones_none(
             alone.add_object("crown", &[crown]);
             let truth = Truth::new(&alone);
             for _ in 0..200 {
-                // Through the inner two thirds of the crown, so that a miss is a gap and not a pass beside it.
+                // Through the inner two thirds of the crown, so that a miss is a gap and not a line beside it.
                 let offset: [f64; 3] =
                     std::array::from_fn(|i| (uniform() - 0.5) * 0.66 * (high[i] - low[i]) / 3f64.sqrt());
                 let direction = [uniform() - 0.5, uniform() - 0.5, -uniform()];
@@ -513,7 +515,7 @@ fn porous_crowns_let_two_in_five_lines_pass_bare_ones_most_and_opaque_ones_none(
         let share = free as f64 / f64::from(lines);
         match crowns {
             CrownMaterial::Porous => assert!((0.33..0.47).contains(&share), "{share}"),
-            // branches take little more than a tenth of the inner crown
+            // Branches block little more than a tenth of the lines through the inner crown.
             CrownMaterial::Bare => assert!((0.6..0.95).contains(&share), "{share}"),
             CrownMaterial::Opaque => assert_eq!(free, 0),
         }
@@ -538,7 +540,7 @@ fn odd_descriptions_give_a_scene_all_the_same() {
         assert!(scene.triangles.len() > 1000);
         assert!(scene.vertices.as_flattened().iter().all(|v| v.is_finite()));
     }
-    // No sense can be made of these, but they end.
+    // These parameters make no sense, but the construction ends.
     for odd in [
         TownParams { origin: [f64::INFINITY, f64::NAN, 0.0], ..usual.clone() },
         TownParams { slope: f64::NAN, hill_height: f64::INFINITY, ..usual.clone() },

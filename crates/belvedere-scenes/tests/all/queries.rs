@@ -1,4 +1,4 @@
-//! Targets lie where their kind says, by means that do not use the sampling code.
+//! Targets fit their kind, by tests without the code that draws them.
 
 use belvedere_scenes::{
     Hit, Material, PlanPlacement, Preset, QuerySet, QuerySite, RoofDetails, TownParams, TriangleScene, Truth, extruded,
@@ -12,7 +12,7 @@ fn site<'a>(scene: &'a TriangleScene, truth: &'a Truth) -> QuerySite<'a> {
 
 #[test]
 fn a_point_is_inside_exactly_where_the_formulas_of_the_solids_say() {
-    // two boxes that overlap: the union is what counts, not the parity of its faces
+    // Two boxes that overlap: the union counts, not the parity of its faces.
     let at = |x: f64| PlanPlacement { origin: [x, 0.0], angle: 0.3 };
     let mut scene = TriangleScene::default();
     let solids = [(at(0.0), 10.0, 6.0, 0.0, 8.0), (at(3.0), 9.0, 4.0, -2.0, 5.0)];
@@ -43,11 +43,11 @@ fn targets_of_each_kind_lie_where_they_should() {
     let site = site(&scene, &truth);
     for set in QuerySet::ALL {
         let targets = site.targets(set, 2000, 1);
-        // pairs over 100 m apart hardly fit into a town of 120 m: some of a quarter of the pairs are not found
+        // Pairs over 100 m apart hardly fit into a town of 120 m: a quarter of all pairs, of which some are not found.
         let min = if set == QuerySet::LinesOfSight { 1500 } else { 2000 };
         assert!((min..=2000).contains(&targets.positions.len()), "{}: {}", set.name(), targets.positions.len());
         let above = |p: &[f64; 3]| p[2] - ground.height(p[0], p[1]);
-        // the mesh departs from the formula of the ground by less than 5 mm
+        // The mesh departs from the formula of the ground by less than 5 mm.
         let at_height = |height: f64| targets.positions.iter().all(|p| (above(p) - height).abs() < 0.005);
         match set {
             QuerySet::Volume => assert!(targets.positions.iter().any(|p| site.is_inside(*p))),
@@ -57,7 +57,7 @@ fn targets_of_each_kind_lie_where_they_should() {
             QuerySet::Roofs | QuerySet::Facades => {
                 let material = if set == QuerySet::Roofs { Material::Roof } else { Material::Facade };
                 let near = |p: &[f64; 3]| {
-                    // within 0.1 m of a triangle of the material: its plane and, widened, its box
+                    // Within 0.1 m of a triangle of the material: its plane and, widened, its box.
                     (0..scene.triangles.len()).filter(|&t| scene.materials[t] == material).any(|t| {
                         let corners = scene.corners(t).unwrap();
                         let e = |k: usize| -> [f64; 3] { std::array::from_fn(|i| corners[k][i] - corners[0][i]) };
@@ -102,20 +102,20 @@ fn targets_at_roofs_lie_above_them_and_those_at_walls_not_in_their_eaves() {
     let material = |hit: Option<Hit>| hit.map(|hit| scene.materials[hit.triangle as usize]);
     let above_roofs = site.targets(QuerySet::Roofs, 3000, 1).positions;
     let under = above_roofs.iter().map(|&p| material(truth.first_hit(p, [0.0, 0.0, -1.0], 0.5)));
-    // 0.1 m off a slope of 45 degrees lies up to 7 cm beyond its eaves; slopes are 5 m long
+    // A point 0.1 m off a slope of 45 degrees lies up to 7 cm beyond its eaves; slopes are 5 m long.
     let over_roof = under.filter(|m| matches!(m, Some(Material::Roof))).count();
     assert!(over_roof > 2940, "{over_roof}");
     let (mut under_eaves, mut level) = (0, 0);
     for p in site.targets(QuerySet::Facades, 3000, 1).positions {
         assert!(!site.is_inside(p));
         under_eaves += usize::from(material(truth.first_hit(p, [0.0, 0.0, 1.0], 30.0)) == Some(Material::Roof));
-        // a wall is 0.1 m away in one of the directions about
+        // A wall is 0.1 m away in one of the horizontal directions.
         level += usize::from((0..360).any(|i| {
             let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 360.0).sin_cos();
             truth.first_hit(p, [cos, sin, 0.0], 0.1001).is_some()
         }));
     }
-    // most walls have eaves or balconies above them here, those of towers and gables have not
+    // Most walls here have eaves or balconies above them, except those of towers and gables.
     assert!((600..2400).contains(&under_eaves), "{under_eaves}");
     assert_eq!(level, 3000, "upright faces only");
 }

@@ -1,4 +1,4 @@
-//! Other surveys than the default one: patterns, strips, crowns that pulses enter.
+//! Surveys with other parameters than the defaults: patterns, strips, crowns that pulses enter.
 
 use belvedere_scenes::{
     AirborneParams, BeamParams, Material, MirrorMotion, PlanPlacement, PointOrder, Scan, ScanPattern, TownParams,
@@ -12,7 +12,7 @@ const PATTERNS: [ScanPattern; 4] = [
     ScanPattern::CONICAL_20,
 ];
 
-/// Flat ground of `side` metres about the zero of the grid.
+/// Returns flat ground of `side` metres about the zero of the grid.
 fn plate(side: f64) -> TriangleScene {
     let mut scene = TriangleScene::default();
     let at = PlanPlacement { origin: [0.0, 0.0], angle: 0.0 };
@@ -21,7 +21,7 @@ fn plate(side: f64) -> TriangleScene {
     scene
 }
 
-/// A house of 10 x 10 x 8 m on flat ground.
+/// Returns a house of 10 x 10 x 8 m on flat ground.
 fn house_on_a_plate() -> TriangleScene {
     let mut scene = plate(60.0);
     let at = PlanPlacement { origin: [0.0, 0.0], angle: 0.0 };
@@ -37,7 +37,8 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Outward unit normal of the triangle of return `i`, and how far its exact position lies outside that plane.
+/// Returns the outward unit normal of the triangle of return `i`, and the distance of its exact position outside that
+/// plane.
 fn plane_of(scene: &TriangleScene, scan: &Scan, i: usize) -> ([f64; 3], f64) {
     let [a, b, c] = scene.corners(scan.triangle[i] as usize).unwrap();
     let (u, v) = (sub(b, a), sub(c, a));
@@ -55,13 +56,13 @@ fn requested_density_is_flown_with_every_pattern_and_any_extent() {
             let params = params.spread_over(&scene, None, 1.0);
             let scan = scan_airborne(&scene, &params);
             let density = scan.len() as f64 / (side * side);
-            // The mean over the ground is taken at 3600 places, and a strip starts and ends within a line.
+            // The mean over the ground is computed at 3600 places, and a strip starts and ends within a line.
             assert!((density - 1.0).abs() < 0.05, "{pattern:?} {side}: {density}");
             let strips = f64::from(*scan.point_source_id.iter().max().unwrap());
             assert!(strips <= f64::from(params.strip_count + params.cross_strip_count));
-            // Every place lies between two strips that reach it; count on a grid of 20 m.
+            // Every place lies between two strips that reach it; counted on a grid of 20 m.
             let mut seen = std::collections::HashMap::<[i64; 2], u64>::new();
-            // noise puts some points beside the ground
+            // Noise moves some points beside the ground.
             let within = |v: f64| v.abs() < side / 2.0 - 0.5;
             for i in (0..scan.len()).filter(|&i| within(scan.x[i]) && within(scan.y[i])) {
                 #[expect(clippy::cast_possible_truncation, reason = "a scene has fewer cells than i64 counts")]
@@ -77,7 +78,8 @@ fn requested_density_is_flown_with_every_pattern_and_any_extent() {
 #[test]
 fn strips_are_as_many_as_the_extent_needs() {
     let count = |side: f64| AirborneParams::covering(&plate(side), 10.0).strip_count;
-    // Strips of 420 m, half of it between neighbours; the ground is 1.37 times as wide across a heading of 30 degrees.
+    // Strips of 420 m with half of it between neighbours; the ground is 1.37 times as wide across a heading of 30
+    // degrees.
     assert_eq!([150.0, 300.0, 1000.0].map(count), [2, 3, 8]);
     let requested = AirborneParams::default().spread_over(&plate(300.0), Some(5), 10.0);
     assert_eq!(requested.strip_count, 5);
@@ -105,7 +107,7 @@ fn a_sinusoidal_mirror_crowds_pulses_at_the_edges_and_a_rotating_one_does_not() 
 fn a_cone_sees_three_walls_from_one_strip_and_a_line_scanner_one() {
     let scene = house_on_a_plate();
     let walls_seen = |pattern| {
-        // 60 m beside the flight path to the north, so that a line scanner sees the house from the west
+        // 60 m beside the flight path to the north, so that a line scanner sees the house from the west.
         let params = AirborneParams {
             pattern,
             heading: 0.0,
@@ -126,7 +128,7 @@ fn a_cone_sees_three_walls_from_one_strip_and_a_line_scanner_one() {
         counts.iter().filter(|&&count| count > 20).count()
     };
     assert_eq!(walls_seen(ScanPattern::Rotating), 1);
-    // ahead, behind and the side that faces the path
+    // Ahead, behind and the side that faces the path.
     assert_eq!(walls_seen(ScanPattern::CONICAL_20), 3);
 }
 
@@ -142,7 +144,7 @@ fn cross_strips_fly_at_right_angles_and_later() {
         let i = scan.point_source_id.iter().position(|&s| s == strip).unwrap();
         let after = path.times.partition_point(|&t| t <= scan.gps_time[i]);
         let step = sub(path.positions[after], path.positions[after - 1]);
-        // the wander turns the path by up to 0.7 degrees
+        // The wander turns the path by up to 0.7 degrees.
         let course = step[0].atan2(step[1]);
         let heading = path.headings[after];
         assert!(((course - heading + 0.1).rem_euclid(std::f64::consts::TAU) - 0.1).abs() < 0.015);
@@ -172,7 +174,7 @@ fn pulses_enter_crowns_only_as_deep_as_leaves_let_them() {
         if outside < -1e-6 {
             inside += 1;
             depths -= outside;
-            // Backwards along the ray, whose direction the noisy point and the sensor give: the hull lies behind.
+            // Backwards along the ray, with the direction from the noisy point and the sensor: the hull lies behind.
             let after = scan.sensor_path.times.partition_point(|&t| t <= scan.gps_time[i]);
             let back = sub(scan.sensor_path.positions[after], scan.exact_positions[i]);
             assert!(truth.occluded_towards(scan.exact_positions[i], back), "the crown is round this point");
@@ -231,7 +233,7 @@ fn returns_of_an_edge_lie_on_both_sides_of_it_by_up_to_half_a_beam() {
     // 18 cm at 450 m and up to 24 degrees aside: outer rays 6.4 to 7.2 cm from the axis, of which one is enough.
     let (share, farthest) = overshoot(4e-4);
     assert!((0.055..0.073).contains(&farthest), "{farthest}");
-    // A ring of that width about a roof of 100 m², less where no ray of the six points straight outwards.
+    // A ring of that width about a roof of 100 m², less the part without a ray of the six straight outwards.
     assert!((0.4..1.0).contains(&(share / (40.0 * 0.068 / 100.0))), "{share}");
 }
 
@@ -260,7 +262,7 @@ fn another_order_of_points_is_the_same_scan() {
         assert_eq!(other == scan().in_order(order, 2), order == PointOrder::Squares);
         let later = other.gps_time.windows(2).filter(|times| times[1] > times[0]).count() as f64 / other.len() as f64;
         if order == PointOrder::Shuffled {
-            // half of all, give or take a tenth
+            // Half of all, with a tolerance of a tenth.
             assert!((0.4..0.6).contains(&later), "{later}");
         } else {
             assert!((1..other.len()).all(|i| square(&other, i - 1) <= square(&other, i)), "row by row");
@@ -280,7 +282,7 @@ fn light_on_a_scan_is_that_of_the_shadow_of_a_box() {
     for (i, lit) in lit.iter().enumerate() {
         let [x, y, z] = scan.exact_positions[i];
         if z < -1e-6 {
-            // on the side of the plate
+            // A return on the side of the plate.
             continue;
         }
         let on_ground = z.abs() < 1e-6;
@@ -291,6 +293,6 @@ fn light_on_a_scan_is_that_of_the_shadow_of_a_box() {
         assert!(near_edge || *lit != (in_shadow || on_dark_wall), "{:?}", scan.exact_positions[i]);
         shaded += usize::from(!lit);
     }
-    // 10 by 8 m of ground at two strips of 4 pulses per m²
+    // 10 by 8 m of ground at two strips of 4 pulses per m².
     assert!(shaded > 400, "{shaded}");
 }

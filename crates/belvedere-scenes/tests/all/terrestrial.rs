@@ -1,4 +1,4 @@
-//! Scans from tripods: set up where there is room, true to range, angle and time.
+//! Scans from tripods: free stations, and correct ranges, angles and times.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -19,7 +19,7 @@ fn length(a: [f64; 3]) -> f64 {
     (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]).sqrt()
 }
 
-/// A room of 20 x 12 x 6 m: its inside is the outside of six slabs.
+/// Returns a room of 20 x 12 x 6 m: its inside is the outside of six slabs.
 fn room() -> TriangleScene {
     let mut scene = TriangleScene::default();
     let slab = |x: f64, y: f64, size: [f64; 2], bottom: f64, top: f64| {
@@ -51,7 +51,7 @@ fn ranges_in_a_room_are_those_of_a_box() {
         ..coarse()
     };
     let scan = scan_terrestrial(&room(), &params);
-    // Corners are where the beam of 3 mm may meet two walls, too near each other to part: one return a pulse.
+    // In corners the beam of 3 mm may meet two walls, which are too near each other to separate: one return per pulse.
     assert_eq!(scan.len(), 360 * 180);
     for i in 0..scan.len() {
         let p = [scan.x[i], scan.y[i], scan.z[i]];
@@ -60,7 +60,7 @@ fn ranges_in_a_room_are_those_of_a_box() {
         assert!(nearest < 1e-9 && walls.iter().all(|&v| v > -1e-9), "{p:?} on the walls, not behind them");
         let ray = sub(p, at);
         let from_nadir = (-ray[2] / length(ray)).acos();
-        // half the divergence, and the digits of f32
+        // Half the divergence, and the precision of f32.
         let tolerance = 1.5e-4 + 1e-6;
         assert!((from_nadir - f64::from(scan.scan_angle_deg[i]).to_radians()).abs() < tolerance);
     }
@@ -88,7 +88,7 @@ fn chosen_stations_stand_on_open_ground_far_apart() {
             assert!(truth.first_hit([x, y, z], direction, 2.5).is_none(), "room around the tripod");
         }
         for other in &scan.stations[..i] {
-            // five places on 120 m: farther apart than a quarter of the town
+            // Five places on 120 m: farther apart than a quarter of the town.
             assert!(length(sub([x, y, z], *other)) > 30.0);
         }
     }
@@ -125,7 +125,7 @@ fn returns_lie_on_the_mesh_within_noise_and_range_and_belong_to_their_station() 
         assert!((0..3).map(|k| n[k] * p[k]).sum::<f64>().abs() / length(n) < 1e-6);
     }
     let sd = (squares / scan.len() as f64).sqrt();
-    // a sample of 20 000 strays by half a percent
+    // A sample of 20 000 has a relative standard error of half a percent.
     assert!((sd / params.range_sd - 1.0).abs() < 0.03, "{sd}");
     let report = scan.report;
     assert_eq!(report.pulses, params.pulses_per_station() * 4);

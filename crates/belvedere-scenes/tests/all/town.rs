@@ -1,4 +1,4 @@
-//! The town as a mesh: closed, outward, standing in the ground, the same for the same seed.
+//! Town as a mesh: closed, with outward faces, standing in the ground, and the same for the same seed.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests may panic like the tests themselves")]
 
@@ -8,7 +8,7 @@ use belvedere_scenes::{
     Material, ObjectPart, PlanPlacement, TownParams, TriangleScene, extruded, l_shaped_ridged, ridged, town,
 };
 
-/// Directed edges that have no opposite partner, or more than one.
+/// Returns the number of directed edges without exactly one opposite partner.
 fn open_edges(triangles: &[[u32; 3]]) -> usize {
     let mut edges: HashMap<(u32, u32), u32> = HashMap::new();
     for &[a, b, c] in triangles {
@@ -19,7 +19,7 @@ fn open_edges(triangles: &[[u32; 3]]) -> usize {
     edges.iter().filter(|&(&(a, b), &count)| count != 1 || edges.get(&(b, a)) != Some(&1)).count()
 }
 
-/// The connected solids of one object as parts of their own.
+/// Returns the connected solids of one object as parts of their own.
 fn solids(scene: &TriangleScene, object: u32) -> Vec<ObjectPart> {
     let own: Vec<usize> = (0..scene.triangles.len()).filter(|&t| scene.objects[t] == object).collect();
     let mut group: HashMap<u32, u32> = HashMap::new();
@@ -28,7 +28,7 @@ fn solids(scene: &TriangleScene, object: u32) -> Vec<ObjectPart> {
             group.entry(v).or_insert(v);
         }
     }
-    // Lowest vertex number spreads over each solid until nothing changes.
+    // The lowest vertex number spreads over each solid until nothing changes.
     loop {
         let mut changed = false;
         for &t in &own {
@@ -93,13 +93,13 @@ fn volumes_of_solids_match_closed_forms() {
     let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-6 * expected, "{found} {expected}");
     near(extruded(&placement.rectangle(10.0, 6.0), -1.0, 4.0).volume(), 10.0 * 6.0 * 5.0);
     near(extruded(&placement.l_shape(12.0, 9.0, 4.0), 0.0, 5.0).volume(), (12.0 * 4.0 + 5.0 * 4.0) * 5.0);
-    // A gable roof is half a box; a hip takes a third of the end prism away, base 6 m, roof height 3 m, 2 m deep.
+    // A gable roof is half a box. A hip takes away a third of the end prism: base 6 m, roof height 3 m, 2 m deep.
     near(ridged(&placement.rectangle(10.0, 6.0), 0.0, 5.0, 8.0, 0.0).volume(), 300.0 + 90.0);
     near(
         ridged(&placement.rectangle(10.0, 6.0), 0.0, 5.0, 8.0, 2.0).volume(),
         300.0 + 90.0 - 2.0 * 6.0 * 3.0 * 2.0 / 6.0,
     );
-    // Two half boxes of roof, less one pyramid pair over the shared square: w² h (1/2 + 1/2 − 1/3) there.
+    // Two half boxes of roof, less one pair of pyramids over the shared square: w² h (1/2 + 1/2 − 1/3) there.
     let (w, h) = (4.0, 2.0);
     let roof = (8.0 + 5.0) * w * h / 2.0 + w * w * h * (1.0 / 3.0 + 1.0 / 6.0);
     near(l_shaped_ridged(&placement, [12.0, 9.0], w, 0.0, 5.0, 5.0 + h).volume(), (12.0 * w + 5.0 * w) * 5.0 + roof);
@@ -128,8 +128,8 @@ fn default_town_stays_the_one_that_numbers_were_published_for() {
         let weighted = scene.vertices.iter().enumerate().map(|(i, v)| {
             (i % 97 + 1) as f64 * ((v[0] - params.origin[0]) + 2.0 * (v[1] - params.origin[1]) + 3.0 * v[2])
         });
-        // Sums of 1e5 numbers of 1e4, and sines whose last bit is the platform's: 1e-10 each, 1e-2 is a thousandth of
-        // any change that one vertex could show.
+        // Sums of 1e5 numbers of 1e4, and sines with last bits that depend on the platform: 1e-10 each. 1e-2 is a
+        // thousandth of any visible change of one vertex.
         let sum: f64 = weighted.sum();
         assert!((sum - fingerprint).abs() < 1e-2, "{sum}");
     }

@@ -8,7 +8,7 @@ use belvedere_scenes::{
 };
 use rayon::prelude::*;
 
-/// Small generator of the tests' own, so that the crate's is not its own judge.
+/// Small generator of the tests' own, so that the crate's generator does not judge itself.
 struct Lcg(u64);
 
 impl Lcg {
@@ -44,7 +44,8 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Möller & Trumbore 1997: range and least barycentric coordinate of the crossing of a line with a triangle's plane.
+/// Returns the range and the least barycentric coordinate of the crossing of a line with a triangle's plane, by Möller
+/// & Trumbore 1997.
 fn moeller_trumbore(corners: [[f64; 3]; 3], origin: [f64; 3], direction: [f64; 3]) -> Option<(f64, f64)> {
     let (e1, e2) = (sub(corners[1], corners[0]), sub(corners[2], corners[0]));
     let p = cross(direction, e2);
@@ -59,7 +60,7 @@ fn moeller_trumbore(corners: [[f64; 3]; 3], origin: [f64; 3], direction: [f64; 3
     Some((dot(e2, q) / determinant, u.min(v).min(1.0 - u - v)))
 }
 
-/// [`moeller_trumbore`] where the line meets the triangle, given up as early as it can be.
+/// Returns the range of [`moeller_trumbore`] if the line meets the triangle, with an exit as early as possible.
 fn range_to(corners: [[f64; 3]; 3], origin: [f64; 3], direction: [f64; 3]) -> Option<f64> {
     let (e1, e2) = (sub(corners[1], corners[0]), sub(corners[2], corners[0]));
     let p = cross(direction, e2);
@@ -74,7 +75,7 @@ fn range_to(corners: [[f64; 3]; 3], origin: [f64; 3], direction: [f64; 3]) -> Op
     (v >= 0.0 && u + v <= 1.0).then(|| dot(e2, q) / determinant)
 }
 
-/// First hit by brute force, and whether the ray passes within `EDGE` of the edge of any triangle it meets or misses.
+/// Returns the first hit by brute force, and true if the ray passes within `EDGE` of the edge of any tested triangle.
 fn brute_force(scene: &TriangleScene, origin: [f64; 3], direction: [f64; 3], max_range: f64) -> (Option<Hit>, bool) {
     let (mut best, mut near_edge): (Option<Hit>, bool) = (None, false);
     for (t, triangle) in (0..scene.triangles.len()).zip(0_u32..) {
@@ -90,7 +91,7 @@ fn brute_force(scene: &TriangleScene, origin: [f64; 3], direction: [f64; 3], max
     (best, near_edge)
 }
 
-/// Barycentric distance from an edge below which f64 rounding decides: coordinates of 5e5 m have 6e-11 m, triangles are
+/// Barycentric distance from an edge below which f64 rounding decides. Coordinates of 5e5 m have 6e-11 m, triangles are
 /// a few decimetres to metres.
 const EDGE: f64 = 1e-8;
 
@@ -101,7 +102,7 @@ fn random_rays(scene: &TriangleScene, count: usize, seed: u64) -> Vec<([f64; 3],
         .map(|i| {
             let point: [f64; 3] = std::array::from_fn(|k| random.between(low[k] - 5.0, high[k] + 5.0));
             match i % 4 {
-                // From the air, as a scanner sees it.
+                // From the air, as for a scanner.
                 0 => {
                     let target: [f64; 3] = std::array::from_fn(|k| random.between(low[k], high[k]));
                     let sensor = [point[0] + 200.0, point[1] - 100.0, 450.0];
@@ -153,7 +154,7 @@ fn occlusion_equals_brute_force_between_random_points() {
     let scene = town(&TownParams::default());
     let truth = Truth::new(&scene);
     let (low, mut high) = scene.bounds().unwrap();
-    // Where houses and trees are; above them nothing blocks.
+    // The heights of houses and trees, with no obstacle above them.
     high[2] = 15.0;
     let mut random = Lcg(11);
     let mut counts = [0; 2];
@@ -175,7 +176,7 @@ fn occlusion_equals_brute_force_between_random_points() {
     assert!(counts[0] > 150 && counts[1] > 1500, "{counts:?}");
 }
 
-/// A small town with everything that presets hold, courtyards and porous crowns included.
+/// Returns a small town with all objects of presets, courtyards and porous crowns included.
 fn rich_town() -> TriangleScene {
     let blocks = [BlockPlan::RowHouses, BlockPlan::HighRise, BlockPlan::Square, BlockPlan::Courtyard];
     town(&TownParams {
@@ -197,9 +198,8 @@ fn random_rays_through_a_town_with_everything_agree_with_the_plain_loop() {
     let truth = Truth::new(&scene);
     let (low, high) = scene.bounds().unwrap();
     let centre: [f64; 3] = std::array::from_fn(|i| (low[i] + high[i]) / 2.0);
-    // About the centre, where the loop rounds a thousand times less than in the national grid. It might judge a ray
-    // that passes an edge by less than its rounding otherwise than the truth does; none of these does, so none is left
-    // out.
+    // About the centre, where the loop rounds a thousand times less than in the national grid. A ray that passes an
+    // edge within the rounding might have another answer than the truth. No ray does, so none is left out.
     let triangles: Vec<[[f64; 3]; 3]> =
         (0..scene.triangles.len()).map(|t| scene.corners(t).unwrap().map(|corner| sub(corner, centre))).collect();
     let rays: Vec<_> = random_rays(&scene, 30_000, 77).into_iter().enumerate().collect();
@@ -219,12 +219,12 @@ fn random_rays_through_a_town_with_everything_agree_with_the_plain_loop() {
             let end: [f64; 3] = std::array::from_fn(|i| origin[i] + unit[i] * 40.0);
             let blocked =
                 if number % 5 == 0 { truth.occluded(origin, end) } else { truth.occluded_towards(origin, direction) };
-            // Two surfaces may cross where the ray meets them: it counts that the triangle found is met at that range.
+            // Two surfaces may cross at the hit. The found triangle must be met at that range.
             let agrees = match found {
                 None => nearest.is_infinite(),
                 Some(hit) => {
                     let own = range_to(triangles[hit.triangle as usize], local, unit).unwrap_or(f64::NAN);
-                    // 1e-9 m of rounding in the national grid, a hundred times that where rays graze.
+                    // 1e-9 m of rounding in the national grid, a hundred times that for grazing rays.
                     (hit.range - nearest).abs() < 1e-7 && (own - nearest).abs() < 1e-7
                 }
             };
@@ -237,7 +237,7 @@ fn random_rays_through_a_town_with_everything_agree_with_the_plain_loop() {
     assert!((9_000..27_000).contains(&hits), "{hits}");
 }
 
-/// Square of ground, 400 m wide, at height 0, with a box of height 10 over −5…5 (x) and −8…8 (y).
+/// Returns a square of ground, 400 m wide, at height 0, with a box of height 10 over −5…5 (x) and −8…8 (y).
 fn box_on_plane() -> TriangleScene {
     let mut scene = TriangleScene::default();
     let vertices = vec![[-200.0, -200.0, 0.0], [200.0, -200.0, 0.0], [200.0, 200.0, 0.0], [-200.0, 200.0, 0.0]];

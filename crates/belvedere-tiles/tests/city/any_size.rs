@@ -1,4 +1,4 @@
-//! A survey that is kept: cells on the ground, what pulses prove, and balls that all questions share.
+//! Kept surveys: cells on the ground, proof by pulses, and balls that all questions share.
 
 use crate::common::write_town;
 use belvedere::apps::ask::{
@@ -14,15 +14,16 @@ use belvedere_tiles::{Plan, PlanParams, SurveyCells, SurveyQuestion, TooLarge};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Most of the cells whose answer may differ from that of one model: a plan takes noise and scanner from samples.
+/// Maximum share of cells with an answer that differs from one model, because a plan takes noise and scanner from
+/// samples.
 const MAX_DIFFERENCE: f64 = 0.01;
 
 fn params(clouds: &[PathBuf], tile_size: f64) -> PlanParams {
     PlanParams { clouds: clouds.to_vec(), tile_size, ..PlanParams::default() }
 }
 
-/// The shadow of suns, in degrees, on cells of 1 m on the ground, of the survey kept in a folder, and how many tiles
-/// got their balls.
+/// Returns the shadow of a sun, azimuth and elevation in degrees, on cells of 1 m on the ground, of the survey kept in
+/// `folder`. The number of tiles whose balls were made comes last.
 fn shadow(folder: &Path, params: &PlanParams, sun: [f64; 2]) -> (Plan, Answers<SurveyCells>, usize) {
     shadow_of(folder, params, sun, &cells())
 }
@@ -57,7 +58,7 @@ fn cells() -> GridCells {
     GridCells { cell: Some(1.0), height: Some(1.5), ..GridCells::default() }
 }
 
-/// All values as bits.
+/// Returns all values as bits.
 fn bits(answers: &Answers<SurveyCells>) -> Vec<Vec<u32>> {
     let of_measure = |measure: &Measure| measure.values.iter().map(|value| value.to_bits()).collect();
     answers.measures.iter().map(of_measure).collect()
@@ -86,10 +87,10 @@ fn cells_on_the_ground_and_proof_are_those_of_any_tiles_and_of_one_model() {
         let share = others / tiled.values.len() as f64;
         assert!(share < MAX_DIFFERENCE, "{}: {share}", measure.name);
         let known = measure.values.iter().filter(|value| **value > 0.0).count();
-        // all of one kind would compare nothing
+        // Values all of one kind would compare nothing.
         assert!(known > tiled.values.len() / 50, "{}: {known}", measure.name);
     }
-    // the same words, figures of their own
+    // The same words, with different figures.
     let without_digits = |lines: &[String]| lines.concat().replace(|c: char| c.is_ascii_digit() || c == '.', "");
     assert_eq!(without_digits(&answers.headline), without_digits(&whole.headline));
     assert_eq!(answers.found.on.title, whole.found.title);
@@ -107,15 +108,15 @@ fn a_kept_survey_is_looked_at_once_and_its_balls_serve_all_questions() {
     let folder = place.path().join("kept");
     let (plan, first, made) = shadow(&folder, &params(&clouds, 64.0), [140.0, 25.0]);
     assert_eq!(made, plan.tiles.len());
-    // the same question is answered already; another has its balls
+    // The same question has its answer already; another question has its balls.
     let (_, again, made) = shadow(&folder, &params(&clouds, 64.0), [140.0, 25.0]);
     assert!(bits(&again) == bits(&first) && made == 0, "{made}");
     let (_, other, made) = shadow(&folder, &params(&clouds, 64.0), [220.0, 40.0]);
     assert!(bits(&other) != bits(&first) && made == 0, "{made}");
-    // it found the ground of its cells, too
+    // It found the ground of its cells, too.
     let (_, anew, _) = shadow(&place.path().join("anew"), &params(&clouds, 64.0), [220.0, 40.0]);
     assert!(bits(&other) == bits(&anew));
-    // also for targets of another height
+    // Also for targets of another height.
     let low = GridCells { height: Some(0.1), ..cells() };
     let (_, lower, _) = shadow_of(&folder, &params(&clouds, 64.0), [220.0, 40.0], &low);
     let (_, anew, _) = shadow_of(&place.path().join("low"), &params(&clouds, 64.0), [220.0, 40.0], &low);
@@ -123,7 +124,7 @@ fn a_kept_survey_is_looked_at_once_and_its_balls_serve_all_questions() {
     let files = |what: &str| walk(&folder).into_iter().filter(|path| path.to_string_lossy().contains(what)).collect();
     let (pulses, ground): (Vec<PathBuf>, Vec<PathBuf>) = (files(".pulses."), files("ground"));
     assert!(!pulses.is_empty() && !ground.is_empty());
-    // what was damaged is made again
+    // Damaged files are made again.
     for path in pulses.into_iter().chain(ground) {
         let mut bytes = std::fs::read(&path).unwrap();
         let middle = bytes.len() / 2;
@@ -145,17 +146,17 @@ fn less_memory_has_smaller_tiles_of_the_survey_that_is_kept() {
     let less = kept().fitting(first.estimate().memory_bytes - 1_000_000).unwrap();
     assert!(less.tile_size < first.tile_size && less.tiles.len() > first.tiles.len(), "{}", less.tile_size);
     assert_eq!(kept(), first);
-    // a tile is a whole number of cells
+    // A tile is a whole number of cells.
     let wide = kept().with_grid_cells(&GridCells { cell: Some(5.0), ..GridCells::default() }).unwrap();
     assert_eq!(wide.fitting(u64::MAX).unwrap().tile_size, 320.0);
     let odd = kept().with_grid_cells(&GridCells { cell: Some(0.3), ..GridCells::default() }).unwrap_err().to_string();
     assert!(odd.contains("0.3 m") && odd.contains("such as 0.25, 0.5"), "{odd}");
-    // another survey in the same folder is another plan
+    // Another survey in the same folder is another plan.
     let one = Plan::kept_in(&folder, &params(&clouds[..1], 512.0), &Control::none()).unwrap();
     assert!(one.inputs.len() == 1 && first.inputs.len() == 2);
 }
 
-/// All files below a folder.
+/// Returns all files below a folder.
 fn walk(folder: &Path) -> Vec<PathBuf> {
     let paths = folder.read_dir().unwrap().map(|entry| entry.unwrap().path());
     paths.flat_map(|path| if path.is_dir() { walk(&path) } else { vec![path] }).collect()
@@ -197,7 +198,7 @@ fn memory_of_one_model_follows_the_points_and_tables_have_none() {
     std::fs::write(&table, "1 2 3\n").unwrap();
     assert_eq!(TooLarge::of(&[table], 0), None);
     assert_eq!(TooLarge::of(&[place.path().join("gone.laz")], 0), None);
-    // metres around places, in the unit of the files
+    // Metres around places, in the unit of the files.
     let part = both.part_around((&clouds, None), &[[5.0, 7.0], [1.0, 9.0]], 100.0).unwrap().unwrap().0;
     assert_eq!(part, [[1.0 - 228.0, 7.0 - 228.0], [5.0 + 228.0, 9.0 + 228.0]]);
     let feet = both.part_around((&clouds, Some("EPSG:2263")), &[[0.0, 0.0]], 0.0).unwrap().unwrap().0;

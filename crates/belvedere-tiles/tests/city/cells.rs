@@ -28,7 +28,7 @@ fn questions() -> Vec<TileQuestion> {
     ]
 }
 
-/// Half a metre for a sun, 1 m for the hours of a day and 4 m for the sky.
+/// Returns 0.5 m for a sun, 1 m for the hours of a day and 4 m for the sky.
 fn sizes() -> CellSizes {
     CellSizes::all(1.0).with(Topic::Shadow, 0.5).with(Topic::SkyView, 4.0)
 }
@@ -43,7 +43,7 @@ fn done(clouds: &[PathBuf], folder: &Path, tile_size: f64, cells: CellSizes, que
     plan
 }
 
-/// The merged raster of a result.
+/// Returns the merged raster of a result.
 fn raster(plan: &Plan, folder: &Path, question: &TileQuestion) -> Vec<u8> {
     let path = folder.join("merged.tif");
     merge(plan, folder, question, &path, UnfinishedRun::Refused, &Control::none()).unwrap();
@@ -61,7 +61,7 @@ fn results_with_their_own_cells_are_those_of_plans_with_one_question_and_of_any_
     for (question, side) in questions().iter().zip([0.5, 1.0, 4.0]) {
         assert_eq!(tiles.cells.of(question), side);
         let name = question.name();
-        // the same tiles with one question
+        // The same tiles with one question.
         let alone = place.path().join(format!("alone_{name}"));
         let plan = done(&clouds, &alone, 64.0, CellSizes::all(side), vec![question.clone()]);
         assert!(raster(&plan, &alone, question) == raster(&tiles, &folder, question), "{name}");
@@ -70,7 +70,7 @@ fn results_with_their_own_cells_are_those_of_plans_with_one_question_and_of_any_
             std::fs::read_to_string(folder.join(format!("{name}.vrt"))).unwrap()
         });
         assert_eq!(catalogues[0], catalogues[1]);
-        // one tile over all, cell by cell: rasters around it are larger
+        // One tile over all, compared cell by cell, because its raster is larger.
         let values = [(&tiles, &folder), (&whole, &whole_folder)].map(|(plan, folder)| {
             raster(plan, folder, question);
             let cells = read_tif(folder.join("merged.tif").as_path()).unwrap();

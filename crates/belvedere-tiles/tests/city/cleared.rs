@@ -1,4 +1,4 @@
-//! Areas without what stands there, tile by tile: the same as over all, and as in one scene.
+//! Cleared areas, tile by tile: the same as in one tile over all, and as in one scene.
 
 use crate::common::{cells, plan, run_all, run_with, suns, write_town};
 
@@ -11,13 +11,13 @@ use belvedere_tiles::{Plan, TileQuestion, UnfinishedRun, merge, status};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// A rectangle over corners of tiles of 64 and of 100 m, file coordinates: from x, y to x, y.
+/// Rectangle over corners of tiles of 64 and of 100 m, file coordinates: from x, y to x, y.
 const LOW: [f64; 2] = [154_986.0, 462_960.0];
 const HIGH: [f64; 2] = [155_030.0, 463_012.0];
-/// High vegetation.
+/// ASPRS class of high vegetation.
 const TREES: u8 = 5;
 
-/// The rectangle, a triangle that overlaps it, and all trees.
+/// Returns the rectangle, a triangle that overlaps it, and all trees.
 fn areas(plan: &Plan) -> Vec<ClearedArea> {
     let origin = plan.frame().unwrap().origin;
     let local = |[x, y]: [f64; 2]| [x - origin[0], y - origin[1]];
@@ -30,7 +30,7 @@ fn areas(plan: &Plan) -> Vec<ClearedArea> {
     ]
 }
 
-/// The balls of all tiles.
+/// Returns the balls of all tiles.
 fn balls(plan: &Plan, folder: &Path) -> MedialBalls {
     let mut all = MedialBalls::default();
     for tile in &plan.tiles {
@@ -45,16 +45,16 @@ fn balls(plan: &Plan, folder: &Path) -> MedialBalls {
     all
 }
 
-/// Centres and radii as bits.
+/// Returns centres and radii as bits.
 fn bits(balls: &MedialBalls) -> BTreeSet<[u32; 4]> {
     let bits = |(c, r): (&[f32; 3], &f32)| [c[0], c[1], c[2], *r].map(f32::to_bits);
     balls.centers.iter().zip(&balls.radii).map(bits).collect()
 }
 
-/// Heights of the balls that close the ground, by their place.
+/// Returns the heights of the balls that close the ground, by their place.
 fn closing(balls: &MedialBalls, rows: std::ops::Range<usize>) -> BTreeMap<[u32; 2], f32> {
     let is_one = |row: &usize| balls.radii[*row] == 1.0 && balls.touch[*row] == LIMIT_TOUCH;
-    // middles of columns of 0.25 m
+    // Middles of columns of 0.25 m.
     let is_middle = |v: f32| (f64::from(v) / 0.125).rem_euclid(2.0) == 1.0;
     let center = rows.filter(is_one).map(|row| balls.centers[row]);
     center.filter(|c| is_middle(c[0]) && is_middle(c[1])).map(|[x, y, z]| ([x.to_bits(), y.to_bits()], z)).collect()
@@ -107,7 +107,7 @@ fn cleared_areas_are_the_same_for_tiles_of_any_size_and_those_of_one_scene() {
             assert!(found == expected, "{} of tiles of {size} m differs", question.name());
         }
     }
-    // every cell still has a value, and none of those cleared lies in a shadow of what stood there
+    // Every cell still has a value, and no cleared cell lies in a shadow of a cleared object.
     let [shadow, sky] = [&questions[0], &questions[1]].map(|question| {
         let [was, is] = [(&plain, &before), (&one, &whole)].map(|(plan, folder)| values(plan, folder, question));
         assert!(was.keys().all(|cell| is.contains_key(cell)), "cells are gone");
@@ -121,14 +121,15 @@ fn cleared_areas_are_the_same_for_tiles_of_any_size_and_those_of_one_scene() {
         let inside = values.iter().filter(|(cell, _)| in_rectangle(cell));
         inside.map(|(_, &bits)| f64::from(f32::from_bits(bits))).sum::<f64>()
     };
-    // roofs see much of the sky as well
+    // Roofs see much of the sky as well.
     let area = (HIGH[0] - LOW[0]) * (HIGH[1] - LOW[1]);
     assert!(sum(&sky.1) > 0.7 * area && sum(&sky.1) > sum(&sky.0), "{} {}", sum(&sky.1), sum(&sky.0));
     assert!(shadow.0 != shadow.1);
     as_in_one_scene(&clouds, &plain, (&balls(&plain, &before), &expected_balls));
 }
 
-/// The balls of tiles before and after against those of one model of the whole cloud, in the same frame.
+/// Compares the balls of tiles, before and after clearing, with those of one model of the whole cloud in the same
+/// frame.
 fn as_in_one_scene(clouds: &[std::path::PathBuf], plan: &Plan, (before, after): (&MedialBalls, &MedialBalls)) {
     let control = Control::none();
     let options = ReadOptions::new().with_frame(plan.frame().unwrap());
@@ -148,12 +149,12 @@ fn as_in_one_scene(clouds: &[std::path::PathBuf], plan: &Plan, (before, after): 
         added.extend(closing(model.balls(), count - report.ground_balls_added..count));
     }
     assert!(sum[0] > 2000 && sum[1] > 20 && sum[2] > 1000, "{sum:?}");
-    // no more differ than did before: what one scene does with neighbours farther than 16 m and with decks
+    // No more balls differ than before. Differences come from neighbours farther than 16 m and from decks in one scene.
     assert!(alike > 0.9 && same(after, &model) > alike - 0.01, "{alike} {}", same(after, &model));
     let found = closing(after, 0..after.len());
     let near = |(place, height): (&[u32; 2], &f32)| found.get(place).is_some_and(|own| (own - height).abs() < 0.01);
     let missing = added.iter().filter(|entry| !near(*entry)).count();
-    // triangles of the ground that are larger than what a block sees of it
+    // Triangles of the ground that are larger than the part that a block sees.
     assert!(missing * 200 < added.len(), "{missing} of {}", added.len());
 }
 

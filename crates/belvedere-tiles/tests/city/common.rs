@@ -1,4 +1,4 @@
-//! A flown town as files, and plans of it.
+//! Files of a flown town, and plans of it.
 #![expect(clippy::cast_possible_truncation, reason = "cells of a town are few")]
 
 use belvedere::apps::shadow::ShadowSun;
@@ -46,7 +46,7 @@ pub(crate) fn write_town(folder: &Path, extent: f64, pulses_per_m2: f64) -> Vec<
     sides.iter().enumerate().map(file).collect()
 }
 
-/// Suns in the south-east at 5, 20 and 60 degrees.
+/// Returns suns in the south-east at 5, 20 and 60 degrees.
 pub(crate) fn suns() -> Vec<TileQuestion> {
     let sun = |elevation: f64| TileQuestion::Shadow {
         name: format!("shadow_{elevation}"),
@@ -68,13 +68,13 @@ pub(crate) fn run_all(plan: &Plan, folder: &Path) -> RunReport {
     run_with(plan, folder, None)
 }
 
-/// With at most so many balls at a time.
+/// Runs a plan with at most `max_balls` balls at a time.
 pub(crate) fn run_with(plan: &Plan, folder: &Path, max_balls: Option<usize>) -> RunReport {
     let params = RunParams { shard: Shard::default(), steps: Steps::All, max_balls, seconds: &|| 0.0 };
     run(plan, folder, &params, &Control::none()).unwrap()
 }
 
-/// Values of all cells of 1 m of a merged raster by their place, metres, without those of no data.
+/// Returns the values of all cells of 1 m of a merged raster by their place, metres, without cells of no data.
 pub(crate) fn cells<T: Copy + PartialEq>(path: &Path, values: &[T], width: usize, none: T) -> BTreeMap<[i64; 2], T> {
     let corner = read_tif(path).unwrap().place.unwrap().upper_left.map(|v| v.round() as i64);
     let cell = |(number, &value): (usize, &T)| {

@@ -4,11 +4,11 @@ use crate::common::{plan, run_all, suns, write_town};
 use belvedere::io::{Source, read_balls};
 use belvedere_tiles::{Plan, status, write_catalogue};
 
-/// Numbers and other things that a file may hold where a number is expected.
+/// Numbers and other texts that a file may have in place of a number.
 const ODD: [&str; 9] =
     ["-1", "0", "1e308", "9223372036854775807", "-9223372036854775808", "null", "[]", "\"\"", "1e-308"];
 
-/// Numbers without end that are the same each time.
+/// Endless random numbers that are the same each time.
 struct Dice(u64);
 
 impl Dice {
@@ -18,7 +18,7 @@ impl Dice {
     }
 }
 
-/// The bytes with one thing changed: a bit, a part that is gone or there twice, the end cut off, or a number of a text.
+/// Returns the bytes with one change: a bit, a missing or doubled part, a cut end, or a number of a text.
 fn changed(bytes: &[u8], dice: &mut Dice) -> Vec<u8> {
     let mut changed = bytes.to_vec();
     let (at, length) = (dice.below(bytes.len()), 1 + dice.below(40));
@@ -38,7 +38,7 @@ fn changed(bytes: &[u8], dice: &mut Dice) -> Vec<u8> {
     changed
 }
 
-/// The checksum of what follows it, so that what is read behind it is tried too.
+/// Corrects the checksum of the rest, so that the data behind it are tested too.
 fn with_checksum(bytes: &[u8]) -> Vec<u8> {
     let Some((start, rest)) = bytes.split_at_checked(b"{'checksum':'01234567',".len()) else { return bytes.to_vec() };
     let sum = format!("{:08x}", crc32fast::hash(rest));
@@ -61,7 +61,7 @@ fn plans_records_and_balls_with_any_bytes_never_end_the_program() {
         if let Ok(plan) = Plan::read(&folder) {
             read += 1;
             let _ = (plan.estimate(), plan.bounds(), plan.frame(), status(&plan, &folder).is_complete());
-            // each is brought to the disk, which takes its time
+            // Each catalogue is flushed to the disk, which takes time.
             for question in plan.questions.iter().filter(|_| read % 20 == 0) {
                 let _ = write_catalogue(&plan, place.path(), question);
             }

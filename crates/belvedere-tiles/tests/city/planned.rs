@@ -1,4 +1,4 @@
-//! Planned buildings and light through trees, tile by tile: the same as over all, and right.
+//! Planned buildings and light through trees, tile by tile: correct, and the same as in one tile over all.
 
 use crate::common::{cells, plan, run_with, suns, write_town};
 use belvedere::apps::ask::{Days, SkyParts, SunHoursQuestion};
@@ -14,16 +14,16 @@ use belvedere_tiles::{Plan, SideFile, TileQuestion, TileRadiation, UnfinishedRun
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// A planned block across a corner of four tiles, higher than everything else, file coordinates.
+/// Planned block across a corner of four tiles, higher than all other objects, file coordinates.
 const LOW: [f64; 3] = [155_000.0, 462_970.0, -50.0];
 const HIGH: [f64; 3] = [155_016.0, 462_984.0, 60.0];
 
-/// Balls at a time in small tiles.
+/// Maximum number of balls at a time in small tiles.
 const MAX_BALLS: usize = 700;
 
 type CellMap<T> = BTreeMap<[i64; 2], T>;
 
-/// The block as a mesh file.
+/// Writes the block as a mesh file.
 fn block(folder: &Path) -> PathBuf {
     let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2 & 1].map(|end| end == 1);
     let mut text = String::new();
@@ -40,7 +40,7 @@ fn block(folder: &Path) -> PathBuf {
     path
 }
 
-/// Whether a line from `place` meets the block.
+/// Returns true if a line from `place` meets the block.
 fn meets_block(place: [f64; 3], towards: [f64; 3]) -> bool {
     let (mut from, mut to) = (0.0_f64, f64::INFINITY);
     for axis in 0..3 {
@@ -64,8 +64,7 @@ fn numbers(plan: &Plan, folder: &Path, question: &TileQuestion) -> CellMap<f32> 
     cells(&path, raster.values(), raster.width(), -9999.0)
 }
 
-/// A plan with what is changed of it, run to its end; in small tiles with so few balls at a time that each needs many
-/// parts.
+/// Returns a changed plan after its complete run. Small tiles have so few balls at a time that each needs many parts.
 fn done(
     clouds: &[PathBuf],
     folder: &Path,
@@ -82,7 +81,7 @@ fn done(
     plan
 }
 
-/// Two hours of sun on a day in spring, with few suns.
+/// Returns a rule of two hours of sun on a day in spring, with few suns.
 fn rule() -> TileQuestion {
     let site = site();
     let days =
@@ -114,7 +113,7 @@ fn a_planned_building_blocks_exactly_whatever_the_tiles() {
     let rules = [(&plain, 0), (&whole, 1), (&tiles, 2)].map(|(plan, i)| codes(plan, &folders[i], &questions[2]));
     assert!(rules[1] == rules[2], "rules of tiles differ");
     assert!(rules[0].values().filter(|&&code| code == 1).count() > 2000);
-    // a building takes light and gives none, but on top of it
+    // A building takes light and gives none, except on its top.
     let to_sun = ShadowSun::at(2.2, 20_f64.to_radians()).to_sun;
     let origin = whole.frame().unwrap().origin;
     let [bottom, top] = [whole.bounds().low[2], whole.bounds().high[2]].map(|z| f64::from(z) + origin[2]);
@@ -127,7 +126,7 @@ fn a_planned_building_blocks_exactly_whatever_the_tiles() {
             counts[0] += 1;
             continue;
         }
-        // cells lie somewhere between the lowest and the highest point
+        // Cells lie between the lowest and the highest point.
         let heights = (0..=40).map(|step| bottom + (top - bottom + 0.1) * f64::from(step) / 40.0);
         let hits = heights.filter(|&z| meets_block([x, y, z], to_sun)).count();
         match hits {
@@ -140,7 +139,7 @@ fn a_planned_building_blocks_exactly_whatever_the_tiles() {
     }
     assert!(counts[0] == 16 * 14 && counts[1] > 300 && counts[2] > 5000, "{counts:?}");
     assert!(rules[1].iter().any(|(cell, &code)| code < rules[0][cell]), "no cell loses its hours");
-    // a mesh that changed since the plan is refused by name
+    // A mesh that changed after the plan is refused by name.
     std::fs::write(&mesh, "v 0 0 0\n").unwrap();
     std::fs::remove_dir_all(folders[2].join("sky_view_factor")).unwrap();
     let run = belvedere_tiles::run(
@@ -198,7 +197,7 @@ fn light_through_trees_lies_between_opaque_trees_and_none_whatever_the_tiles() {
         let [opaque, none, half, tiles] = [(&opaque, "opaque"), (&none, "none"), (&half, "half"), (&tiles, "tiles")]
             .map(|(plan, name)| numbers(plan, &folder(name), question));
         assert!(half == tiles, "{}: tiles differ", question.name());
-        // numbers of f32: a ten-millionth of the values, which are up to 1 and up to a thousand or so
+        // Rounding of f32: a ten-millionth of the values, which are up to 1 and up to about a thousand.
         let is_between =
             |(cell, &v): (_, &f32)| (v - 0.5 * (opaque[cell] + none[cell])).abs() <= 1e-6 * none[cell].max(1.0);
         assert!(half.iter().all(is_between), "{}", question.name());
@@ -227,7 +226,7 @@ fn light_through_measured_crowns_is_the_same_in_tiles_of_any_size() {
     let opaque = done(&clouds, &folder("opaque"), 512.0, &questions, |plan| plan);
     let whole = done(&clouds, &folder("whole"), 512.0, &questions, measured);
     let tiles = done(&clouds, &folder("tiles"), 64.0, &questions, measured);
-    // the simulated survey is of 17 March: without leaves, as in January
+    // The simulated survey is of 17 March: without leaves, as in January.
     assert_eq!([&whole, &tiles].map(density), [Some(crown_density(Foliage::Bare)); 2]);
     let says_leaves = |plan: &Plan, date: &str| {
         let plan = plan.clone().with_questions(vec![hours(date)], &Control::none()).unwrap();
@@ -255,7 +254,7 @@ fn light_through_measured_crowns_is_the_same_in_tiles_of_any_size() {
     assert!(more > 100, "{more} cells get more sun through crowns");
 }
 
-/// Voxels of the crowns of all tiles, with the bits of their extinction.
+/// Returns the voxels of the crowns of all tiles, with the bits of their extinction.
 fn crowns(plan: &Plan, folder: &Path) -> BTreeMap<[i32; 3], u32> {
     let mut all = BTreeMap::new();
     for tile in &plan.tiles {
@@ -269,10 +268,10 @@ fn crowns(plan: &Plan, folder: &Path) -> BTreeMap<[i32; 3], u32> {
     all
 }
 
-/// Height of a ridge north of the town, and where its side stands, file coordinates.
+/// Height of a ridge north of the town, and the northing of its side, file coordinates.
 const RIDGE: [f32; 2] = [900.0, 464_000.0];
 
-/// Level ground as low as the town, with the ridge, in cells of 20 m.
+/// Writes level ground as low as the town, with the ridge, in cells of 20 m.
 fn ridge(folder: &Path, ground: f32, crs: Crs) -> PathBuf {
     let (size, cell, west, north) = (200, 20.0, 153_000.0, 466_000.0);
     let height = |row: usize| if north - cell * (row as f64 + 0.5) > f64::from(RIDGE[1]) { RIDGE[0] } else { ground };
@@ -295,8 +294,8 @@ fn mountains_beyond_a_survey_take_the_light_of_all_tiles() {
     let terrain = ridge(place.path(), lowest, frame.crs.clone());
     let horizon = place.path().join("horizon.csv");
     std::fs::write(&horizon, "azimuth,elevation\n90,0\n180,30\n270,0\n").unwrap();
-    // the sun stands over the ridge and below its top, over it and above, and beside it; 31 degrees in the south are
-    // above the horizon that is given
+    // The sun stands over the ridge and below its top, over it and above its top, and beside it. 31 degrees in the
+    // south are above the given horizon.
     let sun = |azimuth: f64, elevation: f64| TileQuestion::Shadow {
         name: format!("shadow_{azimuth}_{elevation}"),
         to_sun: ShadowSun::at(azimuth.to_radians(), elevation.to_radians()).to_sun,
@@ -313,8 +312,8 @@ fn mountains_beyond_a_survey_take_the_light_of_all_tiles() {
     let without = done(&clouds, &folders[0], 512.0, &questions, |plan| plan);
     let whole = done(&clouds, &folders[1], 512.0, &questions, far);
     let tiles = done(&clouds, &folders[2], 64.0, &questions, far);
-    // the ridge is 950 m from the north edge of the town and 1070 m from the south edge, and 870 to 900 m higher: above
-    // 39 and below 44 degrees
+    // The ridge is 950 m from the north edge of the town and 1070 m from the south edge, and 870 to 900 m higher. Its
+    // top appears above 39 and below 44 degrees.
     for (number, is_hidden) in [true, false, true, false].into_iter().enumerate() {
         let [before, of_whole, of_tiles] =
             [(&without, 0), (&whole, 1), (&tiles, 2)].map(|(plan, i)| codes(plan, &folders[i], &questions[number]));
@@ -327,10 +326,10 @@ fn mountains_beyond_a_survey_take_the_light_of_all_tiles() {
     let [before, of_whole, of_tiles] =
         [(&without, 0), (&whole, 1), (&tiles, 2)].map(|(plan, i)| numbers(plan, &folders[i], &questions[4]));
     assert!(of_whole == of_tiles, "sky views of tiles differ");
-    // the ridge hides an eighth of an open sky, and the horizon 4 %; with few directions less is certain
+    // The ridge hides an eighth of an open sky, and the horizon 4 %; with few directions less is certain.
     let loses = |(cell, sky): (&[i64; 2], &f32)| of_whole[cell] <= sky - if *sky > 0.95 { 0.08 } else { 0.0 };
     assert!(before.iter().all(loses) && before.values().filter(|&&sky| sky > 0.95).count() > 500);
-    // files that hold no horizon are refused by name
+    // Files without a horizon are refused by name.
     let moved = place.path().join("moved.csv");
     std::fs::write(&moved, "no table\n").unwrap();
     let refused = plain.with_far_terrain(None, Some(SideFile::new(&moved).unwrap())).unwrap_err().to_string();

@@ -1,4 +1,4 @@
-//! What is missing or damaged is named, the rest goes on, and what was interrupted goes on where it stopped.
+//! Runs with missing or damaged files: damage is named, the rest continues, and an interrupted run continues.
 
 use crate::common::{plan, run_all, suns, write_town};
 use belvedere::Error;
@@ -13,7 +13,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, SystemTime};
 
-/// All results of a run: file names below its folder, and their bytes.
+/// Returns all results of a run: file names below its folder, and their bytes.
 fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut found = Vec::new();
     for stage in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()) {
@@ -31,7 +31,7 @@ fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
     found
 }
 
-/// A record without the time at which the file of its result was written, and without its checksum.
+/// Returns a record without the time of writing of its result, and without its checksum.
 fn without_times(record: &[u8]) -> Vec<u8> {
     let mut record: serde_json::Value = serde_json::from_slice(record).unwrap();
     record.as_object_mut().unwrap().remove("checksum");
@@ -43,7 +43,7 @@ fn without_times(record: &[u8]) -> Vec<u8> {
     record.to_string().into_bytes()
 }
 
-/// Stops the work after some number of looks at whether to stop.
+/// Watcher that cancels the work after a number of checks.
 struct CancelAfterChecks(AtomicUsize);
 
 impl Watcher for CancelAfterChecks {
@@ -75,7 +75,7 @@ fn a_run_that_is_stopped_again_and_again_has_the_results_of_one_that_is_not() {
     }
     assert!(stops >= 3, "{stops}");
     assert!(results(&straight) == results(&stopped));
-    // nothing is done twice
+    // No work is done twice.
     let report = run_all(&plan, &stopped);
     assert_eq!((report.balls_made, report.answers_made), (0, 0));
 }
@@ -93,14 +93,14 @@ fn shares_of_the_tiles_give_the_whole_together() {
         assert!(report.failed.is_empty());
         (report.balls_made, report.answers_made)
     };
-    // balls first: then each is made once
+    // Balls first: then each is made once.
     let balls = [3, 1, 2].map(|number| run_share(number, Steps::Balls));
     assert_eq!(balls.iter().map(|made| made.0).sum::<usize>(), plan.tiles.len());
     assert!(balls.iter().all(|made| made.1 == 0) && !shared.join("shadow_5").exists());
     let answers = [2, 1, 3].map(|number| run_share(number, Steps::All));
     assert!(answers.iter().all(|made| made.0 == 0 && made.1 > 0), "{answers:?}");
     assert!(results(&straight) == results(&shared));
-    // answers before the balls of other shares: what they need is made
+    // Answers before the balls of other shares: the balls that they need are made.
     std::fs::remove_dir_all(shared.join("balls")).unwrap();
     for sun in suns() {
         std::fs::remove_dir_all(shared.join(sun.name())).unwrap();
@@ -121,7 +121,7 @@ fn a_file_that_is_gone_is_named_and_what_it_may_block_is_unproven() {
     let whole = plan(&clouds, &straight, 64.0, sun.clone());
     run_all(&whole, &straight);
     let plan = plan(&clouds, &broken, 64.0, sun.clone());
-    // the eastern half is gone, and with it the balls of tiles next to it
+    // The eastern half is missing, and with it the balls of tiles next to it.
     std::fs::rename(&clouds[1], place.path().join("away")).unwrap();
     let report = run_all(&plan, &broken);
     assert!(!report.failed.is_empty() && report.answers_made > 0);
@@ -135,7 +135,7 @@ fn a_file_that_is_gone_is_named_and_what_it_may_block_is_unproven() {
         pairs.map(|(&lit, &unproven)| [lit, unproven]).collect::<Vec<[u8; 2]>>()
     };
     let (expected, found) = (values(&whole, &straight), values(&plan, &broken));
-    // it is merged only where that is wanted
+    // It is merged only if that is wanted.
     let path = place.path().join("refused.tif");
     let error = merge(&plan, &broken, &sun[0], &path, UnfinishedRun::Refused, &Control::none()).unwrap_err();
     let words = ["broken", "not finished", "--unfinished", "belvedere city run"];
@@ -146,7 +146,7 @@ fn a_file_that_is_gone_is_named_and_what_it_may_block_is_unproven() {
     assert!(pairs().filter(|(_, found)| **found == [1, 0]).count() > 500);
     let wrong = pairs().filter(|(expected, found)| expected[0] == 0 && **found == [1, 0]).count();
     assert_eq!(wrong, 0, "cells in shadow that are called lit beyond doubt");
-    // back again, the next run completes it, and asks again what was unproven
+    // With the file back, the next run completes the result, and computes unproven answers again.
     std::fs::rename(place.path().join("away"), &clouds[1]).unwrap();
     assert!(run_all(&plan, &broken).failed.is_empty());
     assert_eq!(values(&plan, &broken), expected);
@@ -164,7 +164,7 @@ fn balls_and_answers_that_were_damaged_are_named_and_made_again() {
     let names = |stage: &str| -> Vec<String> {
         let of_stage =
             expected.iter().map(|(name, _)| name).filter(|name| name.starts_with(stage) && !name.ends_with("json"));
-        // pulses and crowns lie beside balls
+        // Pulses and crowns lie beside balls.
         let of_stage = of_stage.filter(|name| ![".pulses.", ".crowns."].iter().any(|part| name.contains(part)));
         of_stage.cloned().collect()
     };
@@ -178,7 +178,8 @@ fn balls_and_answers_that_were_damaged_are_named_and_made_again() {
         let middle = bytes.len() / 2;
         bytes[middle] ^= 4;
     };
-    // shorter than written, one bit changed, and an answer that is gone, so that balls are looked at
+    // One file is shorter than written, the others have one changed bit. The answers are missing, so that balls are
+    // read.
     damage(&balls[0], &|bytes| bytes.truncate(bytes.len() - 1));
     balls[1..].iter().for_each(|name| damage(name, &flip));
     answers.iter().for_each(|name| std::fs::remove_file(folder.join(name)).unwrap());
@@ -190,7 +191,7 @@ fn balls_and_answers_that_were_damaged_are_named_and_made_again() {
         assert!(report.damaged.iter().any(|damage| damage.contains(name)), "{name}: {:?}", report.damaged);
     }
     assert!(results(&folder) == expected);
-    // a changed answer is not merged, and made again
+    // A changed answer is not merged, and made again.
     damage(&answers[0], &flip);
     assert_eq!(status(&plan, &folder).stages.iter().map(|stage| stage.left).collect::<Vec<_>>(), [0, 1]);
     let merged = merge(
@@ -206,12 +207,12 @@ fn balls_and_answers_that_were_damaged_are_named_and_made_again() {
     assert!(!place.path().join("all.tif").exists());
     assert_eq!(run_all(&plan, &folder).answers_made, 1);
     assert!(results(&folder) == expected);
-    // one that was only copied is not
+    // A copied answer is not made again.
     let (path, copy) = (folder.join(&answers[0]), place.path().join("copy"));
     std::fs::copy(&path, &copy).unwrap();
     std::fs::rename(&copy, &path).unwrap();
     assert_eq!(run_all(&plan, &folder).answers_made, 0);
-    // a record that was edited is none
+    // An edited record does not count.
     let record = path.with_extension("json");
     let text = std::fs::read_to_string(&record).unwrap();
     std::fs::write(&record, text.replacen("\"points\":", "\"points\":1", 1)).unwrap();
@@ -242,7 +243,7 @@ fn a_file_that_changed_since_the_plan_is_refused_and_one_that_was_copied_is_not(
         let is_refusal = |why: &String| why.contains("half_0.laz") && why.contains("make the plan again");
         assert!(report.failed.iter().any(is_refusal), "{why}: {:?}", report.failed);
     };
-    // one byte in the middle, near the end, and a third that keeps the time of the file
+    // One byte in the middle, one near the end, and a third change that keeps the time of the file.
     let later = time + Duration::from_secs(3);
     with_time(&flip(middle..middle + 1), later);
     refused("a byte in the middle");
@@ -252,7 +253,7 @@ fn a_file_that_changed_since_the_plan_is_refused_and_one_that_was_copied_is_not(
     refused("a third with the time as before");
     with_time(&written[..middle], time);
     refused("a half");
-    // the same bytes at another time are the same file
+    // The same bytes at another time are the same file.
     with_time(&written, later);
     assert!(run_all(&plan, &folder).failed.is_empty());
 }
@@ -275,7 +276,7 @@ fn a_plan_that_was_edited_or_leads_out_of_its_folder_is_refused() {
     };
     refused(&text.replacen("\"tile_size\":64", "\"tile_size\":65", 1), "checksum");
     refused(&text.replacen("shadow_5", "shadow_6", 1), "checksum");
-    // with the right checksum, names are looked at all the same
+    // With the right checksum, names are still checked.
     let named = |name: &str| {
         let rest = text.split_once(',').unwrap().1.replacen("shadow_5", name, 1);
         format!("{{\"checksum\":\"{:08x}\",{rest}", crc32fast::hash(rest.as_bytes()))
@@ -310,13 +311,13 @@ fn a_run_without_a_result_is_not_merged_and_a_raster_ends_where_points_do() {
     let ReadBands::U8(bands) = read_tif_bands(&path).unwrap() else { panic!("bytes") };
     let with_value = bands[0].values().iter().filter(|&&value| value != 255).count();
     let bounds = plan.bounds().size();
-    // cells of 1 m may have a value 2 m beside the points
+    // Cells of 1 m may have a value 2 m beside the points.
     assert!(bands[0].width() as f32 <= bounds[0] + 6.0 && bands[0].height() as f32 <= bounds[1] + 6.0);
     assert!(with_value * 10 > bands[0].values().len() * 7, "{with_value} of {}", bands[0].values().len());
 }
 
-/// A COPC file claims points that it hides, or a file has fewer than the plan counted: here a plan of a file, and a run
-/// of one that has other points and the fingerprint of the first.
+/// A COPC file may hide points, or a file may have fewer points than the plan counted. Here the plan is of one file,
+/// and the run reads a file with other points and the fingerprint of the first.
 #[test]
 fn points_that_the_plan_counted_and_the_run_does_not_find_are_an_error() {
     let place = tempfile::tempdir().unwrap();
@@ -345,7 +346,7 @@ fn tiles_are_made_smaller_until_they_fit_into_the_memory_and_sizes_out_of_range_
     let memory = whole.estimate().memory_bytes - 1_000_000;
     let fitting = make(&PlanParams { memory: Some(memory), ..params.clone() }).unwrap();
     assert!(fitting.tile_size < whole.tile_size && fitting.estimate().memory_bytes <= memory);
-    // no smaller than needed, and otherwise the plan of that size
+    // The size is no smaller than needed, and otherwise the plan is that of the size.
     assert!(fitting.tile_size % 64.0 == 0.0, "{}", fitting.tile_size);
     let larger = make(&PlanParams { tile_size: fitting.tile_size + 64.0, ..params.clone() }).unwrap();
     assert!(larger.estimate().memory_bytes > memory);

@@ -1,4 +1,4 @@
-//! Tiles of any size give the balls and the answers of one tile over all.
+//! Tiles of any size have the balls and the answers of one tile over all.
 
 use crate::common::{cells, plan, run_all, run_with, suns, write_town};
 use belvedere::apps::ask::{Days, SkyParts, SunHoursQuestion};
@@ -10,10 +10,10 @@ use belvedere_tiles::{Plan, TileQuestion, TileRadiation, UnfinishedRun, merge, s
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Most balls that tiles of two sizes ask at a time.
+/// Maximum number of balls at a time for tiles of two sizes.
 const MAX_BALLS: [usize; 2] = [900, 6000];
 
-/// Centres and radii of all balls of a run, as bits, sorted.
+/// Returns centres and radii of all balls of a run, as bits, sorted.
 fn balls(plan: &Plan, folder: &Path) -> Vec<[u32; 4]> {
     let mut all = Vec::new();
     for tile in &plan.tiles {
@@ -34,7 +34,7 @@ fn site() -> Site {
     Site { latitude: 0.91, longitude: 0.09, height: 10.0, convergence: 0.02 }
 }
 
-/// The hours of a day in spring with the sun above 8 degrees.
+/// Returns the parameters of hours of a day in spring with the sun above 8 degrees.
 fn params() -> DayParams {
     DayParams::default().with_step(3600.0).with_min_elevation(8_f64.to_radians())
 }
@@ -43,7 +43,7 @@ fn day() -> Period {
     Period::Days(vec![Date::new(2026, 4, 10).unwrap()])
 }
 
-/// Shadows, sky view, sun hours, energy, and what two observers see.
+/// Returns shadows, sky view, sun hours, energy, and the viewshed of two observers.
 fn all_questions(eyes: [[f64; 3]; 2]) -> Vec<TileQuestion> {
     let days = Days {
         dates: vec!["2026-04-10".to_owned()],
@@ -63,7 +63,7 @@ fn all_questions(eyes: [[f64; 3]; 2]) -> Vec<TileQuestion> {
     questions
 }
 
-/// The shadow of each of the suns whose hours are summed.
+/// Returns the shadow of each of the suns whose hours are summed.
 fn suns_of_the_day() -> Vec<(TileQuestion, f64)> {
     let days = sun_days(&site(), &Zone::mean_solar(&site()), &day(), &params()).unwrap();
     let question = |(number, step): (usize, &SunStep)| {
@@ -101,7 +101,8 @@ fn tiles_of_any_size_give_the_balls_and_answers_of_one_tile_over_all() {
     let clouds = write_town(place.path(), 140.0, 1.0);
     let whole_folder = place.path().join("whole");
     let whole = plan(&clouds, &whole_folder, 512.0, Vec::new());
-    // one in a street in a corner and one above the roofs at the other end, in other tiles than most of what they see
+    // One eye in a street in a corner and one above the roofs at the other end, in other tiles than most of their
+    // views.
     let bounds = whole.bounds();
     let mut eyes = [
         [bounds.low[0] + 20.0, bounds.low[1] + 30.0, f32::NAN],
@@ -128,11 +129,11 @@ fn tiles_of_any_size_give_the_balls_and_answers_of_one_tile_over_all() {
     sun_hours_are_the_sum_of_shadows(&expected[4], &whole, &whole_folder, &steps);
     energies_are_those_of_an_open_plane_less_what_obstacles_take(&expected[5]);
     each_observer_sees_its_share(&expected[6]);
-    // so few balls at a time that a part of a tile, and that some tiles, are tested together
+    // With few balls at a time, a part of a tile is tested alone; with more, some tiles are tested together.
     for (size, max_balls) in [64.0, 100.0].into_iter().zip(MAX_BALLS) {
         let folder = place.path().join(format!("tiles_{size}"));
         let plan = plan(&clouds, &folder, size, questions.clone());
-        // some tiles of 64 m have no point, but cells beside points
+        // Some tiles of 64 m have no point, but cells beside points.
         assert!(plan.tiles.len() >= 4);
         let report = run_with(&plan, &folder, Some(max_balls));
         assert!(report.failed.is_empty() && report.unproven_cells == 0, "{report:?}");
@@ -149,7 +150,7 @@ fn tiles_of_any_size_give_the_balls_and_answers_of_one_tile_over_all() {
     }
 }
 
-/// The hours of a cell against what the shadow of each sun says of it.
+/// Compares the hours of a cell with the shadows of all suns.
 fn sun_hours_are_the_sum_of_shadows(
     hours: &BTreeMap<[i64; 2], u32>,
     plan: &Plan,
@@ -167,7 +168,7 @@ fn sun_hours_are_the_sum_of_shadows(
     let max: f64 = steps.iter().map(|(_, lasts)| lasts).sum();
     for (cell, sum) in sums {
         let found = f64::from(f32::from_bits(hours[&cell]));
-        // what f32 rounds in a sum of a dozen
+        // Rounding of f32 in a sum of a dozen.
         assert!((found - sum).abs() < 1e-5, "{cell:?}: {found} {sum}");
         kinds[if sum == 0.0 {
             0
@@ -180,7 +181,8 @@ fn sun_hours_are_the_sum_of_shadows(
     assert!(kinds.iter().all(|&count| count > 200), "{kinds:?}");
 }
 
-/// A plane without obstacles gets the global radiation of the year, whatever the model of the sky; others get less.
+/// Checks energies. A plane without obstacles gets the global radiation of the year, with any model of the sky; other
+/// planes get less.
 fn energies_are_those_of_an_open_plane_less_what_obstacles_take(energies: &BTreeMap<[i64; 2], u32>) {
     let instants = {
         let zone = Zone::mean_solar(&site());
@@ -190,12 +192,12 @@ fn energies_are_those_of_an_open_plane_less_what_obstacles_take(energies: &BTree
     let global: f64 = instants.iter().map(|instant| instant.irradiance.ghi * instant.hours / 1000.0).sum();
     let found: Vec<f64> = energies.values().map(|&bits| f64::from(f32::from_bits(bits))).collect();
     let [low, high] = [f64::min, f64::max].map(|pick| found.iter().copied().reduce(pick).unwrap());
-    // suns gathered in cells of 17 degrees: each represents its cell
+    // Suns are gathered in cells of 17 degrees: each represents its cell.
     assert!(high <= global * 1.01 && high > global * 0.97, "{high} of {global}");
     assert!(low >= 0.0 && low < global * 0.4, "{low} of {global}");
 }
 
-/// The eye above all roofs sees most cells within its reach, the one in the street few.
+/// Checks that the eye above all roofs sees most cells within its reach, and the eye in the street few.
 fn each_observer_sees_its_share(counts: &BTreeMap<[i64; 2], u32>) {
     let of_number = |number: u32| counts.values().filter(|&&count| count == number).count();
     assert!(of_number(0) > 500 && of_number(1) > 2_000 && of_number(2) > 100, "{}", counts.len());

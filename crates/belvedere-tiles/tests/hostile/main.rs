@@ -1,4 +1,5 @@
-//! Files that fuzzing made break a reader, and valid ones: read or refused, in time and in little memory. See `fuzz/`.
+//! Files that fuzzing made to break a reader, and valid files. Each is read or refused, in time and in little memory.
+//! See `fuzz/`.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod readers;
@@ -6,10 +7,10 @@ mod readers;
 use readers::{READERS, TriedReader, check};
 use std::time::Instant;
 
-/// Duration that only work without end reaches, on any machine, in seconds: most files take milliseconds.
+/// Maximum time for a file, seconds. Only endless work reaches it on any machine; most files take milliseconds.
 const SECONDS: f64 = 120.0;
 
-/// A reader that believes in 100 MB.
+/// Reader that takes 100 MB.
 const GREEDY: TriedReader =
     TriedReader { file: "greedy", read: |_, bytes| std::hint::black_box(vec![1_u8; 100_000_000]).len() > bytes.len() };
 
@@ -28,7 +29,7 @@ fn every_input_is_read_or_refused_in_time_and_little_memory() {
         for file in files {
             println!("{}", file.display());
             let (bytes, start) = (std::fs::read(&file).unwrap(), Instant::now());
-            // files that broke a reader are named after it; the others are where fuzzing starts from
+            // Files that broke a reader are named after it; fuzzing starts from the others.
             let was_found = file.file_name().unwrap().to_string_lossy().starts_with("found_");
             assert!(check(reader, &bytes) || was_found, "{} is refused", file.display());
             assert!(start.elapsed().as_secs_f64() < SECONDS, "{}", file.display());

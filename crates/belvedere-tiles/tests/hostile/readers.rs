@@ -1,5 +1,5 @@
-//! Every reader of the library as a function of bytes, and what it may cost. Shared with `fuzz/`, which looks for files
-//! that break it.
+//! Every reader of the library as a function of bytes, with its limit of memory. Shared with `fuzz/`, which searches
+//! for files that break it.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -19,18 +19,18 @@ use peak_alloc::PeakAlloc;
 #[global_allocator]
 static ALLOCATOR: PeakAlloc = PeakAlloc;
 
-/// Memory that a file may take: so many times its size, and what tables and decoders take for a file of any size,
+/// Memory that a file may take: a multiple of its size, and an amount for tables and decoders for a file of any size,
 /// bytes.
 const TIMES_FILE: usize = 20;
 const BESIDE_FILE: usize = 64 << 20;
-/// The same for rasters, which LZW packs up to 1400 times: bytes, and then as f32.
+/// Multiple for rasters: LZW packs up to 1400 times, and the result is kept as bytes and then as f32.
 const TIMES_RASTER: usize = 1400 * 5;
 
-/// A reader, and the name of the files that it is tried on.
+/// Reader, and the name of the files that it is tried on.
 pub(crate) struct TriedReader {
-    /// Its extension selects the format.
+    /// Name of the file, whose extension selects the format.
     pub(crate) file: &'static str,
-    /// Whether the bytes were read, rather than refused.
+    /// Function that returns true if the bytes are read, and false if they are refused.
     pub(crate) read: fn(&'static str, &[u8]) -> bool,
 }
 
@@ -94,10 +94,10 @@ pub(crate) const READERS: &[TriedReader] = &[
     TriedReader { file: "system.wkt", read: system },
 ];
 
-/// Reads `bytes` as the file that `reader` reads; `false` where it refuses them.
+/// Reads `bytes` as the file that `reader` reads; returns `false` if it refuses them.
 ///
 /// # Panics
-/// Where the reader does, and where it takes more memory than a file of this size may.
+/// If the reader panics, or if it takes more memory than a file of this size may.
 pub(crate) fn check(reader: &TriedReader, bytes: &[u8]) -> bool {
     let whole = if reader.file.ends_with("e57") { with_checksums(bytes) } else { bytes.to_vec() };
     let before = ALLOCATOR.current_usage();
@@ -110,7 +110,7 @@ pub(crate) fn check(reader: &TriedReader, bytes: &[u8]) -> bool {
     is_read
 }
 
-/// Whatever was read is dropped, and what was refused has a reason.
+/// Drops a result, or checks that a refusal has a reason.
 fn settle<T>(found: Result<T>) -> bool {
     match found {
         Ok(found) => {
@@ -133,21 +133,21 @@ fn cloud(file: &'static str, bytes: &[u8]) -> bool {
     settle(found.and_then(|(cloud, _)| cloud.validate()))
 }
 
-/// The points of a box, by the hierarchy or the chunks of the file.
+/// Reads the points of a box, by the hierarchy or the chunks of the file.
 fn window(file: &'static str, bytes: &[u8]) -> bool {
     let within = Within::File { low: [0.0, 0.0, -1000.0], high: [500.0, 447_005.0, 1000.0] };
     let options = ReadOptions::default().with_points_within(within);
     settle(read_cloud([Source::bytes(file, bytes)], &options, &Control::none()).and_then(|(cloud, _)| cloud.validate()))
 }
 
-/// What is looked at before the points.
+/// Reads the parts of a file before the points.
 fn head(file: &'static str, bytes: &[u8]) -> bool {
     let source = || Source::bytes(file, bytes);
     settle(read_point_results(source()));
     settle(is_ball_file(source())) & settle(has_point_results(source())) & settle(read_las_head(source()))
 }
 
-/// Balls, and the scene that they are.
+/// Reads balls and makes a scene of them.
 fn balls(file: &'static str, bytes: &[u8]) -> bool {
     settle(read_balls(Source::bytes(file, bytes)).and_then(SceneModel::from_parts))
 }
@@ -165,11 +165,11 @@ fn catalogue(folder: &Path) -> bool {
     settle(cloud_files(&[folder.join("tiles.vpc")]))
 }
 
-/// A description of entwine point tiles, and the first page of their hierarchy.
+/// Description of entwine point tiles, and the first page of their hierarchy.
 const DESCRIPTION: &str = include_str!("inputs/ept.json/valid");
 const PAGE: &str = include_str!("inputs/ept-page.json/valid");
 
-/// The files of entwine point tiles of which `file` lies in the folder: a description beside `page`, or a page beside a
+/// Writes the files of entwine point tiles with `file` in the folder: a description beside `page`, or a page beside a
 /// description.
 fn point_tiles(folder: &Path, file: &str, page: &str) -> bool {
     let (pages, description) = (folder.join("ept-hierarchy"), folder.join("ept.json"));
@@ -180,12 +180,13 @@ fn point_tiles(folder: &Path, file: &str, page: &str) -> bool {
     });
     let window = Within::File { low: [0.0, 0.0, -1000.0], high: [500.0, 447_005.0, 1000.0] };
     let options = ReadOptions::default().with_points_within(window);
-    // the nodes are not there, of which the first one that a window meets is missed
+    // The nodes are missing; the error is about the first one that a window meets.
     let _ = black_box(read_cloud([&description], &options, &Control::none()));
     is_there.is_ok() && settle(cloud_files(&[description]))
 }
 
-/// The system of a cloud that a file beside it names; one that names none is refused without a reason of its own.
+/// Reads the reference system of a cloud from a file beside it. A file that names none is refused without a reason of
+/// its own.
 fn beside(folder: &Path) -> bool {
     let found = Source::path(folder.join("cloud.copc.laz")).system_beside();
     let is_known = matches!(found, Some(SystemBeside::Known { .. }));
@@ -201,7 +202,7 @@ fn plan(folder: &Path) -> bool {
     settle(found)
 }
 
-/// A record of the balls of a tile of the plan that lies beside it among the inputs.
+/// Reads a record of the balls of a tile, with its plan beside it among the inputs.
 fn record(folder: &Path) -> bool {
     let plan = with_checksum(include_bytes!("inputs/plan.json/valid"));
     let place = folder.join("balls");
@@ -213,14 +214,14 @@ fn record(folder: &Path) -> bool {
     status(&plan, folder).stages.iter().any(|stage| stage.done > 0)
 }
 
-/// JSON with the checksum that plans and records begin with, which few files with changes have.
+/// Returns JSON with a correct checksum at the start, as in plans and records. Few changed files have one.
 fn with_checksum(bytes: &[u8]) -> Vec<u8> {
     let rest = bytes.strip_prefix(b"{").unwrap_or(bytes);
     let start = format!("{{\"checksum\":\"{:08x}\",", crc32fast::hash(rest));
     [start.as_bytes(), rest].concat()
 }
 
-/// The bytes with the right checksum at the end of each page of an E57 file, which few files with changes have.
+/// Returns the bytes with a correct checksum at the end of each page of an E57 file. Few changed files have one.
 fn with_checksums(bytes: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     for page in bytes.as_chunks_mut::<1024>().0 {
