@@ -17,6 +17,8 @@ const MIN_UPRIGHT_SHARE: f64 = 0.02;
 /// of a town has a kilometre in a hundredth of a degree.
 const MIN_SLENDERNESS: f32 = 20.0;
 const MIN_POINTS: usize = 100;
+/// Minimum height of such a cloud, metres: less is a pile of points in one place.
+const MIN_HEIGHT: f32 = 1.0;
 /// Points of which the distance to the next one is measured.
 const SAMPLE: usize = 1000;
 
@@ -45,7 +47,12 @@ pub fn unit_contradiction_of(positions: &[[f32; 3]], control: &Control<'_>) -> R
 fn degrees_contradiction(bounds: &Bounds, count: usize) -> Option<FoundContradiction> {
     let [width, depth, height] = bounds.size();
     let side = width.max(depth);
-    if count < MIN_POINTS || COORDINATES_IN_DEGREES.is_exceeded_by(side.into()) || height < MIN_SLENDERNESS * side {
+    let is_volume = width.min(depth) > 0.0 && height >= MIN_HEIGHT;
+    if count < MIN_POINTS
+        || !is_volume
+        || COORDINATES_IN_DEGREES.is_exceeded_by(side.into())
+        || height < MIN_SLENDERNESS * side
+    {
         return None;
     }
     let text = format!(
