@@ -93,6 +93,12 @@ pub enum GpsTimeKind {
     AdjustedStandard,
 }
 
+/// Unix seconds at which adjusted standard GPS times are 0: 6 January 1980, 10⁹ s, less the leap seconds since 2017.
+///
+/// # Source
+/// ASPRS 2019, LAS Specification 1.4 R15, global encoding.
+pub const ADJUSTED_GPS_EPOCH: f64 = 315_964_800.0 + 1e9 - 18.0;
+
 /// Defines [`Attributes`] by its per-point columns, and the methods that visit each of them.
 macro_rules! attributes {
     ($($(#[$doc:meta])* $column:ident: $value:ty,)*) => {

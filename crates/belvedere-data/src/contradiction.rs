@@ -155,7 +155,7 @@ contradictions! {
     /// Clouds without a reference system are taken as metres.
     UNIT_OF_ROOM = "unit-of-room":
         "metres, as the unit of a cloud without a reference system", "height of a room from floor to ceiling", 9.0 "m", Warned;
-    /// The same outdoors: surveys with points so far apart show no walls.
+    /// Units outdoors: surveys with points so far apart show no walls.
     UNIT_OF_SURVEY = "unit-of-survey":
         "metres, as the unit of a cloud without a reference system", "distance between points of a cloud that shows upright surfaces", 5.0 "m", Warned;
     /// Longitude and latitude as x and y: a survey in a cell of a map.

@@ -1,7 +1,7 @@
 //! Epoch of the GPS times of a file: by its header, by the times themselves, and by the day of the flight.
 
 use belvedere_data::GpsTimeKind;
-use belvedere_data::cloud::Attributes;
+use belvedere_data::cloud::{ADJUSTED_GPS_EPOCH, Attributes};
 use belvedere_data::contradiction::{FLIGHT_DAY, FoundContradiction, GPS_TIME_EPOCH};
 use belvedere_data::trajectory::{LONGEST_WEEK_S, WEEK_S};
 use belvedere_data::weather::{CalendarDay, date_of_unix_day, unix_day};
@@ -13,8 +13,6 @@ use belvedere_data::weather::{CalendarDay, date_of_unix_day, unix_day};
 const ADJUSTMENT: f64 = 1e9;
 /// First day of GPS time, 6 January 1980, a Sunday: days since 1970.
 const FIRST_DAY: i64 = 3657;
-/// Leap seconds between GPS time and UTC since 2017.
-const LEAP_SECONDS: f64 = 18.0;
 /// Seconds of a day.
 const DAY: f64 = 86_400.0;
 
@@ -55,7 +53,10 @@ impl GpsEpoch {
         if self.first.is_none() {
             self.first = times.iter().find(|time| is_time(time)).map(|&time| (time, self.epoch_of(time)));
         }
-        let Some((_, epoch)) = self.first else { return };
+        let Some((_, epoch)) = self.first else {
+            attributes.gps_time_kind = self.stated;
+            return;
+        };
         let shift = match epoch {
             Epoch::Week => {
                 attributes.gps_time_kind = GpsTimeKind::SecondsOfWeek;
@@ -86,13 +87,12 @@ impl GpsEpoch {
         let Self { stated, flown, first } = *self;
         let day_of = |(time, epoch): (f64, Epoch)| {
             let shift = match epoch {
-                Epoch::Adjusted => ADJUSTMENT,
-                Epoch::Standard => 0.0,
+                Epoch::Adjusted => 0.0,
+                Epoch::Standard => -ADJUSTMENT,
                 Epoch::Week | Epoch::WeekOf(_) => return None,
             };
             #[expect(clippy::cast_possible_truncation, reason = "days; a cast saturates")]
-            let day = ((time + shift - LEAP_SECONDS) / DAY).floor() as i64;
-            Some(day.saturating_add(FIRST_DAY))
+            Some(((time + shift + ADJUSTED_GPS_EPOCH) / DAY).floor() as i64)
         };
         let day = first.and_then(day_of);
         let date = day.and_then(date_of_unix_day);

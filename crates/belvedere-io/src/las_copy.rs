@@ -424,6 +424,16 @@ impl RecordCopy<'_> {
     }
 }
 
+/// Returns true if GPS times are the same, or those of a reader that brought them to another epoch: all that are not zero
+/// then differ by one number of whole seconds.
+fn are_same_times(own: &[f64], of_cloud: &[f64]) -> bool {
+    let pairs = || own.iter().zip(of_cloud);
+    let is_same = |(a, b): &(&f64, &f64)| a.to_bits() == b.to_bits();
+    let shift = pairs().find(|pair| !is_same(pair)).map_or(0.0, |(a, b)| (b - a).round());
+    own.len() == of_cloud.len()
+        && pairs().all(|(a, b)| is_same(&(a, b)) && (shift == 0.0 || *a == 0.0) || (a + shift).to_bits() == b.to_bits())
+}
+
 /// Returns true if the attributes that both have are the same: `own` those of records, `of_cloud` those of its
 /// `points`.
 fn is_equal(own: &Attributes, of_cloud: &Attributes, points: std::ops::Range<usize>) -> bool {
@@ -433,8 +443,10 @@ fn is_equal(own: &Attributes, of_cloud: &Attributes, points: std::ops::Range<usi
             _ => true,
         }
     }
-    let bits = |times: &Option<Vec<f64>>| times.as_ref().map(|times| times.iter().map(|t| t.to_bits()).collect());
-    let (own_times, times): (Option<Vec<u64>>, Option<Vec<u64>>) = (bits(&own.gps_time), bits(&of_cloud.gps_time));
+    let same_times = match (&own.gps_time, &of_cloud.gps_time) {
+        (Some(own), Some(all)) => all.get(points.clone()).is_some_and(|all| are_same_times(own, all)),
+        _ => true,
+    };
     // readers widen 8-bit colours
     let same_color = match (&own.color, &of_cloud.color) {
         (Some(own), Some(all)) => all.get(points.clone()).is_some_and(|all| {
@@ -444,7 +456,7 @@ fn is_equal(own: &Attributes, of_cloud: &Attributes, points: std::ops::Range<usi
         _ => true,
     };
     same_color
-        && same(own_times.as_ref(), times.as_ref(), &points)
+        && same_times
         && same(own.classification.as_ref(), of_cloud.classification.as_ref(), &points)
         && same(own.return_number.as_ref(), of_cloud.return_number.as_ref(), &points)
         && same(own.return_count.as_ref(), of_cloud.return_count.as_ref(), &points)

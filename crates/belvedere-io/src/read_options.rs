@@ -1,6 +1,6 @@
 //! Selection of the part of a cloud to read, and its frame.
 
-use belvedere_data::cloud::{Attributes, to_local};
+use belvedere_data::cloud::{ADJUSTED_GPS_EPOCH, Attributes, to_local};
 use belvedere_data::control::Control;
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::weather::{CalendarDay, unix_day};
@@ -149,14 +149,14 @@ impl ReadOptions {
         self
     }
 
-    /// The same with the day of the flight of files whose GPS times are seconds of a week.
+    /// Sets the day of the flight of files whose GPS times are seconds of a week.
     #[must_use]
     pub fn with_flown(mut self, day: CalendarDay) -> Self {
         self.flown = Some(day);
         self
     }
 
-    /// The same for the points of some days only, the first and the last included, in UTC.
+    /// Limits reading to the points of some days, the first and the last included, in UTC.
     #[must_use]
     pub fn with_dates(mut self, dates: [CalendarDay; 2]) -> Self {
         self.dates = Some(dates);
@@ -309,11 +309,8 @@ pub(super) struct Selection {
 
 /// GPS time at the beginning of a day, so many days later, as files have it: less 10⁹ s.
 fn gps_time_of(day: CalendarDay, later: i64) -> f64 {
-    (unix_day(day) + later) as f64 * 86_400.0 - GPS_EPOCH
+    (unix_day(day) + later) as f64 * 86_400.0 - ADJUSTED_GPS_EPOCH
 }
-
-/// Unix seconds at which adjusted GPS times are 0: 6 January 1980, 10⁹ s, less the leap seconds since 2017.
-const GPS_EPOCH: f64 = 315_964_800.0 + 1e9 - 18.0;
 
 enum SelectedBox {
     File { low: [f64; 3], high: [f64; 3] },
@@ -468,7 +465,7 @@ mod tests {
     fn chosen(options: &ReadOptions, kind: GpsTimeKind) -> Result<Vec<u32>> {
         // GPS times of 29 April 2025, 22:30; of the same night, 0:30; and of 1 May
         let day = 86_400.0;
-        let first = 1_745_965_800.0 - GPS_EPOCH;
+        let first = 1_745_965_800.0 - ADJUSTED_GPS_EPOCH;
         let attributes = Attributes {
             gps_time: Some(vec![first, first + day / 12.0, first + 1.5 * day]),
             gps_time_kind: kind,

@@ -2,6 +2,7 @@
 //! swapped classes.
 
 use crate::strips::{StripOffset, StripReport};
+use belvedere_data::cloud::ADJUSTED_GPS_EPOCH;
 use belvedere_data::weather::date_of_unix_day;
 use belvedere_data::{Attributes, GpsTimeKind, PointCloud};
 use serde::{Deserialize, Serialize};
@@ -61,8 +62,6 @@ pub struct SurveyChange {
 const MAX_GAP_DAYS: i64 = 60;
 /// Seconds of a day.
 const DAY: f64 = 86_400.0;
-/// GPS times in files count from this instant, Unix seconds: 10⁹ s after the beginning of GPS time, less leap seconds.
-const GPS_EPOCH: f64 = 1e9 + 315_964_800.0 - 18.0;
 /// Fewest points that show that a survey holds nothing but ground.
 const MIN_GROUND_POINTS: usize = 100;
 /// Side of the cells in which surveys are compared, metres, and the fewest points of each in a cell.
@@ -160,7 +159,7 @@ fn cell_of(position: [f32; 3]) -> [i32; 2] {
 
 /// Day of a GPS time, days since 1970.
 pub(super) fn unix_day_of(gps_time: f64) -> Option<i64> {
-    let day = ((gps_time + GPS_EPOCH) / DAY).floor();
+    let day = ((gps_time + ADJUSTED_GPS_EPOCH) / DAY).floor();
     #[expect(clippy::cast_possible_truncation, reason = "checked")]
     let day = (day.abs() < 1e7).then_some(day as i64);
     day

@@ -98,7 +98,7 @@ pub(super) fn unit_of_room_contradiction(positions: &[[f32; 3]], normals: &[[f32
     Some(UNIT_OF_ROOM.found(text).with("metres_per_unit", unit))
 }
 
-/// Whether a height of the cloud can be that of a room in another unit; noise lies beyond floor and ceiling.
+/// Returns true if a height of the cloud can be that of a room in another unit; noise lies beyond floor and ceiling.
 pub(super) fn may_be_room(Bounds { low, high }: &Bounds) -> bool {
     let may_be = |axis: usize| [1.0, 0.9].into_iter().any(|share| unit_of(share * (high[axis] - low[axis])).is_some());
     [1, 2].into_iter().any(may_be)

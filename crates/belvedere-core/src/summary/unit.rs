@@ -13,8 +13,8 @@ const UPRIGHT: f32 = 0.2;
 /// Least share of the points on such surfaces. Surveys of towns from the air have 2 to 10 %; terrain with points metres
 /// apart has none, since cliffs between two of its points are slopes.
 const MIN_UPRIGHT_SHARE: f64 = 0.02;
-/// How many times as high as wide a cloud is at least whose width is in degrees, and the fewest points that it has: one
-/// of a town has a kilometre in a hundredth of a degree.
+/// Minimum ratio of height and width of a cloud whose width is in degrees: a town has a kilometre in a hundredth of a
+/// degree. Then the minimum number of its points.
 const MIN_SLENDERNESS: f32 = 20.0;
 const MIN_POINTS: usize = 100;
 /// Minimum height of such a cloud, metres: less is a pile of points in one place.
@@ -22,7 +22,7 @@ const MIN_HEIGHT: f32 = 1.0;
 /// Points of which the distance to the next one is measured.
 const SAMPLE: usize = 1000;
 
-/// What a cloud, (N, 3), whose unit nobody names says against metres. Normals are estimated here: those of a model are
+/// Returns the contradiction between metres and a cloud, (N, 3), without a named unit. Normals are estimated here: those of a model are
 /// none where points are far apart.
 ///
 /// # Errors
@@ -43,7 +43,7 @@ pub fn unit_contradiction_of(positions: &[[f32; 3]], control: &Control<'_>) -> R
     Ok(of_room.or_else(|| unit_of_survey_contradiction(positions, &normals.vectors, &index)))
 }
 
-/// What the extents of a cloud say where x and y are longitude and latitude.
+/// Returns the contradiction between metres and the extents of a cloud, where x and y look like degrees.
 fn degrees_contradiction(bounds: &Bounds, count: usize) -> Option<FoundContradiction> {
     let [width, depth, height] = bounds.size();
     let side = width.max(depth);
