@@ -322,7 +322,7 @@ impl CopiedRecords<'_, '_> {
             slab.resize_for(count).par_chunks_mut(length.max(1)).zip(&chosen).enumerate().for_each(
                 |(i, (out, &row))| {
                     let record = records.get(row * own_length..(row + 1) * own_length).unwrap_or_default();
-                    self.copy.encode(file, record, out);
+                    self.copy.encode(file, (record, first + i), out);
                     let mut at = self.copy.length();
                     for column in self.columns {
                         column.values.put(first + i, &mut out[at..]);
@@ -368,8 +368,9 @@ impl RecordCopy<'_> {
         })
     }
 
-    /// Fills a copy with all of a record but the columns of results.
-    fn encode(&self, file: &CopiedFile<'_>, record: &[u8], out: &mut [u8]) {
+    /// Fills a copy with all of a record, that of a point of the cloud, but the columns of results. The GPS time is
+    /// that of the cloud, whose epoch the header states.
+    fn encode(&self, file: &CopiedFile<'_>, (record, point): (&[u8], usize), out: &mut [u8]) {
         let from = file.format;
         self.encode_place(file, record, out);
         let fields = if from.is_extended { LONG_FIELDS } else { SHORT_FIELDS };
@@ -385,8 +386,10 @@ impl RecordCopy<'_> {
         }
         let own_time_at = if from.is_extended { LONG_FIELDS - 8 } else { SHORT_FIELDS };
         if self.format.has_gps_time {
-            let time = record.get(own_time_at..own_time_at + 8).filter(|_| self.keeps_times).unwrap_or(&[0; 8]);
-            out[time_at..time_at + 8].copy_from_slice(time);
+            let known = self.cloud.attributes.gps_time.as_ref().and_then(|times| times.get(point));
+            let own = || record.get(own_time_at..)?.first_chunk::<8>().copied();
+            let time = known.map(|time| time.to_le_bytes()).or_else(own).filter(|_| self.keeps_times);
+            out[time_at..time_at + 8].copy_from_slice(&time.unwrap_or_default());
         }
         let mut copy = |from: usize, to: usize, length: usize| {
             if let Some(bytes) = record.get(from..from + length) {
@@ -424,8 +427,8 @@ impl RecordCopy<'_> {
     }
 }
 
-/// Returns true if GPS times are the same, or those of a reader that brought them to another epoch: all that are not zero
-/// then differ by one number of whole seconds.
+/// Returns true if GPS times are the same, or are those of a reader that brought them to another epoch. All that are
+/// not zero then differ by one number of whole seconds.
 fn are_same_times(own: &[f64], of_cloud: &[f64]) -> bool {
     let pairs = || own.iter().zip(of_cloud);
     let is_same = |(a, b): &(&f64, &f64)| a.to_bits() == b.to_bits();

@@ -2,7 +2,10 @@
 //! inputs.
 
 use crate::common::{EAST, NORTH, Workplace, column, house, house_in_a_field, shared_data};
+use belvedere::GpsTimeKind;
+use belvedere::control::Control;
 use belvedere::crs::Crs;
+use belvedere::io::{ReadOptions, read_cloud};
 use serde_json::Value;
 use std::fmt::Write;
 use std::fs;
@@ -234,4 +237,24 @@ fn a_town_in_millimetres_is_said_by_info_and_by_answers() {
             assert_eq!(has(&place.summary(question), "unit-of-survey"), is_said, "{scale} {question}");
         }
     }
+}
+
+#[test]
+fn a_given_day_of_flight_stays_with_the_points_that_are_written() {
+    let place = Workplace::new();
+    let mut cloud = house();
+    // Monday, 15 February 2021, 9:40:53 UTC, in seconds of the week and less 10⁹ s of GPS time
+    let [seconds, adjusted] = [121_271.5, 297_417_271.5];
+    cloud.attributes.gps_time = Some(vec![seconds; cloud.len()]);
+    cloud.attributes.gps_time_kind = GpsTimeKind::SecondsOfWeek;
+    place.write_cloud("house.laz", &cloud);
+    let expected =
+        [("", seconds, GpsTimeKind::SecondsOfWeek), ("--flown 2021-02-16", adjusted, GpsTimeKind::AdjustedStandard)];
+    for (flags, time, kind) in expected {
+        place.summary(&format!("normals house.laz {flags} -o n.laz"));
+        let (written, _) = read_cloud([place.path("n.laz")], &ReadOptions::new(), &Control::none()).unwrap();
+        assert_eq!(written.attributes.gps_time_kind, kind, "{flags}");
+        assert!(written.attributes.gps_time.unwrap().iter().all(|&written| written == time), "{flags}");
+    }
+    place.refusal(2, "normals house.laz --flown 2021-02-30 -o n.laz", &["--flown", "2014-02-03"]);
 }

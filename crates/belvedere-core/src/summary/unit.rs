@@ -22,8 +22,8 @@ const MIN_HEIGHT: f32 = 1.0;
 /// Points of which the distance to the next one is measured.
 const SAMPLE: usize = 1000;
 
-/// Returns the contradiction between metres and a cloud, (N, 3), without a named unit. Normals are estimated here: those of a model are
-/// none where points are far apart.
+/// Returns the contradiction between metres and a cloud, (N, 3), without a named unit. Normals are estimated here:
+/// those of a model are none where points are far apart.
 ///
 /// # Errors
 /// Those of [`NeighborIndex::new`] and [`estimate`].
