@@ -161,20 +161,23 @@ pub fn scene_exposure(
         Ok(())
     })?;
     let mut measures = Vec::new();
-    let mut push = |name: &str, description, decimals, mut values: Vec<f32>, whole| {
+    let mut push = |name: &str, description, (decimals, unit), mut values: Vec<f32>, whole| {
         targets.clear_unasked(&mut values);
-        measures.push((Measure::new(name, values).with_description(description).with_decimals(decimals), whole));
+        measures.push((
+            Measure::new(name, values).with_description(description).with_unit(unit).with_decimals(decimals),
+            whole,
+        ));
     };
-    push("sky_view_factor", "sky view factor, cosine", 4, seen.factors, WholeIs::Mean);
-    push("sky_openness", "sky openness, solid angle", 4, seen.openness, WholeIs::Mean);
+    push("sky_view_factor", "sky view factor, cosine", (4, "1"), seen.factors, WholeIs::Mean);
+    push("sky_openness", "sky openness, solid angle", (4, "1"), seen.openness, WholeIs::Mean);
     if normals.is_some() {
-        push("sky_component", "sky component, overcast sky", 4, components, WholeIs::Mean);
+        push("sky_component", "sky component, overcast sky", (4, "1"), components, WholeIs::Mean);
     }
-    push("sun_hours", "hours of sun a day", 3, sun.hours, WholeIs::Mean);
-    push("sun_share", "share of possible sun", 4, sun.share, WholeIs::Mean);
-    push("first_light", "first sun, hour of the day", 3, sun.first, WholeIs::Min);
-    push("last_light", "last sun, hour of the day", 3, sun.last, WholeIs::Max);
-    push("longest", "longest uninterrupted sun, hours", 3, sun.longest, WholeIs::Mean);
+    push("sun_hours", "hours of sun a day", (3, "h"), sun.hours, WholeIs::Mean);
+    push("sun_share", "share of possible sun", (4, "1"), sun.share, WholeIs::Mean);
+    push("first_light", "first sun, hour of the day", (3, "h"), sun.first, WholeIs::Min);
+    push("last_light", "last sun, hour of the day", (3, "h"), sun.last, WholeIs::Max);
+    push("longest", "longest uninterrupted sun, hours", (3, "h"), sun.longest, WholeIs::Mean);
     Ok(Exposure { measures, shaded_shares: shaded.map(|shaded| shaded.shares(targets)).unwrap_or_default() })
 }
 

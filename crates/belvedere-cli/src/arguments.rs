@@ -132,6 +132,9 @@ pub(crate) struct Global {
     /// Print only errors
     #[arg(long, global = true, conflicts_with_all = ["verbose", "json"])]
     pub(crate) quiet: bool,
+    /// The command as it was typed, for files.
+    #[arg(skip)]
+    pub(crate) command: String,
 }
 
 /// Device for tests of many directions at many places.

@@ -14,6 +14,7 @@ mod run;
 mod scene_config;
 mod simulated;
 mod summary;
+mod typed_command;
 mod written_files;
 
 use belvedere::shown::is_command;
@@ -28,10 +29,11 @@ fn main() -> ExitCode {
         Ok(matches) => matches,
         Err(error) => refusal(&scene_config::advised(error, &program, &typed), &typed),
     };
-    let cli = match arguments::Cli::from_arg_matches(&matches) {
+    let mut cli = match arguments::Cli::from_arg_matches(&matches) {
         Ok(cli) => cli,
         Err(error) => refusal(&error, &typed),
     };
+    cli.global.command = typed_command::described(&program, &matches);
     match written_files::check(&program, &matches).and_then(|()| commands::run(&cli)) {
         Ok(summary) => summary.print(&cli.global),
         Err(error) => failure(&parameter_flags::with_flag(error, &program, &matches)),

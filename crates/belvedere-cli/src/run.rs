@@ -3,9 +3,11 @@
 use crate::arguments::Global;
 use crate::progress::CommandStages;
 use crate::summary::Summary;
-use belvedere::apps::ask::Answers;
+use belvedere::apps::ask::{Answers, Ask, Places, Question, Scene, ask};
 use belvedere::cache::SceneCache;
 use belvedere::control::{Control, Watcher};
+use belvedere::io::MetadataTag;
+use serde_json::Value;
 
 /// Context of every command beside its arguments.
 pub(crate) struct CommandContext {
@@ -14,12 +16,18 @@ pub(crate) struct CommandContext {
     pub(crate) seed: u64,
     /// Cache of scenes.
     pub(crate) cache: Option<SceneCache>,
+    /// Metadata of the rasters that are written: the command, and when it is answered the question.
+    pub(crate) tags: Vec<MetadataTag>,
 }
+
+/// Maximum length of a question in the metadata of a raster, bytes. Longer ones hold shapes or weather.
+const MAX_QUESTION: usize = 8192;
 
 impl CommandContext {
     pub(crate) fn new(global: &Global) -> Self {
         let cache = crate::environment::cache(global);
-        Self { stages: CommandStages::new(global), summary: Summary::default(), seed: global.seed, cache }
+        let tags = vec![("COMMAND".to_owned(), global.command.clone())];
+        Self { stages: CommandStages::new(global), summary: Summary::default(), seed: global.seed, cache, tags }
     }
 
     /// A run that `watcher` follows too.
@@ -48,6 +56,27 @@ impl CommandContext {
         self.stages.run(name, 0, |_| work(), |_| true)
     }
 
+    /// Puts a question to a scene, and reports on the answers.
+    pub(crate) fn ask<Q: Ask + Clone + Into<Question>>(
+        &mut self,
+        scene: &Scene,
+        question: &Q,
+        places: &Places,
+    ) -> belvedere::Result<Answers<Q::Found>> {
+        let answers = ask(scene, question, places, &self.control())?;
+        self.name_question(question.clone().into(), answers.time_zone());
+        self.answered(&answers);
+        Ok(answers)
+    }
+
+    /// Adds the question and the zone of its clock to the metadata of rasters.
+    pub(crate) fn name_question(&mut self, question: Question, time_zone: Option<&str>) {
+        let question = serde_json::to_value(question).map(without_nothing).unwrap_or_default().to_string();
+        let question = Some(question).filter(|text| text.len() <= MAX_QUESTION);
+        let tags = [("QUESTION", question), ("TIME_ZONE", time_zone.map(str::to_owned))];
+        self.tags.extend(tags.into_iter().filter_map(|(name, text)| Some((name.to_owned(), text?))));
+    }
+
     /// Reports on answers: the answer itself, all figures, and what a user must know beside them.
     pub(crate) fn answered<F>(&mut self, answers: &Answers<F>) {
         self.summary.add_report(&answers.report);
@@ -67,5 +96,17 @@ impl CommandContext {
         let Self { stages, mut summary, .. } = self;
         summary.add_seconds(stages.into_seconds());
         summary
+    }
+}
+
+/// This without the fields that were not given.
+fn without_nothing(value: Value) -> Value {
+    match value {
+        Value::Object(fields) => {
+            let given = fields.into_iter().filter(|(_, value)| !value.is_null());
+            Value::Object(given.map(|(name, value)| (name, without_nothing(value))).collect())
+        }
+        Value::Array(values) => Value::Array(values.into_iter().map(without_nothing).collect()),
+        other => other,
     }
 }

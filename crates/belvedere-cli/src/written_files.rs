@@ -78,7 +78,7 @@ fn is_beside_the_scene(argument: &Arg) -> bool {
 }
 
 /// The file that a value names, if it does. Some flags name it behind an equals sign.
-fn files_named(argument: &Arg, value: &OsStr) -> Vec<PathBuf> {
+pub(crate) fn files_named(argument: &Arg, value: &OsStr) -> Vec<PathBuf> {
     let text = value.to_string_lossy();
     let parsed = argument.get_value_parser().type_id();
     match text.split_once('=') {

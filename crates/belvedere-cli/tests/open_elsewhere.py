@@ -116,6 +116,16 @@ with rasterio.open(lit) as raster:
     assert raster.dtypes == ("uint8",) * suns and raster.nodata == 255 and raster.res == (2, 2), raster.meta
     assert raster.crs.to_epsg() in (7415, 28992), raster.crs
     assert set(numpy.unique(values.compressed())) == {0, 1}
+    # the file says what it shows: command, question, zone, and the sun of each band
+    tags = raster.tags()
+    assert tags["COMMAND"].startswith("belvedere shadow balls.npz --ground cloud=town.laz"), tags
+    assert str(folder) not in str(tags) and tags["TIFFTAG_SOFTWARE"].startswith("belvedere "), tags
+    assert json.loads(tags["QUESTION"])["shadow"]["suns"]["days"]["between"][0] == "2026-06-21T08:00+02:00", tags
+    assert tags["TIME_ZONE"] == "+02" and raster.units == ("1",) * suns, (tags, raster.units)
+    times = [raster.tags(band)["TIME"] for band in raster.indexes]
+    assert times == sorted(times) and times[0].startswith("2026-06-21T08:") and times[0].endswith("+02:00"), times
+    sun_elevations = [float(raster.tags(band)["SUN_ELEVATION_DEG"]) for band in raster.indexes]
+    assert sun_elevations == sorted(sun_elevations) and 15 < sun_elevations[0] < 30, sun_elevations
     # each sun is a band, named like its file
     assert all(name.startswith("lit_20260621_") for name in raster.descriptions), raster.descriptions
     for band, name in enumerate(raster.descriptions, 1):
@@ -137,6 +147,8 @@ result = run("sun-hours", *scene, "--date", "2026-06-21", "--time-step-min", 60,
 with rasterio.open(hours) as raster, rasterio.open(measures / "sun_share.tif") as shares:
     values, share = raster.read(1, masked=True), shares.read(1, masked=True)
     assert raster.transform == shares.transform and raster.nodata == -9999
+    # a system with heights in metres gives bands no unit of its own
+    assert raster.units[:2] == ("h", "1") and shares.units == ("1",), (raster.units, shares.units)
     # 16 h 45 min between sunrise and sunset at 52.2 degrees north
     assert 0 <= values.min() and 10 < values.max() < 16.8, values
     assert abs(values / share - (values / share).mean()).max() < 0.01

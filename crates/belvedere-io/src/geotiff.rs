@@ -13,10 +13,12 @@ use belvedere_data::{Error, Parameter, Result};
 /// Raw size from which files use 64-bit offsets (BigTIFF); tags and incompressible strips need some room below 4 GiB.
 const BIG_FILE_BYTES: usize = 3_900_000_000;
 
-/// The program that a file names as its writer.
+/// The program that a file names as its writer, before its version.
 pub(crate) const SOFTWARE: &str = "belvedere";
+/// The same with its version.
+pub(crate) const SOFTWARE_VERSION: &str = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
 
-/// The tag in which GDAL keeps the names of bands.
+/// The tag in which GDAL keeps names and units of bands, and all else.
 pub(crate) const GDAL_METADATA: u16 = 42112;
 
 /// The bands of a raster, on the same cells and of one type, each with the value for no data.
@@ -31,13 +33,43 @@ pub enum BandValues<'a> {
     F32(&'a [Raster<f32>], f32),
 }
 
-/// The bands of a raster, with their names and description in a file.
+/// A name and a text of the metadata of GDAL, such as `TIME` and `2026-06-21T15:00:00+02:00`.
+pub type MetadataTag = (String, String);
+
+/// Name and unit of a band.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct BandLabel {
+    /// Name.
+    pub name: String,
+    /// Unit of the values, such as `h`; `1` for values without a unit. Readers may take an empty one for the unit of
+    /// heights.
+    pub unit: String,
+    /// Further metadata of the band.
+    pub tags: Vec<MetadataTag>,
+}
+
+impl BandLabel {
+    /// Creates a label without further metadata.
+    #[must_use]
+    pub fn new(name: &str, unit: &str) -> Self {
+        Self { name: name.to_owned(), unit: unit.to_owned(), tags: Vec::new() }
+    }
+
+    /// Creates the labels of codes or counts without names.
+    fn of_codes() -> [Self; 1] {
+        [Self::new("", "1")]
+    }
+}
+
+/// The bands of a raster, with their metadata.
 #[derive(Clone, Copy, Debug)]
 pub struct Bands<'a> {
     /// The values, at least one band.
     pub values: BandValues<'a>,
-    /// Names of the bands, in their order; further bands have none.
-    pub names: &'a [String],
+    /// Labels of the bands, in their order; further bands have none.
+    pub labels: &'a [BandLabel],
+    /// Metadata of the whole.
+    pub tags: &'a [MetadataTag],
     /// Description of the values.
     pub description: Option<&'a str>,
 }
@@ -70,7 +102,7 @@ pub fn write_f32<'a>(
     nodata: Option<f32>,
     description: Option<&str>,
 ) -> Result<()> {
-    let marks = Marks { georeference, nodata: nodata.map(|v| v.to_string()), description, names: &[] };
+    let marks = Marks { georeference, nodata: nodata.map(|v| v.to_string()), description, labels: &[], tags: &[] };
     match nodata {
         Some(nodata) if raster.values().iter().any(|v| !v.is_finite()) => {
             let values = raster.values().iter().map(|&v| if v.is_finite() { v } else { nodata }).collect();
@@ -93,7 +125,8 @@ pub fn write_u32<'a>(
     nodata: Option<u32>,
     description: Option<&str>,
 ) -> Result<()> {
-    let marks = Marks { georeference, nodata: nodata.map(|v| v.to_string()), description, names: &[] };
+    let labels = &BandLabel::of_codes();
+    let marks = Marks { georeference, nodata: nodata.map(|v| v.to_string()), description, labels, tags: &[] };
     write::<Gray32>(output.into(), from_ref(raster), &marks)
 }
 
@@ -108,7 +141,8 @@ pub fn write_u8<'a>(
     nodata: Option<u8>,
     description: Option<&str>,
 ) -> Result<()> {
-    let marks = Marks { georeference, nodata: nodata.map(|v| v.to_string()), description, names: &[] };
+    let labels = &BandLabel::of_codes();
+    let marks = Marks { georeference, nodata: nodata.map(|v| v.to_string()), description, labels, tags: &[] };
     write::<Gray8>(output.into(), from_ref(raster), &marks)
 }
 
@@ -123,11 +157,12 @@ pub fn write_u16<'a>(
     nodata: Option<u16>,
     description: Option<&str>,
 ) -> Result<()> {
-    let marks = Marks { georeference, nodata: nodata.map(|v| v.to_string()), description, names: &[] };
+    let labels = &BandLabel::of_codes();
+    let marks = Marks { georeference, nodata: nodata.map(|v| v.to_string()), description, labels, tags: &[] };
     write::<Gray16>(output.into(), from_ref(raster), &marks)
 }
 
-/// Writes the bands of a raster, compressed without loss, with their names as GDAL reads them. Numbers that are not
+/// Writes the bands of a raster, compressed without loss, with metadata as GDAL reads it. Numbers that are not
 /// finite are written as the value for no data.
 ///
 /// # Errors
@@ -137,8 +172,8 @@ pub fn write_bands<'a>(
     bands: &Bands<'_>,
     georeference: Option<&Georeference>,
 ) -> Result<()> {
-    let (names, description) = (bands.names, bands.description);
-    let marks = |nodata: String| Marks { georeference, nodata: Some(nodata), description, names };
+    let Bands { labels, tags, description, .. } = *bands;
+    let marks = |nodata: String| Marks { georeference, nodata: Some(nodata), description, labels, tags };
     match bands.values {
         BandValues::U8(rasters, nodata) => write::<Gray8>(output.into(), rasters, &marks(nodata.to_string())),
         BandValues::U16(rasters, nodata) => write::<Gray16>(output.into(), rasters, &marks(nodata.to_string())),
@@ -156,17 +191,44 @@ struct Marks<'a> {
     georeference: Option<&'a Georeference>,
     nodata: Option<String>,
     description: Option<&'a str>,
-    names: &'a [String],
+    labels: &'a [BandLabel],
+    tags: &'a [MetadataTag],
 }
 
-/// The names of bands as GDAL keeps them; `None` without any.
-pub(crate) fn names_in_xml(names: &[String]) -> Option<String> {
-    let in_xml = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-    let item = |(band, name): (usize, &String)| {
-        format!("  <Item name=\"DESCRIPTION\" sample=\"{band}\" role=\"description\">{}</Item>\n", in_xml(name))
+/// Labels and tags as GDAL keeps them; `None` without any.
+///
+/// # Source
+/// GDAL, documentation of the driver GTiff: tag 42112, and roles of items.
+pub(crate) fn metadata_in_xml(labels: &[BandLabel], tags: &[MetadataTag]) -> Option<String> {
+    let item = |attributes: &str, text: &str| match text.is_empty() {
+        true => String::new(),
+        false => format!("  <Item {attributes}>{}</Item>\n", in_xml(text)),
     };
-    let items: String = names.iter().enumerate().map(item).collect();
+    let of_band = |(band, label): (usize, &BandLabel)| {
+        let name = item(&format!("name=\"DESCRIPTION\" sample=\"{band}\" role=\"description\""), &label.name);
+        let unit = item(&format!("name=\"UNITTYPE\" sample=\"{band}\" role=\"unittype\""), &label.unit);
+        let tag = |(name, text): &MetadataTag| item(&format!("name=\"{}\" sample=\"{band}\"", in_xml(name)), text);
+        [name, unit].into_iter().chain(label.tags.iter().map(tag)).collect::<String>()
+    };
+    let of_whole = tags.iter().map(|(name, text)| item(&format!("name=\"{}\"", in_xml(name)), text));
+    let items: String = of_whole.chain(labels.iter().enumerate().map(of_band)).collect();
     (!items.is_empty()).then(|| format!("<GDALMetadata>\n{items}</GDALMetadata>\n"))
+}
+
+/// Text in XML, in ASCII as TIFF has it.
+fn in_xml(text: &str) -> String {
+    let of_character = |c: char| match c {
+        '&' => "&amp;".to_owned(),
+        '<' => "&lt;".to_owned(),
+        '>' => "&gt;".to_owned(),
+        '"' => "&quot;".to_owned(),
+        c if c.is_ascii() && !c.is_ascii_control() => c.to_string(),
+        // XML has no other control characters
+        '\n' | '\t' | '\r' => format!("&#{};", u32::from(c)),
+        c if c.is_ascii() => "?".to_owned(),
+        c => format!("&#{};", u32::from(c)),
+    };
+    text.chars().map(of_character).collect()
 }
 
 /// Width and height of bands.
@@ -243,10 +305,10 @@ where
         image.extra_samples(&vec![ExtraSamples::Unspecified; band_count - 1])?;
     }
     let tags = image.encoder();
-    if let Some(names) = names_in_xml(marks.names) {
-        tags.write_tag(Tag::Unknown(GDAL_METADATA), ascii(&names).as_str())?;
+    if let Some(metadata) = metadata_in_xml(marks.labels, marks.tags) {
+        tags.write_tag(Tag::Unknown(GDAL_METADATA), metadata.as_str())?;
     }
-    tags.write_tag(Tag::Software, SOFTWARE)?;
+    tags.write_tag(Tag::Software, SOFTWARE_VERSION)?;
     if let Some(description) = marks.description {
         tags.write_tag(Tag::ImageDescription, ascii(description).as_str())?;
     }

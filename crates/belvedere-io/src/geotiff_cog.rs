@@ -4,7 +4,9 @@
 //! # Source
 //! TIFF 6.0 (Adobe 1992), OGC GeoTIFF 1.1 (19-008r4), OGC Cloud Optimized GeoTIFF 1.0 (21-026).
 
-use crate::geotiff::{BandValues, Bands, GDAL_METADATA, Georeference, ascii, geo_keys, names_in_xml, size_of_bands};
+use crate::geotiff::{
+    BandValues, Bands, GDAL_METADATA, Georeference, SOFTWARE_VERSION, ascii, geo_keys, metadata_in_xml, size_of_bands,
+};
 use crate::output::Output;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Parameter, Result};
@@ -261,13 +263,13 @@ fn tags_of_whole(place: &Georeference, bands: &Bands<'_>) -> Vec<Tag> {
     let ([x, y], keys) = (place.upper_left, geo_keys(place));
     let mut tags = vec![
         Tag::longs(254, &[0]),
-        Tag::text(305, "belvedere"),
+        Tag::text(305, SOFTWARE_VERSION),
         Tag::doubles(33550, &[place.column_step[0], -place.row_step[1], 0.0]),
         Tag::doubles(33922, &[0.0, 0.0, 0.0, x, y, 0.0]),
         Tag::shorts(34735, &keys.directory),
     ];
     tags.extend(bands.description.map(|description| Tag::text(270, description)));
-    tags.extend(names_in_xml(bands.names).map(|names| Tag::text(GDAL_METADATA, &names)));
+    tags.extend(metadata_in_xml(bands.labels, bands.tags).map(|names| Tag::text(GDAL_METADATA, &names)));
     if !keys.text.is_empty() {
         tags.push(Tag::text(34737, &keys.text));
     }
@@ -302,6 +304,7 @@ fn write_directory(head: &mut Vec<u8>, tags: &[Tag], size: usize, is_last: bool)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geotiff::BandLabel;
     use crate::{ReadBands, Source, read_tif, read_tif_bands, read_tif_f32, read_tif_u8};
     use belvedere_data::crs::Crs;
     use std::io::Cursor;
@@ -314,9 +317,9 @@ mod tests {
         Georeference { upper_left: [155_000.0, 463_000.0], column_step: [2.0, 0.0], row_step: [0.0, -2.0], crs }
     }
 
-    fn written(values: BandValues<'_>, names: &[String]) -> Vec<u8> {
+    fn written(values: BandValues<'_>, labels: &[BandLabel]) -> Vec<u8> {
         let mut file = Cursor::new(Vec::new());
-        let bands = Bands { values, names, description: Some("height in metres") };
+        let bands = Bands { values, labels, tags: &[], description: Some("height in metres") };
         write_cog(Output::writer("cog.tif", &mut file), &bands, &place()).unwrap();
         file.into_inner()
     }
@@ -366,7 +369,7 @@ mod tests {
         assert_eq!(read_tif_u8(Source::bytes("cog.tif", &file)).unwrap(), codes);
         let turned = Georeference { row_step: [0.0, 2.0], ..place() };
         let mut file = Cursor::new(Vec::new());
-        let bands = Bands { values: BandValues::U8(from_ref(&codes), 255), names: &[], description: None };
+        let bands = Bands { values: BandValues::U8(from_ref(&codes), 255), labels: &[], tags: &[], description: None };
         assert!(write_cog(Output::writer("cog.tif", &mut file), &bands, &turned).is_err());
     }
 
@@ -378,22 +381,24 @@ mod tests {
             Raster::from_values(width, height, (0..width * height).map(value).collect()).unwrap()
         };
         let rasters = vec![band(0), band(7), band(400)];
-        let names = ["observers", "un<proven>", "a&b"].map(str::to_owned).to_vec();
-        let bands = Bands { values: BandValues::U16(&rasters, u16::MAX), names: &names, description: Some("counts") };
+        let labels = ["observers", "un<proven>", "\"a&b\" in é"].map(|name| BandLabel::new(name, "m\u{b2}"));
+        let values = BandValues::U16(&rasters, u16::MAX);
+        let bands = Bands { values, labels: &labels, tags: &[], description: Some("counts") };
         let mut plain = Cursor::new(Vec::new());
         crate::write_tif_bands(Output::writer("plain.tif", &mut plain), &bands, Some(&place())).unwrap();
-        for file in [plain.into_inner(), written(bands.values, &names)] {
+        for file in [plain.into_inner(), written(values, &labels)] {
             let ReadBands::U16(read) = read_tif_bands(Source::bytes("a.tif", &file)).unwrap() else { panic!("type") };
             assert_eq!(read, rasters);
             let placed = read_tif(Source::bytes("a.tif", &file)).unwrap();
             let further: Vec<&str> = placed.further_bands.iter().map(|band| band.name.as_str()).collect();
-            assert_eq!(further, ["un<proven>", "a&b"]);
+            assert_eq!(further, ["un<proven>", "\"a&b\" in é"]);
+            assert_eq!((placed.name.as_str(), placed.unit.as_str()), ("observers", "m\u{b2}"));
             assert_eq!(placed.values.get(3, 2), Some(f32::from(rasters[0].get(3, 2).unwrap())));
             assert_eq!(placed.further_bands[1].values.get(3, 2), Some(f32::from(rasters[2].get(3, 2).unwrap())));
         }
         let small = Raster::filled(3, 3, 1_u16);
         let uneven = [rasters[0].clone(), small];
-        let bands = Bands { values: BandValues::U16(&uneven, 0), names: &[], description: None };
+        let bands = Bands { values: BandValues::U16(&uneven, 0), labels: &[], tags: &[], description: None };
         assert!(crate::write_tif_bands(Output::writer("a.tif", &mut Cursor::new(Vec::new())), &bands, None).is_err());
         assert!(write_cog(Output::writer("a.tif", &mut Cursor::new(Vec::new())), &bands, &place()).is_err());
     }

@@ -109,6 +109,8 @@ pub struct PlacedRaster {
     pub values: Raster<f32>,
     /// Name of the first band; empty where the file says none.
     pub name: String,
+    /// Unit of its values, such as `h`; empty where the file says none.
+    pub unit: String,
     /// Position, if the file has one.
     pub place: Option<Georeference>,
     /// Description of its values, if Belvedere wrote the file with one.
@@ -150,7 +152,7 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
     #[expect(clippy::cast_possible_truncation, reason = "values of maps are f32")]
     let nodata = nodata.and_then(|text| text.trim().parse::<f64>().ok()).map(|nodata| nodata as f32);
     let values = values.into_iter().map(|v| if Some(v) == nodata || !v.is_finite() { f32::NAN } else { v }).collect();
-    let of_belvedere = decoder.get_tag_ascii_string(Tag::Software).is_ok_and(|program| program == SOFTWARE);
+    let of_belvedere = decoder.get_tag_ascii_string(Tag::Software).is_ok_and(|program| program.starts_with(SOFTWARE));
     let mut bands = bands(size, values)?;
     if bands.len() > 1 && !of_belvedere {
         return Err(Error::malformed(&name, "has more than one band; take one of them"));
@@ -161,6 +163,7 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
     let named = |(band, values)| NamedBand { name: name_of_band(&names, band), values };
     let further_bands = (1..).zip(further).map(named).collect();
     let name_of_first = name_of_band(&names, 0);
+    let unit = item_of_band(&names, 0, ["UNITTYPE", "unittype"]);
     let keys = decoder.get_tag_u16_vec(Tag::GeoKeyDirectoryTag).unwrap_or_default();
     // coordinates that count from the middles of pixels instead of their corners (GTRasterTypeGeoKey, PixelIsPoint)
     let of_middles = keys.as_chunks::<4>().0.iter().any(|&[key, _, _, value]| key == 1025 && value == 2);
@@ -188,14 +191,32 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
         Georeference { upper_left, ..place }
     };
     let place = if of_middles { place.map(to_corner) } else { place };
-    Ok(PlacedRaster { values, name: name_of_first, place, description, further_bands })
+    Ok(PlacedRaster { values, name: name_of_first, unit, place, description, further_bands })
 }
 
 /// The name of a band, by its number from 0, in the metadata of GDAL; empty where it has none.
 fn name_of_band(metadata: &str, band: usize) -> String {
-    let item = format!("<Item name=\"DESCRIPTION\" sample=\"{band}\" role=\"description\">");
+    item_of_band(metadata, band, ["DESCRIPTION", "description"])
+}
+
+/// The item of a band with a name and a role, as [`name_of_band`].
+fn item_of_band(metadata: &str, band: usize, [name, role]: [&str; 2]) -> String {
+    let item = format!("<Item name=\"{name}\" sample=\"{band}\" role=\"{role}\">");
     let text = metadata.split_once(&item).and_then(|(_, rest)| rest.split_once("</Item>")).map(|(text, _)| text);
-    text.unwrap_or_default().replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
+    let mut parts = text.unwrap_or_default().split('&');
+    let mut found = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (entity, rest) = part.split_once(';').unwrap_or(("amp", part));
+        found.extend(match entity {
+            "lt" => Some('<'),
+            "gt" => Some('>'),
+            "quot" => Some('"'),
+            "amp" => Some('&'),
+            number => number.strip_prefix('#').and_then(|code| char::from_u32(code.parse().ok()?)),
+        });
+        found.push_str(rest);
+    }
+    found
 }
 
 /// A decoder that allocates no more than a file of `size` bytes can hold.

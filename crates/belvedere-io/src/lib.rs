@@ -129,8 +129,8 @@ pub use geojson::{GeojsonCoordinates, PathLine, PolygonArea, Spot, write_geojson
 pub use geojson_read::{FeatureShape, GeojsonFeature, read_geojson};
 #[cfg(feature = "tiff")]
 pub use geotiff::{
-    BandValues, Bands, Georeference, write_bands as write_tif_bands, write_f32 as write_tif_f32,
-    write_u8 as write_tif_u8, write_u16 as write_tif_u16, write_u32 as write_tif_u32,
+    BandLabel, BandValues, Bands, Georeference, MetadataTag, write_bands as write_tif_bands,
+    write_f32 as write_tif_f32, write_u8 as write_tif_u8, write_u16 as write_tif_u16, write_u32 as write_tif_u32,
 };
 #[cfg(feature = "tiff")]
 pub use geotiff_cog::write_cog;

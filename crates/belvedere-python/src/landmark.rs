@@ -6,10 +6,9 @@ use crate::observers::standing_observers;
 use crate::outlook::LookingKeywords;
 use crate::remarks::remarks_of;
 use crate::scene::{PyScene, local_ring, unproven_as, unproven_choice};
-use crate::targets::{Grid, PyColumn, grid_of, ground_points};
+use crate::targets::{Grid, MeasureColumn, PyColumn, grid_of, ground_points, measure_columns};
 use crate::work::run;
 use belvedere::apps::ask::{self, LandmarkShape, SharedObject};
-use belvedere::apps::targets::Measure;
 use belvedere::control::Control;
 use belvedere::query::{BackFaces, SurfacePieces, UnprovenAs};
 use numpy::PyReadonlyArray2;
@@ -51,7 +50,7 @@ impl LandmarkKeywords {
 }
 
 /// Columns, the grid of observers, and remarks.
-type LandmarkReply<'py> = (Vec<PyColumn<'py>>, Option<Grid>, Vec<Bound<'py, PyDict>>);
+type LandmarkReply<'py> = (Vec<MeasureColumn<'py>>, Option<Grid>, Vec<Bound<'py, PyDict>>);
 
 #[pymethods]
 impl PyScene {
@@ -88,8 +87,7 @@ impl PyScene {
         })?;
         let grid = is_grid.then(|| grid_of(&answers.found.ground.ground.grid, self.0.frame()));
         let remarks = remarks_of(py, &answers.remarks)?;
-        let column = |measure: Measure| (measure.name, measure.description, to_1d(py, measure.values).into_any());
-        Ok((answers.measures.into_iter().map(column).collect(), grid, remarks))
+        Ok((measure_columns(py, answers.measures), grid, remarks))
     }
 
     /// Returns the maximum heights above the ground and of the file, their grid, and remarks.

@@ -2,7 +2,10 @@
 
 use crate::errors::{exception, wrong};
 use crate::system::System;
-use belvedere::io::{BandValues, Bands, Georeference, write_tif_bands, write_tif_f32, write_tif_u8, write_tif_u16};
+use belvedere::io::{
+    BandLabel, BandValues, Bands, Georeference, MetadataTag, write_tif_bands, write_tif_f32, write_tif_u8,
+    write_tif_u16,
+};
 use belvedere::raster::Raster;
 use numpy::{Element, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -16,15 +19,15 @@ pub(crate) enum RasterArray<'py> {
     U16(PyReadonlyArray2<'py, u16>),
 }
 
-/// Writes a GeoTIFF of bands of one type with the six numbers of an affine transform. A raster without a value for no
-/// data has one band.
+/// Writes a GeoTIFF of bands of one type with the six numbers of an affine transform. Labels of bands are names, units
+/// and further metadata. A raster without a value for no data has one band, and no label.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
 pub(crate) fn write_geotiff(
     py: Python<'_>,
     path: PathBuf,
     bands: Vec<RasterArray<'_>>,
-    names: Vec<String>,
+    labels: Vec<(String, String, Vec<MetadataTag>)>,
     transform: [f64; 6],
     crs: System,
     nodata: Option<f64>,
@@ -33,13 +36,15 @@ pub(crate) fn write_geotiff(
     let [a, b, west, d, e, north] = transform;
     let place = Georeference { upper_left: [west, north], column_step: [a, d], row_step: [b, e], crs: crs.0 };
     let (place, description) = (Some(&place), description.as_deref());
+    let labels: Vec<BandLabel> =
+        labels.into_iter().map(|(name, unit, tags)| BandLabel { tags, ..BandLabel::new(&name, &unit) }).collect();
     let number = |max: u16| match nodata {
         None => Ok(None),
         Some(v) if v >= 0.0 && v <= f64::from(max) && v.fract() == 0.0 => Ok(Some(v)),
         Some(v) => Err(wrong("nodata", &v.to_string(), &format!("give a whole number from 0 to {max}"))),
     };
     let write = |values: BandValues<'_>| {
-        py.detach(|| write_tif_bands(&path, &Bands { values, names: &names, description }, place))
+        py.detach(|| write_tif_bands(&path, &Bands { values, labels: &labels, tags: &[], description }, place))
     };
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the range of the type")]
     let written = match (&bands[..], nodata) {

@@ -14,6 +14,7 @@ use belvedere::{Frame, Mesh};
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Targets in Python.
@@ -107,8 +108,9 @@ pub(crate) fn grid_at([width, height]: [usize; 2], place: &Georeference) -> Grid
     (width, height, [column_step[0], row_step[0], upper_left[0], column_step[1], row_step[1], upper_left[1]])
 }
 
-/// Name, description and values of a measure, and whether it is an answer.
-pub(crate) type MeasureColumn<'py> = (String, &'static str, Bound<'py, PyAny>, bool);
+/// Name, description and values of a measure, whether it is an answer, its unit and further metadata.
+pub(crate) type MeasureColumn<'py> =
+    (String, &'static str, Bound<'py, PyAny>, bool, &'static str, BTreeMap<String, String>);
 /// Name, description and values.
 pub(crate) type PyColumn<'py> = (String, &'static str, Bound<'py, PyAny>);
 /// Columns of measures; then the grid where targets are cells; or, where they are the faces of a mesh, only their rows;
@@ -120,6 +122,16 @@ pub(crate) type TargetResults<'py> = (
     Vec<Bound<'py, PyDict>>,
     Option<Bound<'py, PyArray2<f64>>>,
 );
+
+/// Measures as Python takes them.
+pub(crate) fn measure_columns(py: Python<'_>, measures: Vec<Measure>) -> Vec<MeasureColumn<'_>> {
+    let column = |measure: Measure| {
+        let is_answer = measure.kind == ResultKind::Answer;
+        let (values, tags) = (to_1d(py, measure.values).into_any(), measure.tags.into_iter().collect());
+        (measure.name, measure.description, values, is_answer, measure.unit, tags)
+    };
+    measures.into_iter().map(column).collect()
+}
 
 impl Chosen {
     /// Measures of the targets as Python takes them.
@@ -135,16 +147,12 @@ impl Chosen {
             let rows = rows_of(py, FaceRows::of_measures(mesh, surface, &measures))?;
             return Ok((Vec::new(), None, Some(rows), remarks, None));
         }
-        let column = |measure: Measure| {
-            let is_answer = measure.kind == ResultKind::Answer;
-            (measure.name, measure.description, to_1d(py, measure.values).into_any(), is_answer)
-        };
         let grid = targets.ground().map(|ground| grid_of(&ground.grid, &targets.frame));
         let in_file = |p: &[f32; 3]| targets.frame.file_from_local(p.map(f64::from));
         let places = match self.places {
             ask::Places::At(..) => Some(to_2d(py, &targets.positions.iter().map(in_file).collect::<Vec<_>>())?),
             _ => None,
         };
-        Ok((measures.into_iter().map(column).collect(), grid, None, remarks, places))
+        Ok((measure_columns(py, measures), grid, None, remarks, places))
     }
 }

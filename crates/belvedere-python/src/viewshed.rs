@@ -99,7 +99,7 @@ impl PyScene {
             Pixels::Numbers(bands) => arrays_of(py, bands),
         };
         let mut bands: Vec<(Bound<'py, PyAny>, f64)> = arrays.into_iter().map(|band| (band, no_data)).collect();
-        let mut names = raster.names;
+        let mut names: Vec<String> = raster.labels.into_iter().map(|label| label.name).collect();
         if !is_far {
             for measure in found.cells_sure {
                 bands.push((to_1d(py, measure.values).into_any(), f64::NAN));

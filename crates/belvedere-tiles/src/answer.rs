@@ -161,8 +161,9 @@ pub(crate) fn answer(
     }
     let place = georeference(&ground.grid, &targets.frame);
     let path = stage.result(plan, run, tile);
-    let names = question.band_names(found.values.kind());
-    let raster = ResultRaster { pixels: found.values, names, description: question.description().to_owned() };
+    let labels = question.band_labels(found.values.kind());
+    let description = question.description().to_owned();
+    let raster = ResultRaster { pixels: found.values, labels, tags: Vec::new(), description };
     raster.write(&path, Some(&place))?;
     Ok(TileRecord {
         outcome: TileOutcome::Done,

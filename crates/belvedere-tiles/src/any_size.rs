@@ -13,9 +13,9 @@ use belvedere::apps::viewshed::SeenProbabilities;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::ground::MapGrid;
-use belvedere::io::{cloud_files, read_las_head, web_address};
+use belvedere::io::{MetadataTag, cloud_files, read_las_head, web_address};
 use belvedere::raster::Raster;
-use belvedere::results::{Pixels, ResultKind, ResultRaster, UNPROVEN_BAND, georeference};
+use belvedere::results::{ResultKind, ResultRaster, UNPROVEN_BAND, georeference};
 use belvedere::{Error, Parameter, Result};
 use std::path::{Path, PathBuf};
 
@@ -253,6 +253,7 @@ impl SurveyQuestion {
                 };
                 Measure::new(&name, band.values().to_vec())
                     .with_description(description)
+                    .with_unit(if name == UNPROVEN_BAND { "1" } else { question.unit() })
                     .with_kind(kind)
                     .with_range(range)
             };
@@ -273,7 +274,7 @@ impl SurveyQuestion {
             let lit = lit.unwrap_or_else(|| {
                 Measure::new("", night()).with_kind(ResultKind::Answer).with_range(Some([0.0, 1.0]))
             });
-            of_suns.push(Measure { name: sun.column.clone(), ..lit });
+            of_suns.push(Measure { name: sun.column.clone(), tags: sun.tags.clone(), ..lit });
             let bands = if is_up { likely.next() } else { Some(vec![night()]) };
             let suffix = if self.suns.len() == 1 { String::new() } else { format!("_{}", sun.column) };
             sure.push((bands, suffix));
@@ -313,15 +314,14 @@ impl SurveyQuestion {
 }
 
 impl SurveyCells {
-    /// Writes measures as one cloud-optimised GeoTIFF, with one band each.
+    /// Writes measures as one cloud-optimised GeoTIFF, with one band each, and with `tags` as metadata of the whole.
     ///
     /// # Errors
     /// Those of writing.
-    pub fn write_cog(&self, path: &Path, measures: &[Measure]) -> Result<()> {
-        let pixels = Pixels::of_measures(measures, [self.grid.width, self.grid.height])?;
-        let names = measures.iter().map(|measure| measure.name.clone()).collect();
+    pub fn write_cog(&self, path: &Path, measures: &[Measure], tags: &[MetadataTag]) -> Result<()> {
+        let raster = ResultRaster::of_measures(measures, [self.grid.width, self.grid.height])?.with_tags(tags);
         let subject = if self.suns.is_empty() { "" } else { self.title.as_str() };
-        let raster = ResultRaster { pixels, names, description: described(self.description, subject) };
+        let raster = ResultRaster { description: described(self.description, subject), ..raster };
         raster.write_cog(path, &georeference(&self.grid, &self.frame))
     }
 

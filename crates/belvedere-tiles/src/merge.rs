@@ -196,8 +196,10 @@ pub fn merge(
     }
     let cells = cells_over(plan, question, &area_with_cells(plan, question, &tiles)?);
     let (pixels, place) = gather(plan, folder, question, (&with_result, &cells), control)?;
-    let names = question.band_names(pixels.kind());
-    ResultRaster { pixels, names, description: question.description().to_owned() }.write_cog(output, &place)?;
+    let labels = question.band_labels(pixels.kind());
+    let tags = vec![("QUESTION".to_owned(), serde_json::to_string(question).unwrap_or_default())];
+    let description = question.description().to_owned();
+    ResultRaster { pixels, labels, tags, description }.write_cog(output, &place)?;
     Ok(merged)
 }
 
@@ -265,7 +267,8 @@ pub fn merged_within(
         return Err(Error::NoPoints { what: "the result has no band".to_owned() });
     };
     let further_bands = bands.map(|(name, values)| NamedBand { name, values }).collect();
-    Ok(PlacedRaster { values, name, place: Some(place), description, further_bands })
+    let unit = question.unit().to_owned();
+    Ok(PlacedRaster { values, name, unit, place: Some(place), description, further_bands })
 }
 
 /// Joins the results of tiles into one raster of cells.

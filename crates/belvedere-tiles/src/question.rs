@@ -16,7 +16,7 @@ use belvedere::apps::sun_hours::{self, SunPlan};
 use belvedere::apps::tree_light::{CrownLight, Season};
 use belvedere::apps::viewshed::{Observer, SightLimits};
 use belvedere::control::Control;
-use belvedere::io::{Source, read_weather};
+use belvedere::io::{BandLabel, Source, read_weather};
 use belvedere::query::{Certainty, EarthParams, UnprovenAs};
 use belvedere::results::{ResultKind, UNPROVEN_BAND, viewshed_words};
 use belvedere::{Error, Parameter, Result};
@@ -426,6 +426,23 @@ impl TileQuestion {
         };
         let ends = INTERVAL_MEASURES.iter().filter(|_| self.has_interval()).map(|(end, _)| format!("{stem}_{end}"));
         [first.to_owned()].into_iter().chain(second).chain(ends).collect()
+    }
+
+    /// Returns the labels of the bands of results of a kind.
+    #[must_use]
+    pub fn band_labels(&self, kind: ResultKind) -> Vec<BandLabel> {
+        let label = |name: &String| BandLabel::new(name, if name == UNPROVEN_BAND { "1" } else { self.unit() });
+        self.band_names(kind).iter().map(label).collect()
+    }
+
+    /// Returns the unit of the values, `1` for those without.
+    #[must_use]
+    pub fn unit(&self) -> &'static str {
+        match self {
+            Self::SunHours { .. } => "h",
+            Self::Irradiance { .. } => "kWh/m2",
+            _ => "1",
+        }
     }
 
     /// Returns the question with all data derived from its parameters and from the light through crowns. Remarks on

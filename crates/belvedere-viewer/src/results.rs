@@ -40,7 +40,7 @@ pub enum PointsOf {
 /// Contents of a file of results, local metres in plan.
 pub(crate) enum ResultsFile {
     Points { positions: Vec<[f32; 3]>, columns: Vec<(String, Vec<f32>)> },
-    Cells(PlacedRaster),
+    Cells(Box<PlacedRaster>),
     Shapes(Vec<FeatureShape>),
 }
 
@@ -83,7 +83,7 @@ impl ResultFile {
         let size = [raster.values.width(), raster.values.height()];
         let all = (0..size[1]).flat_map(|row| (0..size[0]).map(move |column| [column, row]));
         check_places(path, all.map(|cell| center(place, cell, frame)).map(|[x, y]| [x, y, 0.0]), bounds)?;
-        Ok(Self { name: name_of(path), results: ResultsFile::Cells(raster), is_shown_first: true })
+        Ok(Self { name: name_of(path), results: ResultsFile::Cells(Box::new(raster)), is_shown_first: true })
     }
 
     /// Shapes in absolute metres.

@@ -19,7 +19,7 @@
 //!     let (site, _) = Site::of_scene(model.frame(), &model.bounds(), None, None)?;
 //!     let sun = ShadowSun::at_time(&site, parse_instant("2026-06-21T15:00+02:00", None)?)?;
 //!     let lit = shadow(&scene, &cells, sun, &control)?;
-//!     write_raster("shadow.tif".as_ref(), &cells, &[&Measure::new("lit", lit)])
+//!     write_raster("shadow.tif".as_ref(), &cells, &[&Measure::new("lit", lit)], &[])
 //! }
 //! ```
 //!

@@ -354,7 +354,8 @@ impl Ask for EnvelopeQuestion {
         })?;
         self.summarise(&envelope, &land, &suns, context);
         let height = Measure::new("height", envelope.heights().values().to_vec())
-            .with_description("height of the solar envelope above the ground, metres");
+            .with_description("height of the solar envelope above the ground, metres")
+            .with_unit("m");
         Ok(Answers::new(EnvelopeResults { envelope, ground: below }, vec![height]))
     }
 }

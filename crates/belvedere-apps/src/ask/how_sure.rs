@@ -98,16 +98,17 @@ impl HowSure {
         Ok(Some(blockers))
     }
 
-    /// Flags the uncertain answers, by their probability and by whether they are unproven; NaN without a probability.
-    /// `None` if that is not wanted.
+    /// Flags the uncertain answers, by their probability and by whether they are unproven; NaN for a proven answer
+    /// without a probability. `None` if that is not wanted.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a least probability out of range.
     pub fn uncertain(&self, probabilities: &[f32], is_unproven: impl Fn(usize) -> bool) -> Result<Option<Vec<f32>>> {
         let Some(certainty) = self.certainty()? else { return Ok(None) };
-        let of_row = |(row, &probability): (usize, &f32)| match probability.is_nan() {
-            true => f32::NAN,
-            false => f32::from(u8::from(certainty.is_missed_by(probability) || is_unproven(row))),
+        let of_row = |(row, &probability): (usize, &f32)| match (is_unproven(row), probability.is_nan()) {
+            (true, _) => 1.0,
+            (false, true) => f32::NAN,
+            (false, false) => f32::from(u8::from(certainty.is_missed_by(probability))),
         };
         Ok(Some(probabilities.iter().enumerate().map(of_row).collect()))
     }
@@ -149,24 +150,26 @@ impl HowSure {
     }
 
     fn section_of(&self, probabilities: &[f32], uncertain: Option<&[f32]>) -> CertaintySection {
-        let known: Vec<(usize, f32)> =
-            probabilities.iter().copied().enumerate().filter(|(_, probability)| !probability.is_nan()).collect();
-        let count = known.len();
+        let is_uncertain = |row: usize| uncertain.is_some_and(|uncertain| uncertain.get(row).is_some_and(|&v| v > 0.0));
+        let is_answer = |(row, probability): &(usize, f32)| !probability.is_nan() || is_uncertain(*row);
+        let answers: Vec<(usize, f32)> = probabilities.iter().copied().enumerate().filter(is_answer).collect();
+        let count = answers.len();
         let section = CertaintySection {
             answers: count,
             mean_probability: belvedere_data::report::rounded(mean(probabilities), 4),
             ..CertaintySection::default()
         };
-        let Some(uncertain) = uncertain else { return section };
-        let is_uncertain = |row: usize| uncertain.get(row).is_some_and(|&value| value > 0.0);
+        if uncertain.is_none() {
+            return section;
+        }
         let certain = |is_high: bool| {
-            known.iter().filter(|(row, probability)| !is_uncertain(*row) && (*probability > 0.5) == is_high).count()
+            answers.iter().filter(|(row, probability)| !is_uncertain(*row) && (*probability > 0.5) == is_high).count()
         };
         CertaintySection {
             certain_from: self.certain,
             certainly_visible_percent: Some(percent(certain(true), count)),
             certainly_blocked_percent: Some(percent(certain(false), count)),
-            uncertain_percent: Some(percent(known.iter().filter(|(row, _)| is_uncertain(*row)).count(), count)),
+            uncertain_percent: Some(percent(answers.iter().filter(|(row, _)| is_uncertain(*row)).count(), count)),
             ..section
         }
     }
@@ -214,7 +217,7 @@ fn mean(probabilities: &[f32]) -> f64 {
 #[must_use]
 pub fn remark_from_ground(blockers: &MedialScene) -> Option<Remark> {
     let text = "the scanner stood on the ground: probabilities of what it did not see, such as roofs and walls turned \
-                away, may be wrong by a quarter";
+                away, may be wrong by a quarter; there is none where nothing blocks and no pulse came within 1 m";
     let is_from_ground = blockers.proof().is_some_and(Proof::is_from_ground);
     is_from_ground.then(|| Remark::warning("probability-from-the-ground", text))
 }

@@ -302,7 +302,7 @@ impl Ask for LandmarkQuestion {
 fn measures_of(views: &[LandmarkView]) -> Vec<Measure> {
     let measure = |of: &crate::landmark::LandmarkMeasure| {
         let values = views.iter().map(|view| to_f32(of.of(view))).collect();
-        Measure::new(of.name, values).with_description(of.description).with_decimals(of.decimals)
+        Measure::new(of.name, values).with_description(of.description).with_unit(of.unit).with_decimals(of.decimals)
     };
     measures(views).iter().map(measure).collect()
 }

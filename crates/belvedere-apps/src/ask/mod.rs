@@ -152,6 +152,37 @@ pub enum Question {
     Envelope(EnvelopeQuestion),
 }
 
+/// Makes any question one of all.
+macro_rules! one_of_all {
+    ($($name:ident: $question:ty),* $(,)?) => {
+        $(impl From<$question> for Question {
+            fn from(question: $question) -> Self {
+                Self::$name(question)
+            }
+        })*
+    };
+}
+
+one_of_all! {
+    Shadow: ShadowQuestion,
+    SunHours: SunHoursQuestion,
+    SkyView: SkyViewQuestion,
+    Irradiance: IrradianceQuestion,
+    SunPosition: SunPositionQuestion,
+    LineOfSight: LinesOfSightQuestion,
+    Horizon: HorizonQuestion,
+    Isovist: IsovistsQuestion,
+    Viewshed: ViewshedQuestion,
+    Landmark: LandmarkQuestion,
+    WindowViews: WindowViewsQuestion,
+    ProtectedView: ProtectedViewQuestion,
+    Cameras: CamerasQuestion,
+    SurveyPlan: SurveyPlanQuestion,
+    DepthMap: DepthMapQuestion,
+    Comfort: ComfortQuestion,
+    Envelope: EnvelopeQuestion,
+}
+
 /// Results of any question.
 #[non_exhaustive]
 pub enum QuestionResults {
@@ -261,6 +292,13 @@ pub fn ask<Q: Ask>(scene: &Scene, question: &Q, places: &Places, control: &Contr
 }
 
 impl<F> Answers<F> {
+    /// Returns the zone of the clock that times and days were read by; `None` where there was none.
+    #[must_use]
+    pub fn time_zone(&self) -> Option<&str> {
+        let of_suns = self.report.sun.as_ref().and_then(|sun| sun.time_zone.as_deref());
+        of_suns.or_else(|| self.report.period.as_ref().map(|period| period.time_zone.as_str()))
+    }
+
     /// Creates answers without the contents of a [`Context`].
     fn new(found: F, measures: Vec<Measure>) -> Self {
         Self { found, measures, headline: Vec::new(), remarks: Vec::new(), report: Report::default() }

@@ -155,6 +155,7 @@ impl Ask for ShadowQuestion {
         let of_sun = |(sun, values): (&NamedSun, Vec<f32>)| {
             as_band(Measure::new(&sun.column, values).with_description(LIT).with_decimals(decimals))
                 .with_subject(&sun.title)
+                .with_tags(&sun.tags)
         };
         let mut measures: Vec<Measure> = suns.iter().zip(lit).map(of_sun).collect();
         measures.extend(doubts.map(|doubts| {

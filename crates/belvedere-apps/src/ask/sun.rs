@@ -102,6 +102,8 @@ pub struct NamedSun {
     pub column: String,
     /// Its shadow in words.
     pub title: String,
+    /// Metadata of its raster: time and zone where it has them, azimuth and elevation in degrees.
+    pub tags: Vec<(String, String)>,
 }
 
 /// Permitted positions of a sun.
@@ -487,6 +489,7 @@ impl Suns {
                 column: if instants.len() == 1 { "lit".to_owned() } else { format!("lit_{label}") },
                 label,
                 title: format!("Shadow, {}{far}", zone.display(instant)),
+                tags: sun_tags([position.azimuth, position.elevation].map(f64::to_degrees), Some((&zone, instant))),
             });
         }
         section.time_zone = Some(zone.name().to_owned());
@@ -521,9 +524,20 @@ fn directions_over(
             label: format!("{azimuth}_{elevation}"),
             column: if is_one { "lit".to_owned() } else { format!("lit_{number}") },
             title: format!("Shadow, sun at azimuth {azimuth}, elevation {elevation} degrees{far}"),
+            tags: sun_tags([azimuth, elevation], None),
         }
     };
     (1..).zip(directions).map(named).collect()
+}
+
+/// Metadata of a sun: azimuth and elevation in degrees, zone and instant.
+fn sun_tags(angles: [f64; 2], instant: Option<(&Zone, f64)>) -> Vec<(String, String)> {
+    let [azimuth, elevation] = angles.map(|degrees| rounded(degrees, 4).to_string());
+    let of_time = instant
+        .into_iter()
+        .flat_map(|(zone, instant)| [("TIME", zone.display(instant)), ("TIME_ZONE", zone.name().to_owned())]);
+    let of_place = [("SUN_AZIMUTH_DEG", azimuth), ("SUN_ELEVATION_DEG", elevation)];
+    of_time.chain(of_place).map(|(name, text)| (name.to_owned(), text)).collect()
 }
 
 /// An instant in names: its date and time by the clocks of the zone, such as `20260621_1500`.

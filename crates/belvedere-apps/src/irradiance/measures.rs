@@ -36,7 +36,7 @@ pub fn irradiation_measures(sums: &[Irradiation], group_count: usize) -> Vec<Mea
     let column =
         |value: &dyn Fn(&Irradiation) -> f64| -> Vec<f32> { whole.iter().map(|sum| to_f32(value(sum))).collect() };
     let energy = |name: &str, description, values| {
-        Measure::new(name, values).with_description(description).with_decimals(ENERGY_DECIMALS)
+        Measure::new(name, values).with_description(description).with_unit("kWh/m2").with_decimals(ENERGY_DECIMALS)
     };
     let loss = Measure::new("loss", column(&Irradiation::loss)).with_description("share lost by shading");
     let mut measures = vec![

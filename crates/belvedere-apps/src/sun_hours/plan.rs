@@ -135,15 +135,17 @@ impl SunSums {
         let total: Vec<f32> =
             if day_count > 1 { self.period.hours.iter().map(of_all_days).collect() } else { Vec::new() };
         let mut measures = vec![
-            measure("sun_hours", SUN_HOURS, hours, self.period.hours),
+            measure("sun_hours", SUN_HOURS, hours, self.period.hours).with_unit("h"),
             measure("sun_share", "share of possible sun", share, self.period.share),
-            measure("first_light", "first sun, hour of the day", clock, self.period.first),
-            measure("last_light", "last sun, hour of the day", clock, self.period.last),
-            measure("longest", "longest uninterrupted sun, hours", hours, self.period.longest),
+            measure("first_light", "first sun, hour of the day", clock, self.period.first).with_unit("h"),
+            measure("last_light", "last sun, hour of the day", clock, self.period.last).with_unit("h"),
+            measure("longest", "longest uninterrupted sun, hours", hours, self.period.longest).with_unit("h"),
         ];
         if day_count > 1 {
-            measures.push(measure("min_sun_hours", "hours of the day with the least sun", hours, self.period.min));
-            measures.push(measure("total_hours", "hours of sun in all", None, total));
+            measures.push(
+                measure("min_sun_hours", "hours of the day with the least sun", hours, self.period.min).with_unit("h"),
+            );
+            measures.push(measure("total_hours", "hours of sun in all", None, total).with_unit("h"));
         }
         if let (Some(hours), false) = (measures.first(), self.classes.is_empty()) {
             let possible = plan.period.possible_hours() / day_count.max(1) as f64;

@@ -11,9 +11,13 @@ pub struct Measure {
     pub name: String,
     /// Description with its unit, at most 31 letters.
     pub description: &'static str,
+    /// Unit of its values, such as `h`; `1` for values without one. Default: `1`.
+    pub unit: &'static str,
     /// Subject that separates it from measures alike, such as the sun of a shadow; rasters have it behind the
     /// description. Empty if there is only one.
     pub subject: String,
+    /// Names and texts of the metadata of its raster, such as the time of a sun.
+    pub tags: Vec<(String, String)>,
     /// Digits after the point in tables.
     pub decimals: usize,
     /// Range of a legend; `None` for the range of the values.
@@ -40,13 +44,26 @@ impl Measure {
     #[must_use]
     pub fn new(name: &str, values: Vec<f32>) -> Self {
         let (name, kind) = (name.to_owned(), ResultKind::Number);
-        Self { name, description: "", subject: String::new(), decimals: 4, range: None, kind, values }
+        let (subject, tags) = (String::new(), Vec::new());
+        Self { name, description: "", unit: "1", subject, tags, decimals: 4, range: None, kind, values }
     }
 
     /// This with another description.
     #[must_use]
     pub fn with_description(self, description: &'static str) -> Self {
         Self { description, ..self }
+    }
+
+    /// This with the unit of its values.
+    #[must_use]
+    pub fn with_unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
+    /// This with metadata of its raster.
+    #[must_use]
+    pub fn with_tags(self, tags: &[(String, String)]) -> Self {
+        Self { tags: tags.to_vec(), ..self }
     }
 
     /// This with a subject that tells it from similar ones.
@@ -76,7 +93,8 @@ impl Measure {
     /// The same measure of no target.
     #[must_use]
     pub fn without_values(&self) -> Self {
-        Self { name: self.name.clone(), subject: self.subject.clone(), values: Vec::new(), ..*self }
+        let (name, subject, tags) = (self.name.clone(), self.subject.clone(), self.tags.clone());
+        Self { name, subject, tags, values: Vec::new(), ..*self }
     }
 
     /// Returns the statistics of the known values; `None` if no target has a value.

@@ -134,13 +134,13 @@ pub fn leave_out_walled_up(targets: &mut Targets, scene: &MedialScene, control: 
 /// in `_cos`; unproven shares are left out where `proof` says that lines of sight were not tested with pulses.
 #[must_use]
 pub fn view_measures(views: &[WindowView], proof: Proving) -> Vec<Measure> {
+    let percent = Some([0.0, 100.0]);
     let mut measures = Vec::new();
     let mut push = |name: String, description, decimals, range, value: &dyn Fn(&WindowView) -> f64| {
         let values = views.iter().map(|view| to_f32(value(view))).collect();
         let measure = Measure::new(&name, values).with_description(description).with_decimals(decimals);
-        measures.push(measure.with_range(range));
+        measures.push(measure.with_unit(if range == percent { "%" } else { "m" }).with_range(range));
     };
-    let percent = Some([0.0, 100.0]);
     for (i, seen) in SeenKind::ALL.into_iter().enumerate() {
         push(seen.name().to_owned(), "percent of the view", 3, percent, &|view| 100.0 * view.shares[i]);
     }

@@ -39,8 +39,7 @@ pub(crate) fn run(arguments: &CamerasArguments, global: &Global) -> Result<Summa
         let given = candidates_on_path(path, arguments.step, ObserverUse::Limits, &frame, &mut run)?;
         question.candidates = Candidates::Given(given);
     }
-    let answers = ask::ask(&scene, &question, &places, &run.control())?;
-    run.answered(&answers);
+    let answers = run.ask(&scene, &question, &places)?;
     let shown = CameraOutput { found: &answers.found, scene: &scene };
     for output in &arguments.output {
         run.stage("writing", 0, |_| shown.write(output))?;

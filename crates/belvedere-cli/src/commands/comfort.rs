@@ -49,8 +49,7 @@ pub(crate) fn run(arguments: &ComfortArguments, global: &Global) -> Result<Summa
         }
         (None, None) => return Err(Usage("targets are missing: give --route or --windows".to_owned()).into()),
     };
-    let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
-    run.answered(&answers);
+    let answers = run.ask(&scene, &question, &Places::Scene)?;
     let shown = ComfortOutput { found: &answers.found, source, frame: scene.frame() };
     shown.write_rows(&arguments.output)?;
     if let Some(output) = &arguments.routes {

@@ -34,8 +34,7 @@ pub(crate) fn run(arguments: &DepthMapArguments, global: &Global) -> Result<Summ
     let from = arguments.view.view_from(&scene, &mut run.summary)?;
     let question = ask::DepthMapQuestion { from: Some(from), ball_ids: arguments.balls_id.is_some() };
     let scene = scene.into_question_scene(None, None, &run)?;
-    let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
-    run.answered(&answers);
+    let answers = run.ask(&scene, &question, &Places::Scene)?;
     let map = &answers.found;
     let place = match &from {
         ViewFrom::View(view) => georeference(scene.frame(), view),

@@ -9,7 +9,7 @@ use belvedere::apps::ask::Remark;
 use belvedere::apps::difference::{clear_added, clear_unproven, contradiction_of, difference};
 use belvedere::figures::write_png;
 use belvedere::io::{
-    BandValues, Bands, Georeference, NamedBand, PlacedRaster, ReadOptions, TableCells, read_cloud, read_tif,
+    BandLabel, BandValues, Bands, Georeference, NamedBand, PlacedRaster, ReadOptions, TableCells, read_cloud, read_tif,
     write_table, write_tif_bands,
 };
 use belvedere::raster::Raster;
@@ -54,18 +54,19 @@ pub(crate) fn run(arguments: &DifferenceArguments, global: &Global) -> Result<Su
     let name = |path: &Path| path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let title = || format!("Change from {} to {}", name(&arguments.before), name(&arguments.after));
     let title = arguments.title.clone().unwrap_or_else(title);
-    let first_name = before.name.clone();
     for output in &arguments.output {
         run.stage("writing", 0, |_| match extension(output).as_str() {
             "csv" => write_figures(output, &change.report.figures()),
             "png" => write_png(output, &difference_map(&values, relief.as_ref(), cell_area.sqrt(), place, &title)?),
             _ => {
-                let mut names = vec![first_name.clone()];
-                names.extend(further.iter().map(|band| band.name.clone()));
+                let first = BandLabel::new(&before.name, &before.unit);
+                let further_labels = further.iter().map(|band| BandLabel::new(&band.name, "1"));
+                let labels: Vec<BandLabel> = std::iter::once(first).chain(further_labels).collect();
                 let rasters: Vec<Raster<f32>> =
                     std::iter::once(&values).chain(further.iter().map(|band| &band.values)).cloned().collect();
                 let values = BandValues::F32(&rasters, ResultKind::NO_NUMBER);
-                write_tif_bands(output, &Bands { values, names: &names, description: Some("after less before") }, place)
+                let description = Some("after less before");
+                write_tif_bands(output, &Bands { values, labels: &labels, tags: &run.tags, description }, place)
             }
         })?;
     }

@@ -16,7 +16,7 @@ use belvedere::apps::solar_envelope::EnvelopeParams;
 use belvedere::apps::targets::Measure;
 use belvedere::figures::write_png;
 use belvedere::ground::highest_points;
-use belvedere::io::{FeatureShape, ReadReport, Source, is_ball_file, is_mesh, write_mesh};
+use belvedere::io::{FeatureShape, MetadataTag, ReadReport, Source, is_ball_file, is_mesh, write_mesh};
 use belvedere::model::{ModelParts, SceneModel};
 use belvedere::results::{georeference, measure_map};
 use belvedere::vector::to_f32;
@@ -32,10 +32,9 @@ pub(crate) fn run(arguments: &EnvelopeArguments, global: &Global) -> Result<Summ
     let scene = scene.into_question_scene(Some(&arguments.ground), arguments.shell.shell, &run)?;
     question.parcel = parcel(arguments, scene.frame())?;
     question.protect = protect(arguments, scene.frame(), &mut run)?;
-    let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
-    run.answered(&answers);
+    let answers = run.ask(&scene, &question, &Places::Scene)?;
     for output in &arguments.output {
-        run.stage("writing", 0, |_| write_one(output, &answers, &scene))?;
+        run.stage("writing", 0, |_| write_one(output, &answers, &scene, &run.tags))?;
     }
     if let Some(output) = &arguments.tops {
         let what = "height of the solar envelope";
@@ -45,7 +44,7 @@ pub(crate) fn run(arguments: &EnvelopeArguments, global: &Global) -> Result<Summ
             let envelope = &answers.found.envelope;
             let mut tops = envelope.tops(frame.origin[2]);
             tops.values_mut().iter_mut().for_each(|top| *top = in_unit(*top, scale));
-            write_heights(output, &tops, (&envelope.grid, frame), what)
+            write_heights(output, &tops, (&envelope.grid, frame), what, &run.tags)
         })?;
     }
     let written = arguments.output.iter().chain(&arguments.tops).map(|path| path.display().to_string());
@@ -161,7 +160,12 @@ fn is_geojson(path: &Path) -> bool {
     super::extension(path) == "json" && is_read && !String::from_utf8_lossy(&start).contains("CityJSON")
 }
 
-fn write_one(output: &Path, answers: &Answers<EnvelopeResults>, scene: &ask::Scene) -> Result<()> {
+fn write_one(
+    output: &Path,
+    answers: &Answers<EnvelopeResults>,
+    scene: &ask::Scene,
+    tags: &[MetadataTag],
+) -> Result<()> {
     let (frame, EnvelopeResults { envelope, ground }) = (scene.frame(), &answers.found);
     match super::extension(output).as_str() {
         "ply" | "obj" => {
@@ -180,7 +184,7 @@ fn write_one(output: &Path, answers: &Answers<EnvelopeResults>, scene: &ask::Sce
         }
         _ => {
             let what = answers.measures.first().map_or("", |height| height.description);
-            write_heights(output, &envelope.heights(), (&envelope.grid, frame), what)
+            write_heights(output, &envelope.heights(), (&envelope.grid, frame), what, tags)
         }
     }
 }

@@ -31,8 +31,7 @@ pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summa
     let scene = arguments.eyes.scene(&arguments.scene, Some(&arguments.far), &mut run)?;
     let standing = arguments.eyes.standing(scene.frame(), &mut run)?;
     check_formats(arguments, standing.len())?;
-    let answers = ask::ask(&scene, &question, &Places::Eyes(standing), &run.control())?;
-    run.answered(&answers);
+    let answers = run.ask(&scene, &question, &Places::Eyes(standing))?;
     let HorizonResults { elevations_deg: elevations, intervals_deg: intervals, .. } = &answers.found;
     let ends = intervals.as_ref().and_then(|intervals| intervals.first()).map(Vec::as_slice);
     let title = match ends {

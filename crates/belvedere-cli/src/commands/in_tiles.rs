@@ -138,12 +138,13 @@ impl<'a> TypedCells<'a> {
         run: &mut CommandContext,
     ) -> Result<Answers<SurveyCells>> {
         let PlannedSurvey { plan, folder, is_temporary, limit } = survey;
-        let survey = SurveyQuestion::new(plan, folder.path(), question, limit, &run.control())?;
+        let survey = SurveyQuestion::new(plan, folder.path(), question.clone(), limit, &run.control())?;
         let start = Instant::now();
         let report = survey.run(&|| start.elapsed().as_secs_f64(), &run.control())?;
         city::refuse_failed(&report, "run the command again to try them again")?;
         run.summary.add_report(&report);
         let answers = survey.answers(&report, &run.control())?;
+        run.name_question(question, answers.time_zone());
         run.answered(&answers);
         self.write(&answers, map, run)?;
         match (&run.cache, is_temporary) {
@@ -187,7 +188,7 @@ impl<'a> TypedCells<'a> {
                 };
                 run.stage("writing", 0, |_| write_png(output, &picture))?;
             } else {
-                run.stage("writing", 0, |_| answers.found.write_cog(output, &answers.measures))?;
+                run.stage("writing", 0, |_| answers.found.write_cog(output, &answers.measures, &run.tags))?;
             }
             written.push(output.display().to_string());
         }

@@ -60,8 +60,7 @@ pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Su
         true => arguments.places.places(&scene, &mut run).map(|(places, source)| (places, Some(source)))?,
         false => (Places::Scene, None),
     };
-    let answers = ask::ask(&scene, &question, &places, &run.control())?;
-    run.answered(&answers);
+    let answers = run.ask(&scene, &question, &places)?;
     if let (Some(on), Some(source)) = (&answers.found.on, source) {
         let shown = TargetOutput::new(on, source, &scene);
         shown.write(&outputs, &answers.measures, &mut run)?;

@@ -39,8 +39,7 @@ pub(crate) fn run(arguments: &IsovistArguments, global: &Global) -> Result<Summa
     let scene = arguments.eyes.scene(&input, None, &mut run)?;
     let standing = arguments.eyes.standing(scene.frame(), &mut run)?;
     check_pictures(arguments, standing.len())?;
-    let answers = ask::ask(&scene, &question, &Places::Eyes(standing), &run.control())?;
-    run.answered(&answers);
+    let answers = run.ask(&scene, &question, &Places::Eyes(standing))?;
     let found = &answers.found;
     let columns = columns(found, &scene);
     let given = rows_as_given(arguments.eyes.eyes.as_deref())?;

@@ -12,6 +12,7 @@ use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{self, LandmarkShape, Places, Standing};
+use belvedere::control::Control;
 use belvedere::io::RowsAre;
 use belvedere::query::{BackFaces, UnprovenAs};
 
@@ -24,8 +25,7 @@ pub(crate) fn run(arguments: &LandmarkArguments, global: &Global) -> Result<Summ
     let scene = scene.into_question_scene(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
     let shape = landmark_shape::shape(&arguments.shape, scene.frame(), &mut run)?;
     let question = question(arguments, shape, scene.frame(), &mut run)?;
-    let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
-    run.answered(&answers);
+    let answers = run.ask(&scene, &question, &Places::Scene)?;
     let found = &answers.found;
     let (views, ground, cloud) = (&found.views[..], &found.ground.ground, scene.ground_cloud()?);
     let given = rows_as_given(arguments.observers.as_deref())?;
@@ -33,12 +33,13 @@ pub(crate) fn run(arguments: &LandmarkArguments, global: &Global) -> Result<Summ
         run.stage("writing", 0, |_| match extension(output).as_str() {
             "csv" => results::write_rows(output, views, &found.places, &given, cloud),
             "png" => results::write_map(output, views, ground, cloud, found.middle),
-            _ => results::write_share(output, views, ground, cloud),
+            _ => results::write_share(output, views, ground, cloud, &run.tags),
         })?;
     }
     let mut written: Vec<String> = arguments.output.iter().map(|path| path.display().to_string()).collect();
     if let Some(folder) = &arguments.measures {
-        written.extend(run.stage("writing", 0, |_| results::write_measures(folder, views, ground, cloud))?);
+        let of_measures = |_: &Control<'_>| results::write_measures(folder, views, ground, cloud, &run.tags);
+        written.extend(run.stage("writing", 0, of_measures)?);
     }
     run.summary.add("written", written);
     Ok(run.finish())

@@ -9,7 +9,7 @@ use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::Frame;
 use belvedere::apps::ask::{
-    self, Ask, LinesOfSightQuestion, Places, ProfileRows, Scene, SightColumns, SightsResults, Standing,
+    Ask, LinesOfSightQuestion, Places, ProfileRows, Scene, SightColumns, SightsResults, Standing,
 };
 use belvedere::apps::profile::SightProfile;
 use belvedere::figures::{DistanceProfile, profile_picture, write_png};
@@ -42,8 +42,7 @@ pub(crate) fn run(arguments: &LineOfSightArguments, global: &Global) -> Result<S
     }
     let scene = scene.into_question_scene(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
     let (pairs, rows) = pairs(&arguments.lines, &scene, &run)?;
-    let answers = ask::ask(&scene, &question, &Places::Pairs(pairs), &run.control())?;
-    run.answered(&answers);
+    let answers = run.ask(&scene, &question, &Places::Pairs(pairs))?;
     let found = &answers.found;
     if let Some(output) = &arguments.output {
         run.stage("writing", 0, |_| write(output, found, &scene, &rows))?;

@@ -40,18 +40,17 @@ pub(crate) fn run(arguments: &ProtectedViewArguments, global: &Global) -> Result
     let ground = &arguments.eyes.ground;
     let scene = scene.into_question_scene(Some(ground), arguments.giving_way.shell, &run)?;
     let places = Places::Cells(GridCells { cell: arguments.cell, ground: ground.points(), ..GridCells::default() });
-    let answers = ask::ask(&scene, &question, &places, &run.control())?;
-    run.answered(&answers);
+    let answers = run.ask(&scene, &question, &places)?;
     let found = &answers.found;
     let place = (&found.ground.ground.grid, scene.frame());
     for output in &arguments.output {
         run.stage("writing", 0, |_| match extension(output).as_str() {
             "png" => write_map(output, found, &scene),
-            _ => write_heights(output, &found.heights, place, "maximum height above the ground"),
+            _ => write_heights(output, &found.heights, place, "maximum height above the ground", &run.tags),
         })?;
     }
     if let Some(output) = &arguments.tops {
-        run.stage("writing", 0, |_| write_heights(output, &found.tops, place, "maximum height"))?;
+        run.stage("writing", 0, |_| write_heights(output, &found.tops, place, "maximum height", &run.tags))?;
     }
     let written = arguments.output.iter().chain(&arguments.tops).map(|path| path.display().to_string());
     run.summary.add("written", written.collect::<Vec<_>>());

@@ -45,8 +45,7 @@ pub(crate) fn run(arguments: &ShadowArguments, global: &Global) -> Result<Summar
     }
     let scene = pipeline::scene_of_places(&arguments.scene, &arguments.places, arguments.giving_way.shell, &mut run)?;
     let (places, source) = arguments.places.places(&scene, &mut run)?;
-    let answers = ask::ask(&scene, &question, &places, &run.control())?;
-    run.answered(&answers);
+    let answers = run.ask(&scene, &question, &places)?;
     let shown = TargetOutput::new(&answers.found.on, source, &scene);
     let maps = Maps::of(&answers);
     shown.write_with(&arguments.outputs, &answers.measures, &|relief| maps.draw(0, relief), &mut run)?;

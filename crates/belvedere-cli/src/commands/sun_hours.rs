@@ -33,8 +33,7 @@ pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summ
     }
     let scene = pipeline::scene_of_places(&arguments.scene, &arguments.places, arguments.shell.shell, &mut run)?;
     let (places, source) = arguments.places.places(&scene, &mut run)?;
-    let answers = ask::ask(&scene, &question, &places, &run.control())?;
-    run.answered(&answers);
+    let answers = run.ask(&scene, &question, &places)?;
     let shown = TargetOutput::new(&answers.found, source, &scene);
     shown.write(&arguments.outputs, &answers.measures, &mut run)?;
     shown.write_edge_mask(arguments.places.edge_mask.as_deref(), &mut run)?;

@@ -22,8 +22,7 @@ pub(crate) fn run(arguments: &SunPositionArguments, global: &Global) -> Result<S
     let bounds = pipeline::bounds_of(&cloud)?;
     let parts = ModelParts { frame: cloud.frame.clone(), bounds, ..ModelParts::default() };
     let scene = ask::Scene::new(SceneModel::from_parts(parts)?, Arc::new(cloud));
-    let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
-    run.answered(&answers);
+    let answers = run.ask(&scene, &question, &Places::Scene)?;
     if let Some(output) = &arguments.output {
         let rows =
             answers.found.iter().map(|sun| format!("{},{:.4},{:.4}", sun.time, sun.azimuth_deg, sun.elevation_deg));

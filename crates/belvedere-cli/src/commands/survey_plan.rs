@@ -11,7 +11,7 @@ use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::Error;
 use belvedere::apps::ask::{
-    self, Ask, Candidates, GridCells, Places, PlannedStation, Scene, Standing, SunPlace, Suns, SurveyPlanQuestion,
+    Ask, Candidates, GridCells, Places, PlannedStation, Scene, Standing, SunPlace, Suns, SurveyPlanQuestion,
     SurveyPlanResults,
 };
 use belvedere::io::{RowsAre, Spot, TableCells, write_geojson, write_table};
@@ -53,8 +53,7 @@ pub(crate) fn run(arguments: &SurveyPlanArguments, global: &Global) -> Result<Su
         }
         question.candidates = Candidates::Given(given);
     }
-    let answers = ask::ask(&scene, &question, &places, &run.control())?;
-    run.answered(&answers);
+    let answers = run.ask(&scene, &question, &places)?;
     for output in &arguments.output {
         run.stage("writing", 0, |_| write(output, &answers.found, &scene))?;
     }

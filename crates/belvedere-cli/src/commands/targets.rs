@@ -12,7 +12,9 @@ use belvedere::apps::targets::{CellLevel, Facing, Measure, MeshParams};
 use belvedere::crs::Crs;
 use belvedere::figures::{Picture, write_png};
 use belvedere::ground::{GroundPoints, highest_points};
-use belvedere::io::{Georeference, ReadOptions, atomic, cloud_files, is_mesh, read_las_head, write_tif_u8};
+use belvedere::io::{
+    Georeference, MetadataTag, ReadOptions, atomic, cloud_files, is_mesh, read_las_head, write_tif_u8,
+};
 use belvedere::raster::Raster;
 use belvedere::results::{ResultKind, TakenFrom, georeference, measure_map, write_measures, write_raster};
 use belvedere::{Mesh, PointCloud};
@@ -220,7 +222,7 @@ impl<'a> TargetOutput<'a> {
         let mut written: Vec<String> = Vec::new();
         for output in &outputs.output {
             let mut section = Summary::default();
-            run.stage("writing", 0, |_| self.write_one(output, measures, map, &mut section))?;
+            run.stage("writing", 0, |_| self.write_one(output, (measures, &run.tags), map, &mut section))?;
             run.summary.add_all(section);
             written.push(output.display().to_string());
         }
@@ -228,7 +230,7 @@ impl<'a> TargetOutput<'a> {
             atomic::make_folder(folder)?;
             for measure in measures {
                 let path = folder.join(format!("{}.tif", measure.name));
-                write_raster(&path, &self.on.targets, &[measure])?;
+                write_raster(&path, &self.on.targets, &[measure], &run.tags)?;
                 written.push(path.display().to_string());
             }
         }
@@ -243,7 +245,7 @@ impl<'a> TargetOutput<'a> {
     fn write_one(
         &self,
         output: &Path,
-        measures: &[Measure],
+        (measures, tags): (&[Measure], &[MetadataTag]),
         map: &dyn Fn(&HighestPoints) -> belvedere::Result<Picture>,
         summary: &mut Summary,
     ) -> Result<()> {
@@ -260,7 +262,7 @@ impl<'a> TargetOutput<'a> {
             TargetSource::File(cloud, _) => rows.as_ref().map_or(TakenFrom::Cloud(cloud), TakenFrom::Rows),
             TargetSource::Mesh(mesh) => TakenFrom::Mesh(mesh),
         };
-        summary.add_writing(output, &write_measures(output, &self.on.targets, from, measures)?);
+        summary.add_writing(output, &write_measures(output, &self.on.targets, from, measures, tags)?);
         Ok(())
     }
 }

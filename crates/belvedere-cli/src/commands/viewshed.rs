@@ -47,8 +47,7 @@ pub(crate) fn run(arguments: &ViewshedArguments, global: &Global) -> Result<Summ
     let areas: Vec<PathBuf> = arguments.output.iter().chain(&arguments.far_output).cloned().collect();
     warn_of_geojson(&areas, &scene.frame().crs, &mut run.summary);
     question.observers = viewshed_observers::observers(arguments, scene.frame(), &mut run)?;
-    let answers = ask::ask(&scene, &question, &Places::Scene, &run.control())?;
-    run.answered(&answers);
+    let answers = run.ask(&scene, &question, &Places::Scene)?;
     write(arguments, &answers.found, &scene, &mut run)?;
     let written =
         arguments.output.iter().chain(&arguments.far_output).chain(&arguments.heights).chain(&arguments.masks);
@@ -175,7 +174,7 @@ fn write(
         let sure = &found.cells_sure;
         let cells = SeenCells { seen, sure, eyes, frame, on: CellSurface::Ground(ground, cloud), is_reverse };
         for output in arguments.output.iter().filter(|path| !is_of_points(path)) {
-            run.stage("writing", 0, |_| cells.write(output))?;
+            run.stage("writing", 0, |_| cells.write(output, &run.tags))?;
         }
         if let Some(output) = &arguments.masks {
             run.stage("writing", 0, |_| write_masks(output, seen, ground, cloud))?;
@@ -191,11 +190,11 @@ fn write(
         let on = CellSurface::Terrain(&far.terrain);
         let cells = SeenCells { seen: &far.seen, sure: &[], eyes, frame, on, is_reverse };
         for output in &arguments.far_output {
-            run.stage("writing", 0, |_| cells.write(output))?;
+            run.stage("writing", 0, |_| cells.write(output, &run.tags))?;
         }
     }
     if let (Some(output), Some(heights)) = (&arguments.heights, &found.heights) {
-        run.stage("writing", 0, |_| write_heights(output, heights, (&ground.grid, frame), VISIBLE_HEIGHTS))?;
+        run.stage("writing", 0, |_| write_heights(output, heights, (&ground.grid, frame), VISIBLE_HEIGHTS, &run.tags))?;
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use crate::common::{EAST, NORTH, Workplace, at, column, house, remarks};
 use belvedere::apps::viewshed::SEEN;
-use belvedere::io::{PlacedRaster, read_tif};
+use belvedere::io::{BandLabel, PlacedRaster, read_tif};
 use belvedere::results::{Pixels, ResultRaster};
 
 const HOUSE: &str = "house.laz --orient given --scene-config ../tau.json";
@@ -196,13 +196,13 @@ fn the_top_of_what_is_added_is_no_gain_and_a_map_shows_relief() {
 #[test]
 fn cells_that_become_unproven_are_neither_gain_nor_loss() {
     let place = Workplace::new();
-    let names = ["visible", "unproven"].map(str::to_owned).to_vec();
+    let labels = ["visible", "unproven"].map(|name| BandLabel::new(name, "1")).to_vec();
     for (name, seen, unproven) in [
         ("before.tif", vec![0, 1, 1, 1, 255, 0], vec![0, 0, 0, 1, 255, 0]),
         ("after.tif", vec![1, 1, 0, 1, 0, 1], vec![1, 1, 0, 0, 0, 0]),
     ] {
         let pixels = Pixels::answers([seen, unproven], [3, 2]).unwrap();
-        let raster = ResultRaster { pixels, names: names.clone(), description: SEEN.to_owned() };
+        let raster = ResultRaster { pixels, labels: labels.clone(), tags: Vec::new(), description: SEEN.to_owned() };
         raster.write(&place.path(name), None).unwrap();
     }
     let run = place.summary("difference before.tif after.tif -o change.csv");

@@ -34,6 +34,10 @@ const CROWNS_CONSTANT: f64 = -2.0;
 const CROWNS_BALLS: f64 = 0.2;
 /// See [`CROWNS_CONSTANT`].
 const CROWNS_DEPTH: f64 = 2.4;
+/// Distance of the nearest pulse beyond which a scanner on the ground did not see an end, metres.
+const SCANNED_WITHIN: f64 = 1.0;
+/// Unproven length from which on a line to such an end is unknown, metres: what [`super::ProofParams`] tolerates.
+const UNKNOWN_FROM: f64 = 0.5;
 /// Probabilities are no nearer to 0 and 1 before logarithms are taken.
 const MIN_PROBABILITY: f64 = 1e-4;
 
@@ -48,6 +52,8 @@ pub struct Evidence {
     pub is_between_places: bool,
     /// True if scanners stood on the ground.
     pub is_from_ground: bool,
+    /// True if scanners stood on the ground, and no pulse came within 1 m of an end below the highest return.
+    pub is_end_unscanned: bool,
     /// About how much of the line no pulse came near to, metres ([`Proof::sampled_unproven_length`]); 8 or more where
     /// it is 8 or more.
     pub unproven_length: f64,
@@ -138,8 +144,16 @@ impl Evidence {
             is_inside_obstacle: blocked.is_inside_obstacle(),
             is_between_places,
             is_from_ground: false,
+            is_end_unscanned: false,
             unproven_length,
         }
+    }
+
+    /// Returns true if nothing tells whether the target is visible: no scanner on the ground saw an end of the line, nor
+    /// 0.5 m or more of the free line.
+    #[must_use]
+    pub fn is_unknown(&self) -> bool {
+        self.is_end_unscanned && self.lines.is_free && self.unproven_length >= UNKNOWN_FROM
     }
 
     /// The classes whose scores are added up.
@@ -184,9 +198,12 @@ impl Evidence {
         to_f32(f64::from(without_crowns.probability()) * through)
     }
 
-    /// Returns the probability that the target is visible, 0 to 1.
+    /// Returns the probability that the target is visible, 0 to 1; NaN where it is [unknown](Evidence::is_unknown).
     #[must_use]
     pub fn probability(&self) -> f32 {
+        if self.is_unknown() {
+            return f32::NAN;
+        }
         let scores = &FITTED;
         let of_key = |key: ScoreKey| scores[key.term as usize][usize::from(key.is_free)][key.class];
         let sum: f64 = self.score_keys().map(of_key).sum();
@@ -209,12 +226,20 @@ impl MedialScene {
         let blocked = self.blocked_lines(BlockedLines::NONE, target, towards, range);
         let unproven_length = self.sampled_unproven_length(proof, (target, towards, range), MAX_UNPROVEN);
         let is_from_ground = proof.is_from_ground();
-        Evidence { is_from_ground, ..Evidence::from_the_air(blocked, is_between_places, unproven_length) }
+        let is_end_unscanned = is_from_ground
+            && [target, end]
+                .into_iter()
+                .any(|end| end.iter().all(|v| v.is_finite()) && !proof.is_seen_within(end, SCANNED_WITHIN));
+        Evidence {
+            is_from_ground,
+            is_end_unscanned,
+            ..Evidence::from_the_air(blocked, is_between_places, unproven_length)
+        }
     }
 
     /// Returns the probability that each of `targets`, (M, 3) local metres, is visible for `viewer`, 0 to 1, (M). NaN
     /// where [`MedialScene::visible_from`] has no answer: a target that is not finite, is the viewer itself, or lies
-    /// outside the cloud. Progress counts targets.
+    /// outside the cloud. NaN also where the answer is [unknown](Evidence::is_unknown). Progress counts targets.
     ///
     /// # Errors
     /// As [`MedialScene::visible_from`], and [`Error::InvalidParameter`] where pulses are not known.
@@ -350,7 +375,14 @@ mod tests {
 
     fn evidence(is_free: bool, free: [u8; 2], unproven_length: f64, is_between_places: bool) -> Evidence {
         let lines = ParallelLines { is_free, free, held: [0; 2] };
-        Evidence { lines, is_inside_obstacle: false, is_between_places, is_from_ground: false, unproven_length }
+        Evidence {
+            lines,
+            is_inside_obstacle: false,
+            is_between_places,
+            is_from_ground: false,
+            is_end_unscanned: false,
+            unproven_length,
+        }
     }
 
     #[test]
@@ -373,6 +405,18 @@ mod tests {
             assert!((0.02..0.9).contains(&doubtful), "{doubtful}");
             assert!(evidence(true, [8; 2], 9.0, is_between_places).probability() < visible);
         }
+    }
+
+    #[test]
+    fn a_free_line_to_an_end_that_nobody_scanned_is_unknown() {
+        let unscanned = |is_free, unproven_length| Evidence {
+            is_from_ground: true,
+            is_end_unscanned: true,
+            ..evidence(is_free, [8; 2], unproven_length, true)
+        };
+        assert!(unscanned(true, 0.5).is_unknown() && unscanned(true, 9.0).probability().is_nan());
+        // what pulses prove is known, and so is what blocks
+        assert!(!unscanned(true, 0.4).is_unknown() && unscanned(false, 9.0).probability() < 0.5);
     }
 
     #[test]

@@ -305,8 +305,15 @@ impl Proof {
     /// Returns true if a pulse came near to a place, local metres, or it lies above the highest return.
     #[must_use]
     pub fn is_seen(&self, place: [f64; 3]) -> bool {
+        self.is_seen_within(place, self.nearness)
+    }
+
+    /// Returns true if a pulse came within `distance` metres of a place, local metres, or it lies above the highest
+    /// return.
+    #[must_use]
+    pub fn is_seen_within(&self, place: [f64; 3], distance: f64) -> bool {
         let index = self.index.get(|control| self.make_index(control));
-        self.is_above_all(place) || index.is_some_and(|index| index.free_segments.passes_within(place, self.nearness))
+        self.is_above_all(place) || index.is_some_and(|index| index.free_segments.passes_within(place, distance))
     }
 
     /// Returns the pieces that [`Proof::unproven_length`] counts, from and to, metres from `target`, along the line.

@@ -252,7 +252,7 @@ class Cameras:
             of_targets = Table({"cameras": small}, places=coordinates(targets), crs=crs.text)
         else:
             text = "number of cameras that cover the cell, 65535 nodata"
-            of_targets = raster(small, grid, crs, name="cameras", description=text, nodata=65535.0)
+            of_targets = raster(small, grid, crs, name="cameras", description=text, nodata=65535.0, unit="1")
         places = columns.pop("place")
         cameras = Table(columns, places=places, crs=crs.text)
         cameras.remarks = of_targets.remarks = remarks

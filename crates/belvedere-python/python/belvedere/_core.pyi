@@ -9,8 +9,9 @@ _Progress = Callable[[str, int, int], object] | None
 _Grid = tuple[int, int, Sequence[float]]
 _Columns = list[tuple[str, str, npt.NDArray[Any]]]
 _Remarks = list[dict[str, Any]]
+_Measures = list[tuple[str, str, npt.NDArray[Any], bool, str, dict[str, str]]]
 _Results = tuple[
-    list[tuple[str, str, npt.NDArray[Any], bool]],
+    _Measures,
     _Grid | None,
     dict[str, Any] | None,
     _Remarks,
@@ -222,7 +223,7 @@ class Scene:
         unproven: str,
         probability: bool,
         progress: _Progress,
-    ) -> tuple[_Columns, _Grid | None, list[dict[str, Any]]]: ...
+    ) -> tuple[_Measures, _Grid | None, list[dict[str, Any]]]: ...
     def protected_view(
         self,
         landmark: dict[str, Any],
@@ -298,7 +299,7 @@ def devices() -> list[list[str]]: ...
 def write_geotiff(
     path: str | os.PathLike[str],
     bands: Sequence[npt.NDArray[Any]],
-    names: Sequence[str],
+    labels: Sequence[tuple[str, str, Sequence[tuple[str, str]]]],
     transform: Sequence[float],
     crs: Crs,
     nodata: float | None,

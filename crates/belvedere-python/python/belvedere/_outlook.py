@@ -149,7 +149,7 @@ class Outlook:
             reporter(progress),
         )
         made = {
-            name: raster(band, grid, self._core.crs, name=name, nodata=no_value)
+            name: raster(band, grid, self._core.crs, name=name, nodata=no_value, unit="1")
             for (band, no_value), name in zip(bands, names)
         }
         seen = made[names[0]]

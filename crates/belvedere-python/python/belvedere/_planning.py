@@ -125,8 +125,8 @@ class Planning:
         places = None if observers is None else map_places(observers, "observers", _OBSERVERS)
         columns, grid, given = self._core.landmark(what, places, looking, unproven, probability, reporter(progress))
         if places is None:
-            return measures(([(*column, False) for column in columns], grid, None, given, None), self._core.crs, None)
-        table = Table({name: values for name, _, values in columns}, places=places, crs=self._core.crs.text)
+            return measures((columns, grid, None, given, None), self._core.crs, None)
+        table = Table({name: values for name, _, values, *_ in columns}, places=places, crs=self._core.crs.text)
         table.remarks = warned(given)
         return table
 
@@ -201,7 +201,8 @@ class Planning:
         nan = float("nan")
         crs = self._core.crs
         found = {
-            name: raster(values, grid, crs, name=name, description=text, nodata=nan) for name, text, values in columns
+            name: raster(values, grid, crs, name=name, description=text, nodata=nan, unit="m")
+            for name, text, values in columns
         }
         for one in found.values():
             one.remarks = remarks
@@ -485,7 +486,7 @@ class Planning:
         place = _place(location, zone=zone, grid_north=grid_north)
         days = _days(date, period, year, time_step_min)
         (name, text, values), grid, given = self._core.envelope(build, days, place, reporter(progress))
-        height = raster(values, grid, self._core.crs, name=name, description=text, nodata=float("nan"))
+        height = raster(values, grid, self._core.crs, name=name, description=text, nodata=float("nan"), unit="m")
         height.remarks = warned(given)
         return height
 

@@ -36,6 +36,10 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         The value where there is none; NaN for float32.
     name, description : str
         What the values are.
+    unit : str
+        Unit of the values, such as ``h``; ``1`` for shares, counts and answers, empty where it is not known.
+    tags : dict of str to str
+        Further metadata, such as ``TIME``, ``TIME_ZONE`` and ``SUN_ELEVATION_DEG`` of a shadow.
     unproven : Raster or None
         Where proof was tested: 1 where nothing blocks but no laser pulse proves it, 0 where it is proven or blocked. Of
         several observers: for how many of those in `values` the view is not proven. It is the second band of files.
@@ -69,12 +73,15 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         description: str = "",
         unproven: Raster | None = None,
         is_answer: bool = False,
+        unit: str = "",
     ) -> None:
         self.values = values
         self.transform = transform
         self.nodata = nodata
         self.name = name
         self.description = description
+        self.unit = unit
+        self.tags: dict[str, str] = {}
         self.unproven = unproven
         self.probability: Raster | None = None
         self.uncertain: Raster | None = None
@@ -121,7 +128,8 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
 
     def to_geotiff(self, path: str | os.PathLike[str]) -> None:
         """Writes a GeoTIFF, as the command line does: -9999 where a float raster has no value, and answers as bytes
-        with 255. `unproven`, `probability` and `uncertain` are further bands; with a probability all are float.
+        with 255. `unproven`, `probability` and `uncertain` are further bands; with a probability all are float. GDAL
+        reads names, units and tags of the bands.
 
         Examples
         --------
@@ -132,10 +140,10 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         bands = [raster._pixels() for raster in rasters]
         if len({band.dtype for band in bands}) > 1:
             bands = [_numbers(raster) for raster in rasters]
-        names = [raster.name for raster in rasters] if self.name else []
+        labels = [(raster.name, raster.unit, list(raster.tags.items())) for raster in rasters] if self.name else []
         nodata = _core.NO_VALUE if bands[0].dtype == np.float32 else 255.0 if self._is_answer else self.nodata
         text = self.description or None
-        _core.write_geotiff(os.fspath(path), bands, names, self.transform, self._crs, nodata, text)
+        _core.write_geotiff(os.fspath(path), bands, labels, self.transform, self._crs, nodata, text)
 
     def _pixels(self) -> npt.NDArray[Any]:
         """The values as a file has them."""
@@ -161,7 +169,8 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         if self.crs is not None:
             grid_mapping |= {"crs_wkt": self.crs, "spatial_ref": self.crs}
         reference = xarray.DataArray(0, attrs=grid_mapping)
-        attributes: dict[str, Any] = {"long_name": self.description} if self.description else {}
+        texts = {"long_name": self.description, "units": self.unit} | {key.lower(): v for key, v in self.tags.items()}
+        attributes: dict[str, Any] = {key: text for key, text in texts.items() if text}
         if self.nodata is not None and np.isfinite(self.nodata):
             attributes["_FillValue"] = self.nodata
         return xarray.DataArray(
@@ -322,7 +331,8 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
 
     def __reduce__(self) -> tuple[Any, ...]:
         state = (self.values, self.transform, self._crs.state, self.nodata, self.name, self.description)
-        return _unpickled, (*state, self.unproven, self._is_answer, self.probability, self.uncertain)
+        more = (self.unproven, self._is_answer, self.probability, self.uncertain, self.unit, self.tags)
+        return _unpickled, (*state, *more)
 
 
 class Rasters(Mapping[str, Raster]):
@@ -392,10 +402,13 @@ def _unpickled(
     is_answer: bool,
     probability: Raster | None = None,
     uncertain: Raster | None = None,
+    unit: str = "",
+    tags: Mapping[str, str] | None = None,
 ) -> Raster:
     named: dict[str, Any] = {"nodata": nodata, "name": name, "description": description}
     made = Raster(values, transform, _core.Crs.from_state(system), **named, unproven=unproven, is_answer=is_answer)
     made.probability, made.uncertain = probability, uncertain
+    made.unit, made.tags = unit, dict(tags or {})
     return made
 
 

@@ -99,7 +99,7 @@ def raster(values: npt.NDArray[Any], grid: Grid, crs: _core.Crs, **named: Any) -
 #: Columns of measures, and the grid where targets are cells; for a mesh only the rows of its faces; then remarks, and
 #: the places of targets that were given on the map.
 Results = tuple[
-    list[tuple[str, str, npt.NDArray[Any], bool]],
+    list[tuple[str, str, npt.NDArray[Any], bool, str, dict[str, str]]],
     Union[Grid, None],
     Union[dict[str, Any], None],
     list[dict[str, Any]],
@@ -118,14 +118,14 @@ def measures(results: Results, crs: _core.Crs, targets: Targets) -> RastersOrTab
     if grid is not None:
         nan = float("nan")
         made = {
-            name: raster(values, grid, crs, name=name, description=text, nodata=nan, is_answer=is_answer)
-            for name, text, values, is_answer in columns
+            name: raster(values, grid, crs, name=name, description=text, nodata=nan, is_answer=is_answer, unit=unit)
+            for name, text, values, is_answer, unit, _ in columns
         }
-        for one in made.values():
-            one.remarks = remarks
+        for name, *_, tags in columns:
+            made[name].tags, made[name].remarks = tags, remarks
         return Rasters(made)
     table = Table(
-        {name: values for name, _, values, _ in columns},
+        {name: values for name, _, values, *_ in columns},
         places=coordinates(targets) if on_map is None else on_map,
         crs=crs.text,
     )

@@ -24,7 +24,9 @@ pub use crate::apps::targets::ResultKind;
 
 use crate::apps::targets::{Measure, TargetLayout, Targets};
 use crate::ground::{Ground, MapGrid};
-use crate::io::{ExtraColumn, ExtraValues, Georeference, TextRows, WriteReport, write_cloud, write_text_rows};
+use crate::io::{
+    ExtraColumn, ExtraValues, Georeference, MetadataTag, TextRows, WriteReport, write_cloud, write_text_rows,
+};
 use crate::{ElevationGrid, Error, Frame, Mesh, PointCloud, Result};
 use std::path::Path;
 
@@ -61,7 +63,7 @@ pub fn terrain_georeference(terrain: &ElevationGrid, frame: &Frame) -> Georefere
     Georeference { upper_left, column_step, row_step, crs: frame.crs.clone() }
 }
 
-/// Writes the measures of `targets` in the format that the extension of `path` names.
+/// Writes the measures of `targets` in the format that the extension of `path` names. Rasters have `tags` as metadata.
 ///
 /// # Errors
 /// [`Error::UnsupportedTargets`] where such targets do not fit the format, [`Error::LengthMismatch`] where a measure
@@ -71,6 +73,7 @@ pub fn write_measures(
     targets: &Targets,
     from: TakenFrom<'_>,
     measures: &[Measure],
+    tags: &[MetadataTag],
 ) -> Result<WriteReport> {
     let Some(first) = measures.first() else {
         return Err(Error::NoPoints { what: "there is no measure to write".to_owned() });
@@ -83,7 +86,8 @@ pub fn write_measures(
     let is_tiff = matches!(extension.as_str(), "tif" | "tiff");
     match (&targets.layout, from) {
         (TargetLayout::Cells(_), _) if is_tiff => {
-            write_raster(path, targets, &measures.iter().collect::<Vec<_>>()).map(|()| WriteReport::default())
+            let measures: Vec<&Measure> = measures.iter().collect();
+            write_raster(path, targets, &measures, tags).map(|()| WriteReport::default())
         }
         (TargetLayout::Surface(surface), TakenFrom::Mesh(mesh)) => {
             match extension.as_str() {
@@ -115,13 +119,13 @@ pub fn write_measures(
 
 /// Writes measures of the cells of a grid as the bands of a raster, with the reference system of their frame. Their
 /// kind decides the type of the pixels and their value for no data; measures of several kinds are numbers. Cells that
-/// are no targets have no value in any band. Where cells stand on a mesh that was added, a last band says which
+/// are no targets have no value in any band. `tags` are the metadata of the whole. Where cells stand on a mesh that was added, a last band says which
 /// ([`ADDED_BAND`]).
 ///
 /// # Errors
 /// [`Error::UnsupportedTargets`] for targets that are no cells, [`Error::LengthMismatch`] unless there is a value for
 /// each cell, and those of [`ResultRaster::write`].
-pub fn write_raster(path: &Path, targets: &Targets, measures: &[&Measure]) -> Result<()> {
+pub fn write_raster(path: &Path, targets: &Targets, measures: &[&Measure], tags: &[MetadataTag]) -> Result<()> {
     let grid = cells(targets)?.grid;
     let place = georeference(&grid, &targets.frame);
     let mut bands: Vec<Measure> = measures.iter().map(|&measure| measure.clone()).collect();
@@ -130,7 +134,7 @@ pub fn write_raster(path: &Path, targets: &Targets, measures: &[&Measure]) -> Re
         bands.push(Measure::new(ADDED_BAND, values).with_kind(first.kind));
     }
     bands.iter_mut().for_each(|band| targets.clear_unasked(&mut band.values));
-    ResultRaster::of_measures(&bands, [grid.width, grid.height])?.write(path, Some(&place))
+    ResultRaster::of_measures(&bands, [grid.width, grid.height])?.with_tags(tags).write(path, Some(&place))
 }
 
 fn cells(targets: &Targets) -> Result<&Ground> {

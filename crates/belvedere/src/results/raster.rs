@@ -4,7 +4,10 @@
 use crate::apps::difference::described;
 use crate::apps::targets::{Measure, ResultKind};
 use crate::apps::viewshed::{SEEN, SEEN_BY, Viewshed};
-use crate::io::{BandValues, Bands, Georeference, ReadBands, Source, read_tif_bands, write_cog, write_tif_bands};
+use crate::io::{
+    BandLabel, BandValues, Bands, Georeference, MetadataTag, ReadBands, Source, read_tif_bands, write_cog,
+    write_tif_bands,
+};
 use crate::query::Answer;
 use crate::raster::Raster;
 use crate::{Error, Result};
@@ -34,8 +37,10 @@ pub enum Pixels {
 pub struct ResultRaster {
     /// The values.
     pub pixels: Pixels,
-    /// Names of the bands.
-    pub names: Vec<String>,
+    /// Labels of the bands.
+    pub labels: Vec<BandLabel>,
+    /// Metadata of the whole, such as the question.
+    pub tags: Vec<MetadataTag>,
     /// Description of the values; may be empty.
     pub description: String,
 }
@@ -170,10 +175,10 @@ impl ResultRaster {
     /// # Errors
     /// Those of [`Pixels::of_measures`].
     pub fn of_measures(measures: &[Measure], size: [usize; 2]) -> Result<Self> {
-        let names = measures.iter().map(|measure| measure.name.clone()).collect();
         let description = measures.first().map(|first| described(first.description, &first.subject));
-        let description = description.unwrap_or_default();
-        Ok(Self { pixels: Pixels::of_measures(measures, size)?, names, description })
+        let pixels = Pixels::of_measures(measures, size)?;
+        let labels = measures.iter().map(label).collect();
+        Ok(Self { pixels, labels, tags: Vec::new(), description: description.unwrap_or_default() })
     }
 
     /// Creates the raster of a viewshed of cells. One observer gives 1 where nothing blocks the view, several give
@@ -199,8 +204,9 @@ impl ResultRaster {
             Pixels::counts([band(&free)].into_iter().chain(is_tested.then(|| band(&unproven))), size)?
         };
         let [name, description] = viewshed_words(seen.seen_counts.len());
-        let names = [name].into_iter().chain(is_tested.then_some(UNPROVEN_BAND)).map(str::to_owned).collect();
-        Ok(Self { pixels, names, description: description.to_owned() })
+        let names = [name].into_iter().chain(is_tested.then_some(UNPROVEN_BAND));
+        let labels = names.map(|name| BandLabel::new(name, "1")).collect();
+        Ok(Self { pixels, labels, tags: Vec::new(), description: description.to_owned() })
     }
 
     /// This with a further band for each measure. Bands of different kinds become numbers.
@@ -213,12 +219,18 @@ impl ResultRaster {
         }
         let kind = self.pixels.kind();
         let own = self.pixels.to_numbers()?;
-        let own =
-            own.iter().zip(&self.names).map(|(band, name)| Measure::new(name, band.values().to_vec()).with_kind(kind));
+        let own = own.iter().zip(&self.labels);
+        let own = own.map(|(band, label)| Measure::new(&label.name, band.values().to_vec()).with_kind(kind));
         let all: Vec<Measure> = own.chain(measures.iter().cloned()).collect();
         let pixels = Pixels::of_measures(&all, size)?;
-        let names = all.into_iter().map(|measure| measure.name).collect();
-        Ok(Self { pixels, names, description: self.description })
+        let labels = self.labels.into_iter().chain(measures.iter().map(label)).collect();
+        Ok(Self { pixels, labels, ..self })
+    }
+
+    /// This with metadata of the whole.
+    #[must_use]
+    pub fn with_tags(self, tags: &[MetadataTag]) -> Self {
+        Self { tags: tags.to_vec(), ..self }
     }
 
     /// Writes it as a GeoTIFF.
@@ -239,8 +251,13 @@ impl ResultRaster {
 
     fn bands(&self) -> Bands<'_> {
         let description = (!self.description.is_empty()).then_some(self.description.as_str());
-        Bands { values: self.pixels.band_values(), names: &self.names, description }
+        Bands { values: self.pixels.band_values(), labels: &self.labels, tags: &self.tags, description }
     }
+}
+
+/// The label of the band of a measure.
+fn label(measure: &Measure) -> BandLabel {
+    BandLabel { tags: measure.tags.clone(), ..BandLabel::new(&measure.name, measure.unit) }
 }
 
 /// Name of the first band of what so many observers see, and what its values are.

@@ -3,11 +3,11 @@
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::landmark::{LandmarkMeasure, LandmarkView, measures};
+use belvedere::apps::targets::Measure;
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, highest_points};
-use belvedere::io::{TableCells, TextRows, atomic, with_columns_read, write_table, write_tif_f32};
-use belvedere::raster::Raster;
-use belvedere::results::{ResultKind, georeference};
+use belvedere::io::{MetadataTag, TableCells, TextRows, atomic, with_columns_read, write_table};
+use belvedere::results::{ResultRaster, georeference};
 use belvedere::vector::to_f32;
 use std::path::Path;
 
@@ -38,8 +38,14 @@ pub(super) fn write_rows(
 }
 
 /// The share seen as a raster.
-pub(super) fn write_share(output: &Path, views: &[LandmarkView], ground: &Ground, cloud: &PointCloud) -> Result<()> {
-    write_measure(output, &measures(views)[0], views, ground, cloud)
+pub(super) fn write_share(
+    output: &Path,
+    views: &[LandmarkView],
+    ground: &Ground,
+    cloud: &PointCloud,
+    tags: &[MetadataTag],
+) -> Result<()> {
+    write_measure(output, &measures(views)[0], views, (ground, cloud), tags)
 }
 
 /// Every measure as a raster of its own in `folder`; the files written.
@@ -48,12 +54,13 @@ pub(super) fn write_measures(
     views: &[LandmarkView],
     ground: &Ground,
     cloud: &PointCloud,
+    tags: &[MetadataTag],
 ) -> Result<Vec<String>> {
     atomic::make_folder(folder)?;
     let mut written = Vec::new();
     for measure in measures(views) {
         let path = folder.join(format!("{}.tif", measure.name));
-        write_measure(&path, measure, views, ground, cloud)?;
+        write_measure(&path, measure, views, (ground, cloud), tags)?;
         written.push(path.display().to_string());
     }
     Ok(written)
@@ -63,14 +70,14 @@ fn write_measure(
     output: &Path,
     measure: &LandmarkMeasure,
     views: &[LandmarkView],
-    ground: &Ground,
-    cloud: &PointCloud,
+    (ground, cloud): (&Ground, &PointCloud),
+    tags: &[MetadataTag],
 ) -> Result<()> {
     let grid = ground.grid;
     let values = views.iter().map(|view| to_f32(measure.of(view))).collect();
-    let raster = Raster::from_values(grid.width, grid.height, values)?;
-    let place = georeference(&grid, &cloud.frame);
-    Ok(write_tif_f32(output, &raster, Some(&place), Some(ResultKind::NO_NUMBER), Some(measure.description))?)
+    let of_cells = Measure::new(measure.name, values).with_description(measure.description).with_unit(measure.unit);
+    let raster = ResultRaster::of_measures(&[of_cells], [grid.width, grid.height])?.with_tags(tags);
+    Ok(raster.write(output, Some(&georeference(&grid, &cloud.frame)))?)
 }
 
 /// The share seen as a map.

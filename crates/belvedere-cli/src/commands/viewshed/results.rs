@@ -10,8 +10,8 @@ use belvedere::apps::viewshed::{Viewshed, title_of_cells};
 use belvedere::figures::{MapLegend, MapMark, MapPicture, Picture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, MapGrid, highest_points};
 use belvedere::io::{
-    ExtraColumn, ExtraValues, Georeference, PolygonArea, WriteReport, outlines, write_cloud, write_geojson_areas,
-    write_npy_u32_bands, write_tif_u32,
+    ExtraColumn, ExtraValues, Georeference, MetadataTag, PolygonArea, WriteReport, outlines, write_cloud,
+    write_geojson_areas, write_npy_u32_bands, write_tif_u32,
 };
 use belvedere::query::Answer;
 use belvedere::raster::Raster;
@@ -65,14 +65,15 @@ impl CellSurface<'_> {
 
 impl SeenCells<'_> {
     /// Writes a raster, a map or areas.
-    pub(super) fn write(&self, output: &Path) -> Result<()> {
+    pub(super) fn write(&self, output: &Path, tags: &[MetadataTag]) -> Result<()> {
         let place = self.on.georeference(self.frame);
         match extension(output).as_str() {
             "geojson" => self.write_areas(output, &place),
             "png" => self.write_map(output),
             _ => {
                 let size = self.on.size();
-                let raster = ResultRaster::of_viewshed(self.seen, size)?.with_measures(self.sure, size)?;
+                let raster =
+                    ResultRaster::of_viewshed(self.seen, size)?.with_measures(self.sure, size)?.with_tags(tags);
                 Ok(raster.write(output, Some(&place))?)
             }
         }

@@ -45,7 +45,7 @@ impl WindowOutput<'_> {
             _ => {
                 let centers: Vec<[f64; 3]> = self.found.windows.iter().map(|window| window.center).collect();
                 let targets = Targets::of_places(&centers, self.scene.frame().clone());
-                write_measures(output, &targets, TakenFrom::Nothing, self.measures)
+                write_measures(output, &targets, TakenFrom::Nothing, self.measures, &[])
             }
         }
     }

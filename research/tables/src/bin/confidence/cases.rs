@@ -44,6 +44,7 @@ pub(crate) struct TownSurvey {
 }
 
 /// A line of sight.
+#[derive(Clone)]
 pub(crate) struct Case {
     pub(crate) set: QuerySet,
     pub(crate) evidence: Evidence,

@@ -97,9 +97,9 @@ fn surveys(presets: &str, seeds: &str, densities: &str, regimes: &str) -> AnyRes
 
 fn judge(presets: &str, seeds: &str, densities: &str, regimes: &str) -> AnyResult<()> {
     println!(
-        "| pulses per m² | scanner | set | wrong | Brier: answer | probability | ECE | most certain: answer | probability |"
+        "| pulses per m² | scanner | set | unknown | wrong | Brier: answer | probability | ECE | most certain: answer | probability |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|");
     let mut whole: Vec<Case> = Vec::new();
     for density in densities.split(',') {
         for regime in regimes.split(',') {
@@ -114,7 +114,8 @@ fn judge(presets: &str, seeds: &str, densities: &str, regimes: &str) -> AnyResul
         (0..10).map(|tenth| format!("{:.1}", f64::from(tenth) / 10.0)).collect::<Vec<_>>().join(" | ")
     );
     for set in SETS {
-        let tenths = calibration(&whole, |case| case.set == set, Case::probability).tenths();
+        let tenths =
+            calibration(&whole, |case| case.set == set && !case.evidence.is_unknown(), Case::probability).tenths();
         let cells = tenths.map(|t| format!("{:.1} → {:.1} ({})", 100.0 * t.expected, 100.0 * t.found, t.count));
         println!("| {} | {} |", set.name(), cells.join(" | "));
     }
@@ -122,12 +123,16 @@ fn judge(presets: &str, seeds: &str, densities: &str, regimes: &str) -> AnyResul
 }
 
 fn print_rows(name: &str, cases: &[Case]) {
+    let known: Vec<Case> = cases.iter().filter(|case| !case.evidence.is_unknown()).cloned().collect();
     for set in SETS {
+        let [all, with_probability] =
+            [cases, &known].map(|cases| cases.iter().filter(|case| case.set == set).count() as f64);
         let [hard, found] = [Case::hard as fn(&Case) -> f32, Case::probability]
-            .map(|probability| calibration(cases, |case| case.set == set, probability));
+            .map(|probability| calibration(&known, |case| case.set == set, probability));
         println!(
-            "| {name} | {} | {:.2} | {:.4} | {:.4} ({:+.0} %) | {:.2} | {:.2} | {:.2} |",
+            "| {name} | {} | {:.1} | {:.2} | {:.4} | {:.4} ({:+.0} %) | {:.2} | {:.2} | {:.2} |",
             set.name(),
+            100.0 * (1.0 - with_probability / all),
             100.0 * hard.brier(),
             hard.brier(),
             found.brier(),

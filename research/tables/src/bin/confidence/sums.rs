@@ -101,7 +101,7 @@ pub(super) fn cases(survey: &TownSurvey) -> AnyResult<Vec<SumCase>> {
                 truths.iter_mut().zip(blocked).for_each(|(sum, blocked)| *sum += if blocked { 0.0 } else { *weight });
             }
             let block = RowBlock { rows: 0..found.len(), matrix, crowns: None };
-            let classes = outlines.classes(&block, &are_inside, None)?;
+            let classes = outlines.classes((&block, 1.0), &are_inside, None)?;
             cases.extend(truths.iter().zip(classes).enumerate().map(|(row, (truth, class))| SumCase {
                 kind,
                 name,
