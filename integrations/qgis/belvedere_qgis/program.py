@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import re
@@ -63,9 +64,14 @@ def find(setting=""):
     found = shutil.which("belvedere")
     if found:
         return found
-    for folder in [*_script_folders(), PLUGIN / "bin"]:
-        if _is_program(folder / NAME):
-            return str(folder / NAME)
+    packed = PLUGIN / "bin" / NAME
+    if packed.is_file() and not os.access(packed, os.X_OK):
+        # QGIS unpacks a zip without the right to run its files
+        with contextlib.suppress(OSError):
+            packed.chmod(0o755)
+    for program in [*(folder / NAME for folder in _script_folders()), packed]:
+        if _is_program(program):
+            return str(program)
     raise ProgramError(MISSING)
 
 

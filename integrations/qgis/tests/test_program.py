@@ -32,7 +32,9 @@ def test_places_are_searched_in_their_order(tmp_path, monkeypatch):
     with pytest.raises(program.ProgramError, match=r"checkout.*docs/qgis.md"):
         program.find()
     in_plugin = make_program(tmp_path / "plugin" / "bin" / program.NAME)
-    assert program.find() == in_plugin
+    # as QGIS unpacks it
+    os.chmod(in_plugin, 0o644)
+    assert program.find() == in_plugin and os.access(in_plugin, os.X_OK)
     of_pip = make_program(tmp_path / "scripts" / program.NAME)
     assert program.find() == of_pip
     on_path = make_program(tmp_path / "path" / program.NAME)
