@@ -34,7 +34,7 @@ fn main() -> ExitCode {
         Err(error) => refusal(&error, &typed),
     };
     cli.global.command = typed_command::described(&program, &matches);
-    match written_files::check(&program, &matches).and_then(|()| commands::run(&cli)) {
+    match written_files::check(&program, &matches).and_then(|()| commands::run(&mut cli)) {
         Ok(summary) => summary.print(&cli.global),
         Err(error) => failure(&parameter_flags::with_flag(error, &program, &matches)),
     }

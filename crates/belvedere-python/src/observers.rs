@@ -1,6 +1,6 @@
 //! Observers: positions of eyes, with or without their height.
 
-use crate::errors::wrong;
+use crate::errors::{exception, wrong};
 use belvedere::apps::ask::{self, Standing};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
@@ -14,6 +14,10 @@ pub(crate) fn standing_observers(array: &PyReadonlyArray2<'_, f64>, scene: &ask:
 /// The places, local metres; z is NaN where it follows from the ground. `what` names the argument.
 pub(crate) fn standing(array: &PyReadonlyArray2<'_, f64>, what: &str, scene: &ask::Scene) -> PyResult<Vec<Standing>> {
     let rows = crate::arrays::fixed_rows(array, what)?;
-    let local = |row| Standing { place: scene.frame().local_from_file(row), height: None };
-    Ok(rows.into_iter().map(local).collect())
+    let (frame, bounds) = (scene.frame(), ask::bounds_on_map(scene));
+    let local = |[x, y, z]: [f64; 3]| {
+        let [x, y] = ask::end_on_map([x, y], &frame.crs, bounds).map_err(exception)?;
+        Ok(Standing { place: frame.local_from_file([x, y, z]), height: None })
+    };
+    rows.into_iter().map(local).collect()
 }

@@ -5,12 +5,10 @@ use crate::chunks::Chunks;
 use crate::page;
 use crate::scene::{PageScene, ShownCloud};
 use crate::scene_text::{SceneText, typed};
-use belvedere::apps::ask::{HowSure, ThroughTrees};
+use belvedere::apps::ask::{self, HowSure, Places, ShadowQuestion, SunPlace, ThroughTrees, UNPROVEN};
 use belvedere::apps::eyes::fault_of;
-use belvedere::apps::shadow::{Edges, ShadowSun, scene_shadow};
-use belvedere::apps::sun::{Date, Refraction, SunPosition, Zone, sun_position_with};
+use belvedere::apps::sun::{Date, Refraction, Zone, sun_position_with};
 use belvedere::apps::targets::{Targets, set_on_ground};
-use belvedere::apps::tree_light::Season;
 use belvedere::apps::viewshed::{OBSERVER_HEIGHT, Observer, SightLimits, ViewshedParams, viewshed};
 use belvedere::control::Control;
 use belvedere::model::SceneModel;
@@ -93,7 +91,8 @@ pub fn export(
     Ok((html(&data), report))
 }
 
-/// The suns of the whole hours of a day, and a bit for each point in the order in which points are sent: 1 for lit.
+/// The suns of the whole hours of a day, and two bits for each point in the order in which points are sent: 0 in shadow,
+/// 1 lit, 2 lit but unproven, 3 no answer.
 fn suns(
     scene: &PageScene,
     sent: &PointCloud,
@@ -102,32 +101,55 @@ fn suns(
     control: &Control<'_>,
 ) -> Result<Vec<Value>> {
     let site = scene.site()?;
-    let mut hours = Vec::new();
+    // solar time has no name that can be typed
+    let utc = Zone::utc();
+    let typed_zone = if Zone::parse(zone.name()).is_ok() { zone } else { &utc };
+    let targets = Places::Targets(Arc::new(Targets::of_points(sent, None)));
+    let mut found = Vec::new();
     for hour in 0..24 {
         // an hour that clocks skip has no sun
         let Ok(instant) = zone.instant_of(date, f64::from(hour)) else { continue };
         let position = sun_position_with(&site, instant, Refraction::default())?;
-        if position.elevation > 0.0 {
-            hours.push((hour, zone.display(instant), position));
+        if position.elevation <= 0.0 {
+            continue;
         }
-    }
-    let season = Some(Season::on(date, &site));
-    let kinds: Vec<ShadowSun> =
-        hours.iter().map(|(_, _, position)| ShadowSun { to_sun: position.to_sun(&site), season }).collect();
-    let blockers = scene.blockers(UnprovenAs::Visible, control)?;
-    let targets = Targets::of_points(sent, None);
-    let lit = scene_shadow(&*blockers, &targets, &kinds, Edges::Hard, control)?;
-    let of_hour = |((hour, time, position), lit): (&(i32, String, SunPosition), &Vec<f32>)| {
-        json!({
+        let time = typed_zone.display(instant);
+        let question = ShadowQuestion {
+            place: SunPlace { zone: Some(typed_zone.name().to_owned()), ..SunPlace::default() },
+            ..ShadowQuestion::of_times(vec![time.clone()])
+        };
+        let answers = ask::ask(&scene.inner, &question, &targets, control)?;
+        let measure = |name: &str| answers.measures.iter().find(|measure| measure.name == name).map(|m| &m.values[..]);
+        let (lit, unproven) = (measure("lit").unwrap_or_default(), measure(UNPROVEN));
+        let is_unproven = |row: usize| unproven.and_then(|unproven| unproven.get(row)).is_some_and(|&is| is > 0.0);
+        let code = |(row, &share): (usize, &f32)| match share {
+            share if share > 0.0 => {
+                if is_unproven(row) {
+                    2
+                } else {
+                    1
+                }
+            }
+            0.0 => 0,
+            _ => 3,
+        };
+        let codes: Vec<u8> = lit.iter().enumerate().map(code).collect();
+        let count = |wanted: &[u8]| codes.iter().filter(|code| wanted.contains(code)).count();
+        let typed_time: String = time.chars().take("2026-06-21T15:00".len()).collect();
+        found.push(json!({
             "minutes": 60 * hour,
-            "time": time,
+            "time": zone.display(instant),
             "azimuth_deg": rounded(position.azimuth.to_degrees(), 4),
             "elevation_deg": rounded(position.elevation.to_degrees(), 4),
-            "command": text.shadow(&format!("{date}T{hour:02}:00"), zone.name(), ThroughTrees::Opaque, HowSure::default()),
-            "bits": base64(&packed(lit, 1, |&share| u8::from(share > 0.0))),
-        })
-    };
-    Ok(hours.iter().zip(&lit).map(of_hour).collect())
+            "lit": count(&[1, 2]),
+            "unproven": unproven.map(|_| count(&[2])),
+            "tells_unproven": unproven.is_some(),
+            "remarks": answers.remarks,
+            "command": text.shadow(&typed_time, typed_zone.name(), ThroughTrees::Opaque, HowSure::default()),
+            "answers": base64(&packed(&codes, 2, |&code| code)),
+        }));
+    }
+    Ok(found)
 }
 
 /// The viewpoints, and two bits for each point in the order in which points are sent: 0 blocked, 1 visible, 2 unproven,

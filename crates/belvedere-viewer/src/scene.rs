@@ -87,6 +87,7 @@ impl ShownCloud {
             "origin": frame.origin,
             "metres_per_unit": frame.crs.metres_per_unit_xyz(),
             "crs": frame.crs.describe(),
+            "crs_epsg": frame.crs.epsg,
             "tells_unit": frame.crs.kind != CrsKind::Unknown,
             "low": bounds.low,
             "high": bounds.high,

@@ -74,6 +74,19 @@ impl ShadowQuestion {
 type Sureness = (Vec<f32>, Option<Vec<f32>>);
 
 impl ShadowQuestion {
+    /// Creates the question about the sun at these times, with hard edges and opaque trees.
+    #[must_use]
+    pub fn of_times(times: Vec<String>) -> Self {
+        Self {
+            suns: Suns::Times(times),
+            place: SunPlace::default(),
+            edges: Edges::Hard,
+            trees: ThroughTrees::Opaque,
+            unproven: None,
+            how_sure: HowSure::default(),
+        }
+    }
+
     /// Computes the certainty of the answers of each sun; empty if not wanted. `doubts` are of a single sun.
     fn sureness(
         &self,

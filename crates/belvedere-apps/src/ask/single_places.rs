@@ -21,6 +21,11 @@ const MAX_FIGURES: usize = 5;
 /// Maximum distance of a place from the box of the points, metres: that of targets of a scene.
 const MARGIN: f64 = 1.0;
 
+/// The same for ends of lines of sight, metres: mountains on the horizon.
+const END_MARGIN: f64 = 200e3;
+/// Advice for degrees in the wrong order.
+const SWAPPED: &str = "latitude before longitude: these are swapped";
+
 /// A single place of a question.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PlaceSection {
@@ -48,27 +53,19 @@ pub enum HeightFrom {
 /// # Errors
 /// [`Error::InvalidParameter`] for a place beside the points, and those of [`Crs::geographic_projection`] for degrees.
 pub fn position_on_map(given: [f64; 2], crs: &Crs, bounds: [[f64; 2]; 2]) -> Result<[f64; 2]> {
-    let margin = MARGIN / crs.metres_per_unit;
-    let is_inside =
-        |place: &[f64; 2]| (0..2).all(|i| (bounds[0][i] - margin..=bounds[1][i] + margin).contains(&place[i]));
+    let is_inside = |place: &[f64; 2]| is_within(*place, bounds, MARGIN / crs.metres_per_unit);
     if is_inside(&given) {
         return Ok(given);
     }
     let [latitude, longitude] = given;
     let mut way_out = "on the points of the cloud";
-    if latitude.abs() <= 90.0 && longitude.abs() <= 180.0 {
+    if are_degrees(given) {
         crs.geographic_projection()?;
-        // a projection keeps the step between datums of its first place: each try has one of its own
-        let projected = |latitude: f64, longitude: f64| {
-            let projection = crs.geographic_projection().ok()?;
-            let place = projection.project(latitude.to_radians(), longitude.to_radians()).ok()?;
-            Some(place.map(|v| v / crs.metres_per_unit)).filter(is_inside)
-        };
-        if let Some(place) = projected(latitude, longitude) {
+        if let Some(place) = projected(given, crs).filter(is_inside) {
             return Ok(place);
         }
-        way_out = match projected(longitude, latitude) {
-            Some(_) => "latitude before longitude: these are swapped",
+        way_out = match projected([longitude, latitude], crs).filter(is_inside) {
+            Some(_) => SWAPPED,
             None => {
                 "on the points of the cloud, as latitude and longitude in degrees, or in the coordinates of the file"
             }
@@ -85,6 +82,44 @@ pub fn position_on_map(given: [f64; 2], crs: &Crs, bounds: [[f64; 2]; 2]) -> Res
     })
 }
 
+/// Coordinates of the file of an end of lines of sight that is given in them, or as latitude and longitude in degrees.
+/// `bounds` as in [`position_on_map`]; ends may lie far beside the points.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for longitude before latitude.
+pub fn end_on_map(given: [f64; 2], crs: &Crs, bounds: [[f64; 2]; 2]) -> Result<[f64; 2]> {
+    let is_near = |place: &[f64; 2]| is_within(*place, bounds, END_MARGIN / crs.metres_per_unit);
+    if is_near(&given) || !are_degrees(given) {
+        return Ok(given);
+    }
+    if let Some(place) = projected(given, crs).filter(is_near) {
+        return Ok(place);
+    }
+    let [latitude, longitude] = given;
+    if projected([longitude, latitude], crs).is_some_and(|place| is_within(place, bounds, MARGIN)) {
+        let value = format!("{latitude}, {longitude}");
+        return Err(Error::InvalidParameter { parameter: Parameter::Position, value, expected: SWAPPED });
+    }
+    Ok(given)
+}
+
+/// Coordinates of the file of a latitude and longitude in degrees; `None` without a known projection.
+fn projected([latitude, longitude]: [f64; 2], crs: &Crs) -> Option<[f64; 2]> {
+    // a projection keeps the step between datums of its first place: each place has one of its own
+    let projection = crs.geographic_projection().ok()?;
+    let place = projection.project(latitude.to_radians(), longitude.to_radians()).ok()?;
+    Some(place.map(|v| v / crs.metres_per_unit))
+}
+
+fn is_within(place: [f64; 2], [low, high]: [[f64; 2]; 2], margin: f64) -> bool {
+    (0..2).all(|i| (low[i] - margin..=high[i] + margin).contains(&place[i]))
+}
+
+/// True for numbers that can be latitude and longitude in degrees.
+fn are_degrees([latitude, longitude]: [f64; 2]) -> bool {
+    latitude.abs() <= 90.0 && longitude.abs() <= 180.0
+}
+
 /// Returns places on the map, each with its height where that is known, as single places of a scene that stand `height`
 /// metres above what is below.
 ///
@@ -95,17 +130,22 @@ pub fn standing_on_map(
     height: Option<f64>,
     scene: &Scene,
 ) -> Result<Vec<Standing>> {
-    let frame = scene.frame();
-    let (low, high) = scene.model().bounds().on_map();
-    let bounds = [low, high].map(|[x, y]| {
-        let [x, y, _] = frame.file_from_local([x, y, 0.0]);
-        [x, y]
-    });
+    let (frame, bounds) = (scene.frame(), bounds_on_map(scene));
     let one = |(place, given): ([f64; 2], Option<f64>)| {
         let [x, y] = position_on_map(place, &frame.crs, bounds)?;
         Ok(Standing { place: frame.local_from_file([x, y, given.unwrap_or(f64::NAN)]), height })
     };
     places.into_iter().map(one).collect()
+}
+
+/// South-west and north-east corner of the points of a scene, in the coordinates of the file.
+#[must_use]
+pub fn bounds_on_map(scene: &Scene) -> [[f64; 2]; 2] {
+    let (low, high) = scene.model().bounds().on_map();
+    [low, high].map(|[x, y]| {
+        let [x, y, _] = scene.frame().file_from_local([x, y, 0.0]);
+        [x, y]
+    })
 }
 
 /// Local metres of `places`. One without a height lies above the ground, or above what covers the ground there.

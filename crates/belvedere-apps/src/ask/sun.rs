@@ -71,7 +71,7 @@ pub enum Suns {
     Directions(Vec<[f64; 2]>),
     /// Instants, ISO 8601, with an offset unless the zone says how clocks run.
     Times(Vec<String>),
-    /// The middles of the steps of days during which the sun is up.
+    /// Times of the clock at which the sun is up, such as each full hour.
     Days(Days),
 }
 
@@ -373,20 +373,42 @@ impl Days {
         Ok((!dates.is_empty()).then_some(Period::Days(dates)))
     }
 
-    /// The middles of the steps during which the sun is up.
+    /// The times at which the sun is up, each a number of steps after the clock begins the day: 07:00, 07:30 and so on.
     fn instants(&self, place: &SunPlace, site: &Site, zone: &Zone) -> Result<Vec<f64>> {
         let Some(period) = self.period(place, site, zone)? else {
             return refused(Parameter::Period, "missing", "given as days or as two times");
         };
         let params = self.params(place);
         let days = sun_days_above(site, zone, &period, &params)?;
-        let steps: Vec<f64> =
-            days.iter().flat_map(|day| &day.steps).map(|step| f64::midpoint(step.start, step.end)).collect();
-        if !steps.is_empty() {
-            return Ok(steps);
+        let mut instants: Vec<f64> = days.iter().flat_map(|day| clock_steps(day, params.step)).collect();
+        // a sun that is up at midnight ends one day and begins the next
+        instants.dedup();
+        if !instants.is_empty() {
+            return Ok(instants);
+        }
+        if days.iter().any(|day| !day.steps.is_empty()) {
+            return refused(
+                Parameter::TimeStep,
+                format!("{} minutes", params.step / 60.0),
+                "shorter: the sun is up at no such time of the clock in this period",
+            );
         }
         refused(Parameter::Period, "without sun", "other days: the sun does not rise there in this period")
     }
+}
+
+/// The instants of a day at which the sun is up, multiples of `step` seconds after its clock begins it.
+fn clock_steps(day: &SunDay, step: f64) -> impl Iterator<Item = f64> {
+    let (start, steps) = (day.clock_start, &day.steps);
+    let pieces = steps.iter().map(move |piece| [piece.start, piece.end].map(|end| (end - start) / step));
+    let numbers = pieces.flat_map(|[from, to]| {
+        #[expect(clippy::cast_possible_truncation, reason = "a few thousand steps of a day")]
+        (from.ceil() as i32..=to.floor() as i32)
+    });
+    // neighbouring pieces share their ends
+    let mut last = None;
+    let numbers = numbers.filter(move |number| last.replace(*number) != Some(*number));
+    numbers.map(move |number| start + f64::from(number) * step)
 }
 
 /// The days of a period with their sun, as [`sun_days`] gives them.
@@ -540,9 +562,11 @@ fn sun_tags(angles: [f64; 2], instant: Option<(&Zone, f64)>) -> Vec<(String, Str
     of_time.chain(of_place).map(|(name, text)| (name.to_owned(), text)).collect()
 }
 
-/// An instant in names: its date and time by the clocks of the zone, such as `20260621_1500`.
+/// An instant in names: its date and time by the clocks of the zone, such as `20260621_1500`; with
+/// seconds where it has some.
 #[must_use]
 pub fn moment(zone: &Zone, instant: f64) -> String {
     let text: String = zone.display(instant).chars().filter(|c| c.is_ascii_digit() || matches!(c, 'T' | ' ')).collect();
-    text.replace(['T', ' '], "_").chars().take(15).collect()
+    let to_second: String = text.replace(['T', ' '], "_").chars().take(15).collect();
+    to_second.strip_suffix("00").map_or(to_second.clone(), str::to_owned)
 }

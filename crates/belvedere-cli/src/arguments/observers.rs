@@ -74,10 +74,10 @@ pub(crate) struct LinesArguments {
     /// N random pairs, at most 10 million, uniform in the bounding box of the cloud (see --seed)
     #[arg(long, value_name = "N", value_parser = at_most::<MAX_RANDOM_PAIRS>, conflicts_with_all = ["from", "to"])]
     pub(crate) random: Option<usize>,
-    /// Observer of one line, in file coordinates; without Z it is --observer-height above the ground
+    /// Observer of one line, in file coordinates or as LAT,LON; without Z --observer-height above the ground
     #[arg(long = "observer", value_name = "X,Y[,Z]", requires = "to", allow_hyphen_values = true)]
     pub(crate) from: Option<MapPosition>,
-    /// Target of one line, in file coordinates; without Z it is --target-height above the ground
+    /// Target of one line, in file coordinates or as LAT,LON; without Z --target-height above the ground
     #[arg(long = "target", value_name = "X,Y[,Z]", requires = "from", allow_hyphen_values = true)]
     pub(crate) to: Option<MapPosition>,
 }
@@ -261,7 +261,7 @@ pub(crate) struct ViewshedArguments {
 #[command(next_help_heading = "Observers (one of)")]
 #[group(required = true, multiple = false)]
 pub(crate) struct Who {
-    /// An observer in file coordinates; without Z it is --observer-height above the ground; repeatable
+    /// An observer in file coordinates or as LAT,LON; without Z --observer-height above the ground; repeatable
     #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
     pub(crate) observer: Vec<MapPosition>,
     /// Observers from a table with columns x and y (.csv) or from GeoJSON, whose lines are paths

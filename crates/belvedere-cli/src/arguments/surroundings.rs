@@ -126,7 +126,7 @@ pub(crate) struct What {
 #[derive(Args)]
 #[command(next_help_heading = "Observers")]
 pub(crate) struct EyesArguments {
-    /// An observer in file coordinates; without Z it is --observer-height above the ground; repeatable
+    /// An observer in file coordinates or as LAT,LON; without Z --observer-height above the ground; repeatable
     #[arg(long = "observer", value_name = "X,Y[,Z]", allow_hyphen_values = true, required_unless_present = "eyes")]
     pub(crate) eye: Vec<MapPosition>,
     /// Observers from a table with columns x and y (.csv) or from GeoJSON

@@ -41,6 +41,7 @@ mod survey_plan;
 mod targets;
 mod trajectory;
 mod tree_light;
+mod typed_places;
 #[cfg(feature = "view")]
 mod view;
 mod view_obstacles;
@@ -58,10 +59,10 @@ use outputs::{
 use std::io::Write;
 
 /// Runs the command that was typed.
-pub(crate) fn run(cli: &Cli) -> Result<Summary> {
-    let global = &cli.global;
-    crate::environment::apply(global)?;
-    crate::device::choose(global)?;
+pub(crate) fn run(cli: &mut Cli) -> Result<Summary> {
+    crate::environment::apply(&cli.global)?;
+    crate::device::choose(&cli.global)?;
+    typed_places::in_file_coordinates(&mut cli.command)?;
     let mut summary = run_command(cli)?;
     crate::device::report(&mut summary);
     Ok(summary)

@@ -1,6 +1,7 @@
 //! Targets of the sun and the sky: from flags and files to places, and from measures to files.
 
 use super::query::{points_of_file, text_rows_for};
+use super::typed_places::on_map;
 use super::{check_output, extension};
 use crate::arguments::{CloudInput, FacingChoice, GroundChoice, MapPosition, SkyOutputs, SkyPlaces, Usage};
 use crate::pipeline::mesh_in;
@@ -9,12 +10,9 @@ use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{GridCells, OnTargets, Places, Remark, Scene, Turned, position_on_map, standing_on_map};
 use belvedere::apps::targets::{CellLevel, Facing, Measure, MeshParams};
-use belvedere::crs::Crs;
 use belvedere::figures::{Picture, write_png};
 use belvedere::ground::{GroundPoints, highest_points};
-use belvedere::io::{
-    Georeference, MetadataTag, ReadOptions, atomic, cloud_files, is_mesh, read_las_head, write_tif_u8,
-};
+use belvedere::io::{Georeference, MetadataTag, ReadOptions, atomic, is_mesh, write_tif_u8};
 use belvedere::raster::Raster;
 use belvedere::results::{ResultKind, TakenFrom, georeference, measure_map, write_measures, write_raster};
 use belvedere::{Mesh, PointCloud};
@@ -119,17 +117,7 @@ impl SkyPlaces {
         if self.places.at.is_empty() {
             return Ok(());
         }
-        let Ok(files) = cloud_files(&input.clouds) else { return Ok(()) };
-        let heads: Option<Vec<_>> = files.iter().map(|file| read_las_head(file.as_path()).ok()).collect();
-        let Some(heads) = heads.filter(|heads| !heads.is_empty()) else { return Ok(()) };
-        let crs = match &input.crs {
-            Some(crs) => Crs::parse(crs)?,
-            None => heads[0].crs.clone(),
-        };
-        let end = |corner: usize, pick: fn(f64, f64) -> f64| {
-            [0, 1].map(|axis| heads.iter().map(|head| head.bounds[corner][axis]).reduce(pick).unwrap_or(f64::NAN))
-        };
-        let bounds = [end(0, f64::min), end(1, f64::max)];
+        let Some((crs, bounds)) = on_map(input)? else { return Ok(()) };
         self.places.at.iter().try_for_each(|place| position_on_map(place.0, &crs, bounds).map(|_| ()))?;
         Ok(())
     }

@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
     if let Some(output) = &arguments.export {
         return write_page(output, arguments, &files, global);
     }
-    let scene = SceneText { input: files.typed(), cloud_beside: files.cloud_beside() };
+    let scene = SceneText { input: files.typed(Folders::Shown), cloud_beside: files.cloud_beside(Folders::Shown) };
     let title = title(&arguments.scene.input.clouds);
     let params = ViewerParams { port: arguments.port.unwrap_or(0), scene, title };
     let viewer = PageServer::start(&params).context("--port: the program cannot listen there")?;
@@ -185,7 +185,7 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
     let day = day(model.frame(), &model.bounds())?;
     let params = ExportParams {
         title: title(&arguments.scene.input.clouds),
-        scene: SceneText { input: files.typed(), cloud_beside: files.cloud_beside() },
+        scene: SceneText { input: files.typed(Folders::Hidden), cloud_beside: files.cloud_beside(Folders::Hidden) },
         day,
         viewpoints: arguments.observer.iter().map(|&MapPosition([x, y], z)| [x, y, z.unwrap_or(f64::NAN)]).collect(),
     };
@@ -198,6 +198,28 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
         .add("written", output.display().to_string())
         .headline("a page with <points> points, <suns> suns and <viewpoints> viewpoints");
     Ok(run.finish())
+}
+
+/// Folders of files on command lines.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Folders {
+    /// As they were typed.
+    Shown,
+    /// Left out: a page that is sent to others says nothing of the disk of the sender.
+    Hidden,
+}
+
+impl Folders {
+    /// A typed word.
+    fn shown(self, word: &str) -> String {
+        let (key, value) = word.split_once('=').map_or(("", word), |(key, value)| (&word[..=key.len()], value));
+        match Path::new(value).file_name() {
+            Some(name) if self == Self::Hidden && Path::new(value).exists() => {
+                quoted(&format!("{key}{}", name.to_string_lossy()))
+            }
+            _ => quoted(word),
+        }
+    }
 }
 
 /// The files that were typed, by what they hold.
@@ -243,21 +265,22 @@ impl Files {
 
     /// The scene as other commands take it: its files, and the flags that were typed unless a ball file holds what they
     /// say.
-    fn typed(&self) -> String {
+    fn typed(&self, folders: Folders) -> String {
         if let Some(balls) = &self.balls {
-            return quoted(&balls.to_string_lossy());
+            return folders.shown(&balls.to_string_lossy());
         }
         let beside = self.meshes.iter().chain(&self.results).chain(&self.runs);
-        let rest = typed(&beside.map(|path| path.to_string_lossy().into_owned()).collect::<Vec<_>>());
+        let rest = typed(&beside.map(|path| path.to_string_lossy().into_owned()).collect::<Vec<_>>(), folders);
         let is_typed = |path: &PathBuf| words().iter().any(|word| word == path.as_os_str());
-        let of_runs = self.clouds.iter().filter(|path| !is_typed(path)).map(|path| quoted(&path.to_string_lossy()));
+        let of_runs =
+            self.clouds.iter().filter(|path| !is_typed(path)).map(|path| folders.shown(&path.to_string_lossy()));
         of_runs.chain(Some(rest).filter(|rest| !rest.is_empty())).collect::<Vec<_>>().join(" ")
     }
 
     /// The cloud that shows the ground of a ball file.
-    fn cloud_beside(&self) -> Option<String> {
+    fn cloud_beside(&self, folders: Folders) -> Option<String> {
         let cloud = self.clouds.first().filter(|_| self.balls.is_some())?;
-        Some(quoted(&cloud.to_string_lossy()))
+        Some(folders.shown(&cloud.to_string_lossy()))
     }
 }
 
@@ -362,7 +385,7 @@ fn is_las(path: &Path) -> bool {
 }
 
 /// The files and flags of the scene as they were typed, for a shell, without the files named.
-fn typed(without: &[String]) -> String {
+fn typed(without: &[String], folders: Folders) -> String {
     let words = words().into_iter().skip(1).map(|word| word.to_string_lossy().into_owned());
     let mut kept = Vec::new();
     let mut skips = false;
@@ -376,7 +399,7 @@ fn typed(without: &[String]) -> String {
         if has_value.contains(&word.as_str()) {
             skips = true;
         } else if !without.contains(&word) && !has_value.iter().any(|flag| word.starts_with(&format!("{flag}="))) {
-            kept.push(quoted(&word));
+            kept.push(folders.shown(&word));
         }
     }
     kept.join(" ")

@@ -300,7 +300,7 @@ fn questions_are_those_of_the_commands_they_are_named_after() {
                  --patch-division 1 --sun-cell-deg 20 --observer 155000,462985 --max-distance 30";
     let cells = "--cell 4 --cell-for shadow=2";
     let plan = place.summary(&format!("city plan town/cloud.laz -o run --tile-size 128 {cells} {flags}"));
-    assert_eq!(plan["results"], serde_json::json!(["shadow_20260320_124500", "sun_hours", "irradiance", "viewshed"]));
+    assert_eq!(plan["results"], serde_json::json!(["shadow_20260320_1245", "sun_hours", "irradiance", "viewshed"]));
     let kept: serde_json::Value = serde_json::from_slice(&place.bytes("run/plan.json")).unwrap();
     // noon at an equinox: 90 degrees less the latitude, 52.155
     let up = kept["questions"][0]["shadow"]["to_sun"][2].as_f64().unwrap();
@@ -326,7 +326,7 @@ fn questions_are_those_of_the_commands_they_are_named_after() {
     let cell = |name: &str| raster(name).place.unwrap().column_step[0];
     // rasters say what they hold, as those of single scenes do: other quantities are neither subtracted without a word
     // nor taken for terrain
-    let shadow = "shadow_20260320_124500";
+    let shadow = "shadow_20260320_1245";
     place.summary(&format!("city merge run --result {shadow} -o {shadow}.tif"));
     let what = |name: &str| belvedere::io::read_tif(place.path(name).as_path()).unwrap().description.unwrap();
     assert_eq!(what(&format!("{shadow}.tif")), "share of the sun, 0 in shadow");

@@ -278,6 +278,10 @@ fn a_page_is_written_as_one_file_with_the_shadows_of_a_day_and_views() {
         "view town/cloud.laz --export page.html --date 2026-06-21 --zone Europe/Amsterdam {viewpoints}"
     ));
     let text = place.text("page.html");
+    place.summary(&format!("view {} --export far.html --date 2026-06-21", place.path("town/cloud.laz").display()));
+    let folder = place.path("town").display().to_string();
+    assert!(place.text("far.html").contains("belvedere shadow cloud.laz --time 2026-06-21T"));
+    assert!(!place.text("far.html").contains(&folder), "{folder}");
     // the sun rises at 5:18 and sets at 22:03 there
     assert_eq!(run["suns"], 17);
     assert!(!text.contains("src=\"page.js\"") && !text.contains("href=\"style.css\""));
@@ -297,8 +301,14 @@ fn a_page_is_written_as_one_file_with_the_shadows_of_a_day_and_views() {
         b'/' => 63,
         _ => 0,
     };
-    let bits: u32 = sun["bits"].as_str().unwrap().bytes().map(|c| digit(c).count_ones()).sum();
-    assert_eq!(bits as usize, lit);
+    let unproven = column(&place, "shadow.csv", "unproven").iter().filter(|unproven| **unproven > 0.0).count();
+    assert!(unproven > 0 && sun["lit"] == lit && sun["unproven"] == unproven, "{lit} {unproven}: {}", sun["lit"]);
+    // three points a digit: 1 lit, 2 unproven
+    let digits = sun["answers"].as_str().unwrap().bytes().map(digit);
+    let codes: Vec<u8> = digits.flat_map(|digit| [4, 2, 0].map(|shift| digit >> shift & 3)).collect();
+    assert_eq!([1, 2].map(|code| codes.iter().filter(|&&own| own == code).count()), [lit - unproven, unproven]);
+    // remarks go along, and no folder of the sender does
+    assert!(sun["remarks"].as_array().unwrap().iter().any(|remark| remark["key"] == "light-unproven"), "{sun}");
     // as much is visible from a viewpoint as the command says; each point has two bits there
     assert_eq!(run["viewpoints"], 2);
     for viewpoint in data["viewpoints"].as_array().unwrap() {

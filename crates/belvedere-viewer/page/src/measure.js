@@ -50,7 +50,7 @@ export function measurePanel() {
     box.querySelector("#table").onclick = () => save("measured.csv", csv([["x", "y", "z"], ...file]), "text/csv");
     box.querySelector("#map").onclick = () => {
       const shape = places.length > 2 ? ["Polygon", [[...file, file[0]]]] : ["LineString", file];
-      save("measured.geojson", geojson("measured", [[...shape, values]], page.scene.crs), "application/geo+json");
+      save("measured.geojson", geojson("measured", [[...shape, values]], page.scene), "application/geo+json");
     };
   });
   draw();

@@ -290,7 +290,7 @@ async function saveAs(button, tool, answer, places) {
   } else if (kind === "csv") save(`${name}.csv`, csv(tool.rows(answer, page)), "text/csv");
   else if (kind === "geojson") {
     const [shape, coordinates] = tool.geometry?.(places) ?? ["Point", places[0]];
-    save(`${name}.geojson`, geojson(name, [[shape, coordinates, tool.properties(answer)]], page.scene.crs), "application/geo+json");
+    save(`${name}.geojson`, geojson(name, [[shape, coordinates, tool.properties(answer)]], page.scene), "application/geo+json");
   } else {
     const chart = $("card").querySelector("figure svg");
     save(`${name}.png`, chart ? await diagram(chart) : await snapshot());

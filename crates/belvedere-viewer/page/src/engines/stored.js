@@ -7,17 +7,20 @@ const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 function shadowOf({ time }) {
   const minutes = Number(time.slice(-5, -3)) * 60 + Number(time.slice(-2));
   const sun = exported.suns.reduce((a, b) => (Math.abs(b.minutes - minutes) < Math.abs(a.minutes - minutes) ? b : a));
-  const bits = bytesOf(sun.bits);
-  const body = new Uint8Array(exported.state.shown.point_count);
-  let lit = 0;
-  for (let i = 0; i < body.length; i++) lit += body[i] = (bits[i >> 3] >> (i & 7)) & 1;
-  return { ...sun, lit, points: body.length, body: body.buffer };
+  // a point without an answer has the value that the server gives it
+  const body = unpacked(sun.answers).map((code) => (code === 3 ? 255 : code));
+  return { ...sun, points: body.length, body: body.buffer };
+}
+
+// Two bits for each point.
+function unpacked(text) {
+  const packed = bytesOf(text);
+  return new Uint8Array(exported.state.shown.point_count).map((_, i) => (packed[i >> 2] >> (2 * (i & 3))) & 3);
 }
 
 function seenFrom({ viewpoint }) {
   const answer = exported.viewpoints[viewpoint];
-  const packed = bytesOf(answer.answers);
-  const body = new Uint8Array(exported.state.shown.point_count).map((_, i) => (packed[i >> 2] >> (2 * (i & 3))) & 3);
+  const body = unpacked(answer.answers);
   return { ...answer, points: body.length, body: body.buffer };
 }
 

@@ -33,13 +33,57 @@ pub(super) fn flown_surveys() -> Vec<TownSurvey> {
     surveys
 }
 
-/// All surveys that are fitted: these, and some from the ground.
-pub(super) fn surveys() -> Vec<TownSurvey> {
+/// The surveys from the ground that are fitted.
+pub(super) fn ground_surveys() -> Vec<TownSurvey> {
     let from_ground =
         [(Preset::Town, Regime::Tripods), (Preset::OldTown, Regime::Tripods), (Preset::Town, Regime::Car)];
-    let from_ground =
-        from_ground.map(|(preset, regime)| TownSurvey { preset, seed: SEEDS[0], regime, pulses_per_m2: 10.0 });
-    [flown_surveys(), from_ground.into()].concat()
+    from_ground.map(|(preset, regime)| TownSurvey { preset, seed: SEEDS[0], regime, pulses_per_m2: 10.0 }).into()
+}
+
+/// `text`, the scores as the program reads them, with new scores of the terms that only surveys from the ground have.
+/// All others stay. What is unknown has no probability, and does not count.
+pub(super) fn with_ground_scores(text: &str, cases: &[Case]) -> String {
+    let split = |line: &str| line.rsplit_once(',').and_then(|(key, score)| Some((key.to_owned(), score.parse().ok()?)));
+    let known: BTreeMap<String, f64> = text.lines().filter_map(split).collect();
+    let is_of_ground = |key: &str| key.contains("from_ground");
+    // the other scores of each case, and whether its target is visible, by the one term of the ground
+    let mut by_term: BTreeMap<String, Vec<(f64, f64, f64)>> = BTreeMap::new();
+    for case in cases.iter().filter(|case| !case.evidence.is_unknown()) {
+        let keys: Vec<String> = case.evidence.score_keys().map(|key| key.to_string()).collect();
+        let others = keys.iter().filter(|key| !is_of_ground(key)).filter_map(|key| known.get(key)).sum();
+        let visible = f64::from(u8::from(case.is_visible));
+        if let Some(key) = keys.into_iter().find(|key| is_of_ground(key)) {
+            by_term.entry(key).or_default().push((others, visible, weight(case)));
+        }
+    }
+    let line = |line: &str| match line.rsplit_once(',') {
+        Some((key, _)) if is_of_ground(key) => {
+            let cases = by_term.get(key).map_or(&[][..], Vec::as_slice);
+            format!("{key},{:.4}\n", fitted_alone(cases))
+        }
+        _ => format!("{line}\n"),
+    };
+    text.lines().map(line).collect()
+}
+
+/// Newton's method for one score beside others that are known.
+fn fitted_alone(cases: &[(f64, f64, f64)]) -> f64 {
+    let mut score = 0.0;
+    for _ in 0..STEPS {
+        let (mut slope, mut curve) = (-RIDGE * score, RIDGE);
+        for (others, visible, weight) in cases {
+            let p = 1.0 / (1.0 + (-(others + score)).exp());
+            slope += weight * (visible - p);
+            curve += weight * p * (1.0 - p);
+        }
+        score += slope / curve;
+    }
+    score
+}
+
+/// How often a case counts.
+fn weight(case: &Case) -> f64 {
+    if case.set == QuerySet::LinesOfSight { LINES_OF_SIGHT } else { 1.0 }
 }
 
 /// The scores as the program reads them.
@@ -48,9 +92,8 @@ pub(super) fn scores(cases: &[Case]) -> AnyResult<String> {
     // what is alike counts once, with its number
     let mut groups: BTreeMap<Vec<ScoreKey>, [f64; 2]> = BTreeMap::new();
     for case in cases {
-        let weight = if case.set == QuerySet::LinesOfSight { LINES_OF_SIGHT } else { 1.0 };
         let keys: Vec<ScoreKey> = case.evidence.score_keys().collect();
-        groups.entry(keys).or_default()[usize::from(case.is_visible)] += weight;
+        groups.entry(keys).or_default()[usize::from(case.is_visible)] += weight(case);
     }
     for key in groups.keys().flatten() {
         let next = columns.len();

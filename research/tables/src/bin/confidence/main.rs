@@ -8,7 +8,8 @@
 //! cargo research confidence -- judge-ways village,town,old-town,towers 201 10 air
 //! ```
 //!
-//! `fit` and `fit-sums` write the scores and the errors of sums that the program uses. `judge`, `judge-sums` and
+//! `fit` and `fit-sums` write the scores and the errors of sums that the program uses; `fit-ground` writes new scores
+//! of surveys from the ground alone. `judge`, `judge-sums` and
 //! `judge-ways` (horizons and isovists) print the tables of docs/methods/confidence.md: kinds of towns, seeds, pulses
 //! per m², scanners. No town of the tables was fitted.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for tables talks")]
@@ -32,8 +33,14 @@ fn main() -> AnyResult<()> {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words[..] {
         ["fit", file] => {
-            let cases = all_cases(&fit::surveys())?;
-            Ok(std::fs::write(file, fit::scores(&cases)?)?)
+            let [flown, from_ground] = [fit::flown_surveys(), fit::ground_surveys()];
+            let cases = all_cases(&[flown, from_ground].concat())?;
+            let scores = fit::scores(&cases)?;
+            Ok(std::fs::write(file, fit::with_ground_scores(&scores, &cases))?)
+        }
+        ["fit-ground", file] => {
+            let scores = std::fs::read_to_string(file)?;
+            Ok(std::fs::write(file, fit::with_ground_scores(&scores, &all_cases(&fit::ground_surveys())?))?)
         }
         ["fit-sums", file] => {
             let cases = all_sums(&fit::flown_surveys())?;
@@ -54,7 +61,7 @@ fn main() -> AnyResult<()> {
         }
         ["judge", presets, seeds, densities, regimes] => judge(presets, seeds, densities, regimes),
         _ => {
-            Err("use: fit FILE, fit-sums FILE, or judge, judge-sums or judge-ways PRESETS SEEDS DENSITIES SCANNERS"
+            Err("use: fit FILE, fit-ground FILE, fit-sums FILE, or judge, judge-sums or judge-ways PRESETS SEEDS DENSITIES SCANNERS"
                 .into())
         }
     }
