@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use rayon::prelude::*;
 use std::io::{Read, Seek, SeekFrom};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Passes the columns of attributes that have a number for each point to a macro.
@@ -57,6 +57,12 @@ impl PyInput {
             Self::Bytes(name, bytes) => Source::bytes(name, bytes),
             Self::File(name, file) => Source::reader(name, PythonFile(file)),
         }
+    }
+
+    /// Name or path of the file.
+    pub(crate) fn name(&self) -> &Path {
+        let (Self::Path(name) | Self::Bytes(name, _) | Self::File(name, _)) = self;
+        name
     }
 }
 

@@ -1,6 +1,7 @@
 //! The energy of sun and sky.
 
 use crate::arrays::to_1d;
+use crate::cloud::PyInput;
 use crate::errors::{exception, wrong};
 use crate::remarks::remarks_of;
 use crate::scene::PyScene;
@@ -15,14 +16,14 @@ use belvedere::io::read_weather;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Source and summation of radiation; missing keywords have the library's defaults.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct RadiationKeywords {
-    weather: Option<PathBuf>,
+    /// A path, or the name and bytes of a file.
+    weather: Option<PyInput>,
     clear_sky: Option<String>,
     linke: Option<f64>,
     year: Option<i16>,
@@ -83,9 +84,9 @@ impl RadiationKeywords {
             return Err(wrong("linke", "given", "it needs clear_sky='ineichen'"));
         }
         match (&self.weather, self.clear_sky.as_deref()) {
-            (Some(path), None) => Ok(ask::Radiation::Weather {
-                file: path.display().to_string(),
-                weather: Some(Arc::new(read_weather(path).map_err(exception)?)),
+            (Some(given), None) => Ok(ask::Radiation::Weather {
+                file: given.name().display().to_string(),
+                weather: Some(Arc::new(read_weather(given.source()).map_err(exception)?)),
                 parts: self.parts.unwrap_or(PARTS),
             }),
             (None, Some(name)) => {

@@ -91,8 +91,8 @@ pub fn export(
     Ok((html(&data), report))
 }
 
-/// The suns of the whole hours of a day, and two bits for each point in the order in which points are sent: 0 in shadow,
-/// 1 lit, 2 lit but unproven, 3 no answer.
+/// The suns of the whole hours of a day, and two bits for each point in the order in which points are sent. They are 0
+/// in shadow, 1 lit, 2 lit but unproven, 3 without an answer.
 fn suns(
     scene: &PageScene,
     sent: &PointCloud,

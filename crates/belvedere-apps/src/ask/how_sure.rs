@@ -216,8 +216,8 @@ fn mean(probabilities: &[f32]) -> f64 {
 /// A warning of probabilities where scanners stood on the ground: much of such a scene was not seen at all.
 #[must_use]
 pub fn remark_from_ground(blockers: &MedialScene) -> Option<Remark> {
-    let text = "the scanner stood on the ground: probabilities of what it did not see, such as roofs and walls turned \
-                away, may be wrong by a quarter; there is none where nothing blocks and no pulse came within 1 m";
+    let text = "the scanner stood on the ground and saw one side of things: probabilities are left out where nothing \
+                blocks and no pulse came within 1 m";
     let is_from_ground = blockers.proof().is_some_and(Proof::is_from_ground);
     is_from_ground.then(|| Remark::warning("probability-from-the-ground", text))
 }

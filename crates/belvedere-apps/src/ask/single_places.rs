@@ -286,6 +286,21 @@ mod tests {
     use super::*;
 
     #[test]
+    fn ends_of_lines_may_lie_beside_the_points_in_degrees_too() {
+        let crs = Crs::parse("EPSG:28992").unwrap();
+        let bounds = [[154_000.0, 462_000.0], [156_000.0, 464_000.0]];
+        // the Dom tower of Utrecht, 20 km to the west
+        let [x, y] = end_on_map([52.0907, 5.1214], &crs, bounds).unwrap();
+        assert!((x - 136_800.0).abs() < 200.0 && (y - 455_900.0).abs() < 200.0, "{x} {y}");
+        for given in [[136_800.0, 455_900.0], [-33.86, 151.2], [1.0, 2.0]] {
+            assert_eq!(end_on_map(given, &crs, bounds).unwrap(), given);
+        }
+        assert!(end_on_map([5.387_2, 52.155_2], &crs, bounds).unwrap_err().to_string().contains("swapped"));
+        // without a known system they are coordinates
+        assert_eq!(end_on_map([52.0907, 5.1214], &Crs::default(), bounds).unwrap(), [52.0907, 5.1214]);
+    }
+
+    #[test]
     fn degrees_and_coordinates_name_the_same_place() {
         // the tower of Amersfoort, origin of the Dutch grid, in ETRS89 as its surveyors publish it; a Helmert
         // transformation is right to half a metre there

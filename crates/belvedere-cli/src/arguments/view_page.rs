@@ -24,7 +24,7 @@ pub(crate) struct ViewPage {
     /// Time zone of --date, such as Europe/Amsterdam or +01:00 [default: mean solar time]
     #[arg(long, value_name = "ZONE", help_heading = "File", requires = "date", allow_hyphen_values = true)]
     pub(crate) zone: Option<String>,
-    /// Viewpoint whose view is in the file, in file coordinates or as LAT,LON; without Z 1.7 m above the ground; repeatable
+    /// Viewpoint whose view is in the file, in file coordinates or as LAT,LON; without Z at eye level; repeatable
     #[arg(long, value_name = "X,Y[,Z]", help_heading = "File", requires = "export", allow_hyphen_values = true)]
     pub(crate) observer: Vec<MapPosition>,
     #[command(flatten)]

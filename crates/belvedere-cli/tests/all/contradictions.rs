@@ -166,7 +166,7 @@ fn a_trajectory_in_utc_is_brought_to_gps_time() {
     let utc = shadow("utc.csv", "utc.tif");
     assert!(has(&utc, "trajectory-time"), "{utc}");
     assert_eq!(utc["scanner"]["trajectory_time_offset_s"].as_f64(), Some(-18.0), "{utc}");
-    assert!(place.bytes("right.tif") == place.bytes("utc.tif"));
+    assert!(place.pixels("right.tif") == place.pixels("utc.tif"));
 }
 
 #[test]

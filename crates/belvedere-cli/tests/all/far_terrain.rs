@@ -191,7 +191,7 @@ fn observers_and_targets_of_viewsheds_stand_on_the_terrain() {
     assert_eq!(run["far_cells"]["visible"], 5000);
     let run = place.summary(&format!("{flags} --target {x},{hill},401.7 --observer-height 0 --far-output from.tif"));
     assert_eq!(run["far_cells"]["visible"], 5000);
-    assert_eq!(place.bytes("far.tif"), place.bytes("from.tif"));
+    assert!(place.pixels("far.tif") == place.pixels("from.tif"));
     // of the cloud, cells are seen from a mast of 90 m, and none from the ground (75 m: the line to 0 m lies 0.4 m
     // above the crest at 77 m)
     let codes = |observer: &str| {
@@ -248,7 +248,7 @@ fn mountains_are_ground_in_the_view_of_a_window_and_maps_name_them() {
     for (name, flags) in [("without", ""), ("with", "--terrain plain.tif")] {
         place.summary(&format!("sky-view {HOUSE} --cell 1 --directions 50 {flags} -o {name}.tif -o {name}.png"));
     }
-    assert_eq!(place.bytes("with.tif"), place.bytes("without.tif"));
+    assert!(place.pixels("with.tif") == place.pixels("without.tif"));
     assert!(place.bytes("with.png") != place.bytes("without.png"), "the title of the map says nothing");
 }
 

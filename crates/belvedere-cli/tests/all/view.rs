@@ -290,7 +290,9 @@ fn a_page_is_written_as_one_file_with_the_shadows_of_a_day_and_views() {
     assert_eq!(data["state"]["shown"]["point_count"], run["points"]);
     // the shadow of a sun is that of the command: as many points are lit
     let sun = &data["suns"][10];
-    let command = sun["command"].as_str().unwrap().replace("shadow.laz", "shadow.csv");
+    // it names the file without its folder
+    let command =
+        sun["command"].as_str().unwrap().replace(" cloud.laz", " town/cloud.laz").replace("shadow.laz", "shadow.csv");
     place.summary(command.strip_prefix("belvedere ").unwrap());
     let lit = column(&place, "shadow.csv", "lit").iter().filter(|lit| **lit > 0.0).count();
     let digit = |c: u8| match c {
@@ -312,7 +314,8 @@ fn a_page_is_written_as_one_file_with_the_shadows_of_a_day_and_views() {
     // as much is visible from a viewpoint as the command says; each point has two bits there
     assert_eq!(run["viewpoints"], 2);
     for viewpoint in data["viewpoints"].as_array().unwrap() {
-        let command = viewpoint["command"].as_str().unwrap().replace("seen.laz", "seen.csv");
+        let command = viewpoint["command"].as_str().unwrap();
+        let command = command.replace(" cloud.laz", " town/cloud.laz").replace("seen.laz", "seen.csv");
         place.summary(command.strip_prefix("belvedere ").unwrap());
         let answers = column(&place, "seen.csv", "answer");
         for (key, code) in [("visible", 1.0), ("unproven", 2.0), ("blocked", 0.0)] {

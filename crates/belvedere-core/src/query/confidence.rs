@@ -149,8 +149,8 @@ impl Evidence {
         }
     }
 
-    /// Returns true if nothing tells whether the target is visible: no scanner on the ground saw an end of the line, nor
-    /// 0.5 m or more of the free line.
+    /// Returns true if nothing tells whether the target is visible: no scanner on the ground saw an end of the line,
+    /// nor 0.5 m or more of the free line.
     #[must_use]
     pub fn is_unknown(&self) -> bool {
         self.is_end_unscanned && self.lines.is_free && self.unproven_length >= UNKNOWN_FROM

@@ -14,6 +14,7 @@ from ._inputs import Places, Progress, check_finite, map_places, pairs_of, repor
 from ._mesh import Mesh
 from ._raster import Raster
 from ._remarks import Remark, warned
+from ._shapes import in_system
 from ._sunlight import _place, _suns
 from ._table import Table
 from ._targets import Targets, coordinates, raster, wanted
@@ -201,13 +202,18 @@ class Cameras:
         """
         if isinstance(candidates, str) and candidates not in ("ground", "roofs"):
             raise wrong("candidates", repr(candidates), "give places, 'ground' or 'roofs'")
-        given = None if isinstance(candidates, str) else map_places(candidates, "candidates", _PLACES)
+        given = (
+            None
+            if isinstance(candidates, str)
+            else map_places(candidates, "candidates", _PLACES, crs=self._core.crs.text)
+        )
         check_finite(spacing=spacing, camera_height=camera_height, fov_deg=fov_deg, vertical_fov_deg=vertical_fov_deg)
         check_finite(pixels=pixels, min_distance=min_distance, coverage_percent=coverage_percent, refraction=refraction)
         if isinstance(targets, Mesh) and weights is not None:
             raise wrong("weights", "given", "the targets of a mesh have the weights of their areas")
         if targets is None and weights is not None:
             raise wrong("weights", "given", "cells count alike; give targets, or leave this out")
+        targets = in_system(targets, "targets", self._core.crs.text)
         wanted_targets = wanted(targets, None, {"cell": cell, "target_height": None, "ground": None})
         wanted_targets.update(height=target_height, ground=ground)
         check_finite(certain=certain)
@@ -220,7 +226,9 @@ class Cameras:
             "spacing": float(spacing),
             "camera_height": camera_height,
             "existing": _existing(existing).tolist(),
-            "private": [] if private is None else map_places(private, "private", _PLACES).tolist(),
+            "private": []
+            if private is None
+            else map_places(private, "private", _PLACES, crs=self._core.crs.text).tolist(),
             "weights": None if weights is None else _weights(weights, targets).tolist(),
             "fov": fov_deg,
             "vertical_fov": vertical_fov_deg,
@@ -347,7 +355,7 @@ class Cameras:
         elif observer is None or target is None:
             raise wrong("observer and target", "one of them", "give both of them, or only sun")
         else:
-            observers, targets = pairs_of(observer, target)
+            observers, targets = pairs_of(observer, target, self._core.crs.text)
         stations = {
             "candidates": None if given is None else given.tolist(),
             "lines": lines,

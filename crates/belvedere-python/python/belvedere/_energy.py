@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-import os
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._inputs import Progress, check_finite, location_pair, reporter
+from ._errors import wrong
+from ._inputs import Progress, Source, check_finite, location_pair, native_source, reporter
 from ._remarks import warned
+from ._shapes import in_system
 from ._sunlight import _cells
 from ._table import Table
 from ._targets import RastersOrTable, Targets, measures, wanted
+
+if TYPE_CHECKING:
+    import pandas
 
 
 class Energy:
@@ -24,7 +28,7 @@ class Energy:
     def irradiance(
         self,
         *,
-        weather: str | os.PathLike[str] | None = None,
+        weather: Source | pandas.DataFrame | None = None,
         clear_sky: str | None = None,
         linke: float | None = None,
         year: int | None = None,
@@ -51,8 +55,10 @@ class Energy:
 
         Parameters
         ----------
-        weather : path, optional
-            Weather file: EPW, TMY3, CSV of PVGIS or of NSRDB.
+        weather : path, file, bytes or pandas.DataFrame, optional
+            Weather file: EPW, TMY3, CSV of PVGIS or of NSRDB. Or rows as pvlib has them: columns ``ghi``, ``dni``,
+            ``dhi`` in W/m² and perhaps ``temp_air``, at the middle of what each row holds, with a time zone; then
+            `location` is needed.
         clear_sky : {'ineichen', 'haurwitz', 'bird'}, optional
             A year without clouds, in place of `weather`.
         linke : float, optional
@@ -121,6 +127,7 @@ class Energy:
             location=location,
             interval=interval,
         )
+        targets = in_system(targets, "targets", self._core.crs.text)
         results = self._core.irradiance(
             radiation,
             wanted(targets, normals, _cells(cell, target_height, surface, ground), may_lack_heights=True),
@@ -132,7 +139,7 @@ class Energy:
     def roof_planes(
         self,
         *,
-        weather: str | os.PathLike[str] | None = None,
+        weather: Source | pandas.DataFrame | None = None,
         clear_sky: str | None = None,
         linke: float | None = None,
         year: int | None = None,
@@ -222,6 +229,30 @@ class Energy:
 def _radiation(**given: Any) -> dict[str, Any]:
     """Where radiation comes from, as the native part takes it."""
     check_finite(linke=given["linke"], albedo=given["albedo"], sun_cell_deg=given["sun_cell"])
+    location = location_pair(given["location"])
     weather = given["weather"]
-    weather = None if weather is None else os.fspath(weather)
-    return given | {"weather": weather, "location": location_pair(given["location"])}
+    if hasattr(weather, "columns"):
+        weather = _as_file(weather, location)
+    elif weather is not None:
+        weather = native_source(weather, None)
+    return given | {"weather": weather, "location": location}
+
+
+def _as_file(weather: Any, location: tuple[float, float] | None) -> tuple[str, bytes]:
+    """Rows of a DataFrame, as pvlib names them, in the format of NSRDB."""
+    names = {str(name).lower(): name for name in weather.columns}
+    if "ghi" not in names:
+        raise wrong("weather", f"a DataFrame of {', '.join(names)}", "give columns ghi, dni and dhi, W/m²")
+    if getattr(weather.index, "tz", None) is None:
+        raise wrong("weather", "rows without a time zone", "give the index one, such as weather.tz_localize('UTC')")
+    if location is None:
+        advice = "a DataFrame does not say where it holds; give latitude and longitude"
+        raise wrong("location", "missing", advice)
+    known = {"GHI": "ghi", "DNI": "dni", "DHI": "dhi", "Temperature": "temp_air"}
+    columns = {title: weather[names[name]].to_numpy(np.float64) for title, name in known.items() if name in names}
+    times = weather.index.tz_convert("UTC")
+    parts = [times.year, times.month, times.day, times.hour, times.minute]
+    head = f"Latitude,Longitude,Time Zone,Elevation\n{location[0]!r},{location[1]!r},0,0\n"
+    lines = [",".join(["Year", "Month", "Day", "Hour", "Minute", *columns])]
+    lines += [",".join(map(str, row)) for row in zip(*parts, *columns.values(), strict=True)]
+    return "weather.csv", (head + "\n".join(lines) + "\n").encode()

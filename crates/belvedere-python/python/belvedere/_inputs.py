@@ -14,17 +14,18 @@ import numpy as np
 import numpy.typing as npt
 
 from ._errors import wrong
+from ._shapes import in_system
 
 #: A path, bytes, a file that is open for reading in binary mode, or an object of laspy.
 Source = Union[str, "os.PathLike[str]", bytes, BinaryIO, Any]
 #: An instant: a `datetime` or a pandas `Timestamp` with a time zone, or ISO 8601 text with an offset.
 Time = Union[datetime.datetime, str]
-#: A day: a `date`, or ISO 8601 text.
-Day = Union[datetime.date, str]
+#: A day: a `date`, a midnight of pandas, a day of NumPy, or ISO 8601 text.
+Day = Union[datetime.date, np.datetime64, str]
 #: Called with the name of the stage, the items that are done, and their number (0 where it is not known).
 Progress = Union[bool, Callable[[str, int, int], object], None]
-#: Places, (N, 3), in the coordinates of the cloud's file.
-Places = npt.ArrayLike
+#: Places, (N, 3), in the coordinates of the cloud's file; or points of shapely or geopandas.
+Places = Union[npt.ArrayLike, Any]
 
 
 def native_source(source: Source, name: str | None, *, in_parts: bool = False) -> object:
@@ -94,8 +95,9 @@ def place(value: object, what: str) -> tuple[float, float, float]:
     return float(array[0]), float(array[1]), float(array[2])
 
 
-def places(value: Places, what: str) -> npt.NDArray[Any]:
+def places(value: Places, what: str, crs: str | None = None) -> npt.NDArray[Any]:
     """Rows of three numbers, 32 or 64 bit, without a copy where they are that already."""
+    value = in_system(value, what, crs)
     try:
         array = np.asarray(value)
         if array.dtype not in (np.float32, np.float64):
@@ -109,8 +111,13 @@ def places(value: Places, what: str) -> npt.NDArray[Any]:
     return array
 
 
-def map_places(value: npt.ArrayLike, what: str, advice: str, least: int = 1) -> npt.NDArray[np.float64]:
-    """Rows of x, y, z from one place or rows of x, y and perhaps z, which is NaN where it follows from the ground."""
+def map_places(
+    value: Places, what: str, advice: str, least: int = 1, crs: str | None = None
+) -> npt.NDArray[np.float64]:
+    """Rows of x, y, z from one place or rows of x, y and perhaps z, which is NaN where it follows from the ground.
+    Points of geopandas come into the system `crs`.
+    """
+    value = in_system(value, what, crs)
     try:
         array = np.asarray(value, np.float64)
     except (TypeError, ValueError):
@@ -126,11 +133,13 @@ def map_places(value: npt.ArrayLike, what: str, advice: str, least: int = 1) -> 
     return np.ascontiguousarray(array)
 
 
-def pairs_of(observer: Places, target: Places) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def pairs_of(
+    observer: Places, target: Places, crs: str | None
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Rows of x, y, z of both ends of lines; a single observer has all targets, and the other way round."""
     advice = "give x and y, or x, y and z: shape (2,), (3,), (N, 2) or (N, 3)"
-    observers = map_places(observer, "observer", advice, 0)
-    targets = map_places(target, "target", advice, 0)
+    observers = map_places(observer, "observer", advice, 0, crs)
+    targets = map_places(target, "target", advice, 0, crs)
     if len(observers) == 1 and len(targets) > 1:
         observers = np.repeat(observers, len(targets), axis=0)
     elif len(targets) == 1 and len(observers) > 1:
@@ -179,14 +188,21 @@ def day_text(day: Day, what: str = "date") -> str:
     """A day as text."""
     if isinstance(day, str):
         return day
-    if isinstance(day, datetime.date) and not isinstance(day, datetime.datetime):
+    if isinstance(day, datetime.datetime):
+        # days of pandas are midnights
+        if day.time() == datetime.time():
+            return day.date().isoformat()
+        raise wrong(what, day.isoformat(), "give a day without a time, such as .date()")
+    if isinstance(day, datetime.date):
         return day.isoformat()
+    if isinstance(day, np.datetime64):
+        return str(day.astype("datetime64[D]"))
     raise wrong(what, repr(day), "give a day, such as datetime.date(2026, 6, 21) or '2026-06-21'")
 
 
 def day_texts(value: Day | Iterable[Day]) -> list[str]:
     """Days as text."""
-    if isinstance(value, (str, datetime.date)):
+    if isinstance(value, (str, datetime.date, np.datetime64)):
         return [day_text(value)]
     try:
         texts = [day_text(one) for one in value]

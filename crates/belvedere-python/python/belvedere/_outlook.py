@@ -133,11 +133,11 @@ class Outlook:
         if target is None:
             if observers is None:
                 raise wrong("observers", "missing", "give observers, or a target")
-            places = map_places(observers, "observers", _OBSERVERS)
+            places = map_places(observers, "observers", _OBSERVERS, crs=self._core.crs.text)
         else:
             if observers is not None:
                 raise wrong("observers and target", "given together", "give one of them")
-            places = map_places(target, "target", "give x and y, or x, y and z")
+            places = map_places(target, "target", "give x and y, or x, y and z", crs=self._core.crs.text)
             if len(places) != 1:
                 raise wrong("target", f"{len(places)} places", "give one")
         bands, names, text, grid, given = self._core.viewshed(
@@ -287,7 +287,7 @@ class Outlook:
         """
         looking = _looking(observer_height=observer_height, ground=ground, curvature=curvature, refraction=refraction)
         check_finite(angle_step_deg=angle_step_deg)
-        places = map_places(observers, "observers", _OBSERVERS)
+        places = map_places(observers, "observers", _OBSERVERS, crs=self._core.crs.text)
         place = _place(None, grid_north=grid_north)
         found, count, given = self._core.horizon(places, angle_step_deg, looking, place, interval, reporter(progress))
         warned(given)
@@ -358,7 +358,7 @@ class Outlook:
         looking = _looking(observer_height=observer_height, max_distance=max_distance, ground=ground)
         check_finite(angle_step_deg=angle_step_deg, min_jump=min_jump)
         columns, panoramas, given = self._core.isovist(
-            map_places(observers, "observers", _OBSERVERS),
+            map_places(observers, "observers", _OBSERVERS, crs=self._core.crs.text),
             angle_step_deg,
             min_jump,
             looking,

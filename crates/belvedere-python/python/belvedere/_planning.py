@@ -122,7 +122,7 @@ class Planning:
         )
         if observers is not None and cell is not None:
             raise wrong("cell", cell, "it applies only to a grid; leave out observers, or leave this out")
-        places = None if observers is None else map_places(observers, "observers", _OBSERVERS)
+        places = None if observers is None else map_places(observers, "observers", _OBSERVERS, crs=self._core.crs.text)
         columns, grid, given = self._core.landmark(what, places, looking, unproven, probability, reporter(progress))
         if places is None:
             return measures((columns, grid, None, given, None), self._core.crs, None)
@@ -195,7 +195,7 @@ class Planning:
         """
         what = _landmark(mesh, target_class, target_polygon, objects, spacing, seed)
         looking = _looking(observer_height=observer_height, cell=cell, ground=ground, max_distance=max_distance)
-        places = map_places(observers, "observers", _OBSERVERS)
+        places = map_places(observers, "observers", _OBSERVERS, crs=self._core.crs.text)
         columns, grid, given = self._core.protected_view(what, places, looking, unproven, reporter(progress))
         remarks = warned(given)
         nan = float("nan")

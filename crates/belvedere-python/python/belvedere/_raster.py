@@ -11,9 +11,11 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import missing, wrong
+from ._inputs import Places, map_places
 from ._remarks import Remark
 
 if TYPE_CHECKING:
+    import matplotlib.axes
     import xarray
 
 
@@ -180,6 +182,69 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
             name=self.name or None,
             attrs=attributes,
         )
+
+    def sample(self, places: Places) -> npt.NDArray[np.float32]:
+        """The values of the cells that hold places; NaN beside the grid, and where there is no value.
+
+        Parameters
+        ----------
+        places : array_like, shape (N, 2) or (N, 3), or points of shapely or geopandas
+            In the coordinates of the file; those of geopandas may be in any system.
+
+        Returns
+        -------
+        ndarray, shape (N,), float32
+
+        Examples
+        --------
+        >>> lit = scene.shadow(sun=(180, 30))
+        >>> places = [[lit.x[3], lit.y[5]], [0, 0]]
+        >>> np.array_equal(lit.sample(places), [lit.values[5, 3], np.nan], equal_nan=True)
+        True
+        """
+        a, b, c, d, e, f = self.transform
+        rows = map_places(places, "places", "give x and y: shape (N, 2)", 0, self.crs)
+        inverse = np.linalg.inv(np.array([[a, b], [d, e]]))
+        columns, lines = np.floor(inverse @ (rows[:, :2] - (c, f)).T).astype(np.int64)
+        height, width = self.shape
+        is_inside = (columns >= 0) & (columns < width) & (lines >= 0) & (lines < height)
+        found = np.full(len(rows), np.nan, np.float32)
+        found[is_inside] = self._known()[lines[is_inside], columns[is_inside]]
+        return found
+
+    def plot(self, ax: matplotlib.axes.Axes | None = None, **keywords: Any) -> matplotlib.axes.Axes:
+        """Draws the raster on the map with a bar of colours.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; new ones if not given.
+        **keywords
+            For `matplotlib.axes.Axes.imshow`, such as ``cmap`` and ``vmin``.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Examples
+        --------
+        >>> axes = scene.shadow(sun=(180, 30)).plot(cmap="gray")
+        >>> axes.get_title()
+        'share of the sun, 0 in shadow'
+        """
+        try:
+            import matplotlib.pyplot as plt
+        except ImportError:
+            raise missing("matplotlib", "plot") from None
+        if ax is None:
+            ax = plt.figure().add_subplot()
+        west, south, east, north = self.bounds
+        drawn = ax.imshow(self._known(), extent=(west, east, south, north), **keywords)
+        unit = "" if self.unit in ("", "1") else f" [{self.unit}]"
+        ax.figure.colorbar(drawn, ax=ax, label=f"{self.name}{unit}")
+        ax.set_title(self.description)
+        ax.ticklabel_format(useOffset=False, style="plain")
+        return ax
 
     def _known(self) -> npt.NDArray[Any]:
         """The values, as numbers with NaN where there is none."""

@@ -27,6 +27,7 @@ from ._inputs import (
 )
 from ._raster import Raster
 from ._remarks import warned
+from ._shapes import in_system
 from ._targets import Cells, RastersOrTable, Results, Targets, measures, wanted
 
 _DIRECTION = "give azimuth and elevation in degrees, such as (180, 30)"
@@ -123,6 +124,7 @@ class Sunlight:
         True
         """
         suns, is_one = _suns(sun, time)
+        targets = in_system(targets, "targets", self._core.crs.text)
         chosen = wanted(
             targets,
             normals,
@@ -243,6 +245,7 @@ class Sunlight:
             sun_tolerance_deg=sun_tolerance_deg,
         )
         days = _days(date, period, year, time_step_min, min_sun_elevation_deg, sun_tolerance_deg)
+        targets = in_system(targets, "targets", self._core.crs.text)
         results = self._core.sun_hours(
             days,
             as_list(rule),
@@ -300,6 +303,7 @@ class Sunlight:
         >>> sky["sky_view_factor"].shape == (len(targets),)
         True
         """
+        targets = in_system(targets, "targets", self._core.crs.text)
         results = self._core.sky_view(
             directions,
             patches,

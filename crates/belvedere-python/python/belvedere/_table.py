@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 class Table(dict[str, "npt.NDArray[Any]"]):
     """Columns of values, a row for each target.
 
-    It is a dictionary of its columns, which `pandas.DataFrame` takes as it is. A column of two dimensions, such as
-    places of shape (N, 3), is also found by its own name, and listed as one column for each of its own: ``place_x``.
+    It is a dictionary of its columns, which `pandas.DataFrame`, `polars.DataFrame` and `pyarrow.table` take as it is. A
+    column of two dimensions, such as places of shape (N, 3), is also found by its own name, and listed as one column
+    for each of its own: ``place_x``.
 
     Attributes
     ----------

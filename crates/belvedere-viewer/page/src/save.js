@@ -13,7 +13,8 @@ export const csv = (rows) => rows.map((row) => row.map((cell) => {
   return /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 }).join(",")).join("\n") + "\n";
 
-// Features in the reference system of the scene, named as GDAL and QGIS read it (GeoJSON 2008), because GeoJSON promises another.
+// Features in the reference system of the scene, named as GDAL and QGIS read it (GeoJSON 2008), because GeoJSON
+// promises another.
 export const geojson = (name, features, scene) => JSON.stringify({
   type: "FeatureCollection", name, coordinate_reference_system: scene.crs,
   ...(scene.crs_epsg ? { crs: { type: "name", properties: { name: `urn:ogc:def:crs:EPSG::${scene.crs_epsg}` } } } : {}),

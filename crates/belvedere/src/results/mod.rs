@@ -119,8 +119,8 @@ pub fn write_measures(
 
 /// Writes measures of the cells of a grid as the bands of a raster, with the reference system of their frame. Their
 /// kind decides the type of the pixels and their value for no data; measures of several kinds are numbers. Cells that
-/// are no targets have no value in any band. `tags` are the metadata of the whole. Where cells stand on a mesh that was added, a last band says which
-/// ([`ADDED_BAND`]).
+/// are no targets have no value in any band. `tags` are the metadata of the whole. Where cells stand on a mesh that was
+/// added, a last band says which ([`ADDED_BAND`]).
 ///
 /// # Errors
 /// [`Error::UnsupportedTargets`] for targets that are no cells, [`Error::LengthMismatch`] unless there is a value for

@@ -114,6 +114,14 @@ impl Workplace {
         fs::read(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
     }
 
+    /// The bits of the values of all bands of a raster, whatever command its metadata name.
+    pub(crate) fn pixels(&self, name: &str) -> Vec<Vec<u32>> {
+        let raster = belvedere::io::read_tif(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let further = raster.further_bands.into_iter().map(|band| band.values);
+        let bands = std::iter::once(raster.values).chain(further);
+        bands.map(|band| band.values().iter().map(|value| value.to_bits()).collect()).collect()
+    }
+
     pub(crate) fn text(&self, name: &str) -> String {
         fs::read_to_string(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
     }

@@ -1,0 +1,100 @@
+"""Objects of shapely, geopandas, pandas, pvlib and matplotlib are taken, and given, as their users have them."""
+
+from __future__ import annotations
+
+import datetime
+
+import belvedere
+import numpy as np
+import pytest
+
+
+@pytest.fixture(scope="module")
+def places(standing) -> np.ndarray:
+    """Two places on the map."""
+    return np.array([standing, np.add(standing, (6.0, 2.0))])
+
+
+def test_points_of_geopandas_in_any_system_are_the_places_that_their_coordinates_name(scene, places):
+    geopandas = pytest.importorskip("geopandas")
+    shapely = pytest.importorskip("shapely")
+    points = shapely.points(places)
+    hours = scene.sun_hours(date="2026-03-21", targets=places)["sun_hours"]
+    assert np.isfinite(hours).all()
+    in_degrees = geopandas.GeoSeries(points, crs=28992).to_crs(4326)
+    for given in (
+        points,
+        list(points),
+        geopandas.GeoSeries(points),
+        in_degrees,
+        geopandas.GeoDataFrame(geometry=in_degrees),
+    ):
+        found = scene.sun_hours(date="2026-03-21", targets=given)["sun_hours"]
+        np.testing.assert_allclose(found, hours, atol=1e-3)
+    seen = scene.viewshed(places, cell=4)
+    np.testing.assert_array_equal(scene.viewshed(in_degrees, cell=4).values, seen.values)
+    # latitude and longitude in rows: half a metre of the step between the datums
+    by_degrees = np.column_stack([in_degrees.y, in_degrees.x])
+    horizon = scene.horizon(by_degrees)
+    assert np.abs(horizon.places[:, :2] - places).max() < 0.5
+    assert scene.line_of_sight(shapely.Point(places[0]), shapely.Point(places[1])).answer in belvedere.Answer
+    with pytest.raises(belvedere.BelvedereError, match="centroid"):
+        scene.sun_hours(date="2026-03-21", targets=geopandas.GeoSeries(points).buffer(1))
+
+
+def test_days_of_pandas_and_numpy_are_days(scene, places):
+    pandas = pytest.importorskip("pandas")
+    days = pandas.date_range("2026-03-20", periods=2)
+    expected = scene.sun_hours(date=["2026-03-20", "2026-03-21"], targets=places)["sun_hours"]
+    for given in (days, list(days), days.to_numpy(), [datetime.date(2026, 3, 20), np.datetime64("2026-03-21")]):
+        np.testing.assert_array_equal(scene.sun_hours(date=given, targets=places)["sun_hours"], expected)
+    with pytest.raises(belvedere.BelvedereError, match="without a time"):
+        scene.sun_hours(date=pandas.Timestamp("2026-03-20T10:00"), targets=places)
+
+
+def test_a_frame_of_weather_gives_the_energy_of_a_file(scene, places, tmp_path):
+    pandas = pytest.importorskip("pandas")
+    times = pandas.date_range("2025-01-01T00:30", "2025-12-31T23:30", freq="h", tz="Europe/Amsterdam")
+    hour = times.tz_convert("UTC").hour.to_numpy()
+    ghi = np.clip(600 * np.sin(np.pi * (hour - 5) / 14), 0, None)
+    weather = pandas.DataFrame({"ghi": ghi, "dni": 0.8 * ghi, "dhi": 0.4 * ghi}, index=times)
+    location = (52.15, 5.39)
+    energy = scene.irradiance(weather=weather, location=location, targets=places)["kwh_m2"]
+    utc = times.tz_convert("UTC")
+    rows = zip(utc, ghi, strict=True)
+    lines = [f"{t.year},{t.month},{t.day},{t.hour},{t.minute},{g},{0.8 * g},{0.4 * g}" for t, g in rows]
+    file = tmp_path / "weather.csv"
+    head = ["Latitude,Longitude,Time Zone,Elevation", "52.15,5.39,0,0", "Year,Month,Day,Hour,Minute,GHI,DNI,DHI"]
+    file.write_text("\n".join(head + lines) + "\n")
+    np.testing.assert_array_equal(energy, scene.irradiance(weather=file, targets=places)["kwh_m2"])
+    assert (energy > 100).all()
+    for wrong, said in [
+        (dict(weather=weather), "latitude and longitude"),
+        (dict(weather=weather.tz_localize(None), location=location), "time zone"),
+        (dict(weather=weather[["dni"]], location=location), "ghi"),
+    ]:
+        with pytest.raises(belvedere.BelvedereError, match=said):
+            scene.irradiance(**wrong, targets=places)
+
+
+def test_a_raster_is_sampled_at_the_cells_that_hold_places(scene, places):
+    lit = scene.shadow(sun=(180, 30), cell=1)
+    west, south, east, north = lit.bounds
+    middles = np.column_stack([lit.x[[0, 5, -1]], lit.y[[0, 7, -1]]])
+    np.testing.assert_array_equal(lit.sample(middles), lit.values[[0, 7, -1], [0, 5, -1]])
+    beside = [(west - 0.1, north), (east + 0.1, south), (west, north + 0.1)]
+    assert np.isnan(lit.sample(beside)).all()
+    seen = scene.viewshed(places, cell=2)
+    nothing = np.argwhere(seen.values == seen.nodata)
+    row, column = nothing[0] if len(nothing) else (0, 0)
+    assert np.isnan(seen.sample([[seen.x[column], seen.y[row]]])).all() == bool(len(nothing))
+
+
+def test_units_and_suns_come_along(scene, places):
+    time = "2026-06-21T15:00+02:00"
+    lit = scene.shadow(time=time, cell=4)
+    assert lit.unit == "1" and lit.tags["TIME"] == "2026-06-21T15:00:00+02:00" and lit.tags["TIME_ZONE"] == "+02"
+    hours = scene.sun_hours(date="2026-06-21", cell=4)
+    assert [hours[name].unit for name in ("sun_hours", "sun_share", "first_light")] == ["h", "1", "h"]
+    assert scene.irradiance(clear_sky="haurwitz", cell=8)["kwh_m2"].unit == "kWh/m2"
+    assert hours["sun_hours"].to_xarray().attrs["units"] == "h" and lit.to_xarray().attrs["time"] == lit.tags["TIME"]
