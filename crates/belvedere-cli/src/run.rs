@@ -8,6 +8,7 @@ use belvedere::cache::SceneCache;
 use belvedere::control::{Control, Watcher};
 use belvedere::io::MetadataTag;
 use serde_json::Value;
+use std::path::Path;
 
 /// Context of every command beside its arguments.
 pub(crate) struct CommandContext {
@@ -71,7 +72,7 @@ impl CommandContext {
 
     /// Adds the question and the zone of its clock to the metadata of rasters.
     pub(crate) fn name_question(&mut self, question: Question, time_zone: Option<&str>) {
-        let question = serde_json::to_value(question).map(without_nothing).unwrap_or_default().to_string();
+        let question = serde_json::to_value(question).map(shortened).unwrap_or_default().to_string();
         let question = Some(question).filter(|text| text.len() <= MAX_QUESTION);
         let tags = [("QUESTION", question), ("TIME_ZONE", time_zone.map(str::to_owned))];
         self.tags.extend(tags.into_iter().filter_map(|(name, text)| Some((name.to_owned(), text?))));
@@ -99,14 +100,21 @@ impl CommandContext {
     }
 }
 
-/// This without the fields that were not given.
-fn without_nothing(value: Value) -> Value {
+/// This without the fields that were not given, and without the folders of files.
+fn shortened(value: Value) -> Value {
     match value {
         Value::Object(fields) => {
             let given = fields.into_iter().filter(|(_, value)| !value.is_null());
-            Value::Object(given.map(|(name, value)| (name, without_nothing(value))).collect())
+            let short = |(name, value): (String, Value)| match value {
+                Value::String(path) if name == "file" => {
+                    let file = Path::new(&path).file_name().map(|file| file.to_string_lossy().into_owned());
+                    (name, Value::String(file.unwrap_or(path)))
+                }
+                other => (name, shortened(other)),
+            };
+            Value::Object(given.map(short).collect())
         }
-        Value::Array(values) => Value::Array(values.into_iter().map(without_nothing).collect()),
+        Value::Array(values) => Value::Array(values.into_iter().map(shortened).collect()),
         other => other,
     }
 }
