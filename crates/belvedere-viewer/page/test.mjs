@@ -28,8 +28,8 @@ async function serve(...files) {
   return { child, url };
 }
 const problems = [];
-// A machine that compiles and tests beside this one answers late, which is no failure.
-const PATIENCE = 120_000;
+// A machine of one core that tests beside this one answers late, which is no failure.
+const PATIENCE = 600_000;
 // With PAGE_FROM=folder the page is that of a folder, so that a changed one is tried without building the program anew.
 async function fromFolder(page) {
   const from = process.env.PAGE_FROM;
