@@ -1,4 +1,4 @@
-//! `belvedere difference`.
+//! `belvedere difference` of two rasters.
 
 use super::{check_output, extension};
 use crate::arguments::{DifferenceArguments, Global};
@@ -24,6 +24,10 @@ pub(crate) fn run(arguments: &DifferenceArguments, global: &Global) -> Result<Su
         check_output("-o", output, &["tif", "tiff", "png", "csv"])?;
     }
     let mut run = CommandContext::new(global);
+    if [&arguments.before, &arguments.after].iter().all(|path| extension(path) == "csv") {
+        super::difference_of_tables::run(arguments, &mut run)?;
+        return Ok(run.finish());
+    }
     let read = |path: &Path, run: &mut CommandContext| run.stage("reading", 0, |_| read_tif(path));
     let mut before = read(&arguments.before, &mut run)?;
     let mut after = read(&arguments.after, &mut run)?;

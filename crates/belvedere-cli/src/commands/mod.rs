@@ -11,6 +11,7 @@ mod demo;
 mod depth_map;
 mod describe;
 mod difference;
+mod difference_of_tables;
 mod envelope;
 mod fading;
 mod far_terrain;

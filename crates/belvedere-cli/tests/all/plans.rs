@@ -124,6 +124,36 @@ fn a_cleared_house_casts_no_shadow_and_another_can_replace_it() {
 }
 
 #[test]
+fn tables_are_compared_row_by_row_whatever_their_order() {
+    let place = Workplace::new();
+    std::fs::write(place.path("before.csv"), "name,x,y,hours,class\nb,1,2,4.5,6\na,3,4,2,6\nc,5,6,1,6\n").unwrap();
+    std::fs::write(place.path("after.csv"), "name,x,y,hours,class\na,3,4,2.25,6\nb,1,2,1.5,6\nd,7,8,9,6\n").unwrap();
+    let run = place.summary("difference before.csv after.csv -o change.csv");
+    assert_eq!(
+        place.text("change.csv"),
+        "name,x,y,class,hours_before,hours_after,hours_change\n\
+         b,1,2,6,4.5000,1.5000,-3.0000\na,3,4,6,2.0000,2.2500,0.2500\n"
+    );
+    let hours = &run["difference"]["columns"]["hours"];
+    assert_eq!((hours["rows_gain"].as_u64(), hours["largest_loss"].as_f64()), (Some(1), Some(-3.0)), "{run}");
+    assert!(remarks(&run)[0].contains("1 before, 1 after"), "{run}");
+    // without a name, rows are those of the same place
+    std::fs::write(place.path("here.csv"), "x,y,hours\n1,2,4\n3,4,5\n").unwrap();
+    std::fs::write(place.path("then.csv"), "x,y,hours\n3,4,5\n1,2,4\n").unwrap();
+    let same = place.run("difference here.csv then.csv -o same.csv");
+    assert!(same.status == 0 && same.stdout.contains("nothing changes in 2 rows"), "{same:?}");
+    std::fs::write(place.path("twice.csv"), "x,y,hours\n1,2,4\n1,2,5\n").unwrap();
+    for (words, status, said) in [
+        ("twice.csv then.csv -o no.csv", 1, "rows 1 and 2 have the same x, y: 1,2"),
+        ("before.csv then.csv -o no.tif", 2, "is a table (.csv)"),
+        ("before.csv here.csv -o no.csv --title T", 2, "--title"),
+    ] {
+        place.refusal(status, &format!("difference {words}"), &[said]);
+    }
+    assert!(!place.path("no.csv").exists());
+}
+
+#[test]
 fn differences_are_those_of_the_two_results_cell_by_cell() {
     let place = Workplace::new();
     place.write_cloud("house.laz", &house());

@@ -1,0 +1,187 @@
+//! `belvedere difference` of two tables: rows of the same places, before and after a plan.
+
+use crate::arguments::{DifferenceArguments, Usage};
+use crate::run::CommandContext;
+use anyhow::{Result, bail};
+use belvedere::io::{Table, TableCells, TextRows, read_table, write_table};
+use belvedere::report::rounded;
+use serde_json::{Map, Value, json};
+use std::collections::HashMap;
+use std::path::Path;
+
+/// Columns that name a row, the first that both tables have.
+const KEYS: [&str; 6] = ["id", "fid", "window", "object", "face", "name"];
+/// Columns that name the place of a row.
+const PLACE: [&str; 3] = ["x", "y", "z"];
+/// Decimals of changes.
+const DECIMALS: usize = 4;
+
+/// A table, with the text of its cells.
+struct Rows {
+    table: Table,
+    text: TextRows,
+}
+
+/// A column of numbers that both tables have, of the rows that both have.
+struct Compared {
+    name: String,
+    before: Vec<f64>,
+    after: Vec<f64>,
+}
+
+/// Compares the rows of two tables, and writes the change of each column of numbers.
+///
+/// # Errors
+/// Those of reading, and tables whose rows cannot be told apart or have nothing in common.
+pub(super) fn run(arguments: &DifferenceArguments, run: &mut CommandContext) -> Result<()> {
+    let flags = [("--relief", arguments.relief.is_some()), ("--title", arguments.title.is_some())];
+    if let Some((flag, _)) = flags.into_iter().find(|(_, is_given)| *is_given) {
+        return Err(Usage(format!("{flag} applies only to rasters")).into());
+    }
+    if let Some(other) = arguments.output.iter().find(|output| super::extension(output) != "csv") {
+        return Err(Usage(format!("-o {}: the difference of tables is a table (.csv)", other.display())).into());
+    }
+    let paths = [&arguments.before, &arguments.after].map(|path| path.as_path());
+    let [before, after] = [Rows::read(paths[0], run)?, Rows::read(paths[1], run)?];
+    let key = key_of(&before, &after, paths)?;
+    let [first, second] = [before.keys(&key, paths[0])?, after.keys(&key, paths[1])?];
+    let place_after: HashMap<&str, usize> = second.iter().enumerate().map(|(row, key)| (key.as_str(), row)).collect();
+    let pairs: Vec<[usize; 2]> =
+        first.iter().enumerate().filter_map(|(row, key)| Some([row, *place_after.get(key.as_str())?])).collect();
+    if pairs.is_empty() {
+        bail!("{}: no row has the {} of a row of {}", paths[1].display(), key.join(", "), paths[0].display());
+    }
+    let compared = compared(&before, &after, paths, &pairs, &key);
+    let changed: Vec<&Compared> =
+        compared.iter().filter(|column| column.changes().any(|change| change != 0.0)).collect();
+    summarise(&changed, pairs.len(), [first.len(), second.len()].map(|count| count - pairs.len()), run);
+    for output in &arguments.output {
+        run.stage("writing", 0, |_| write(output, &before, &pairs, &changed))?;
+    }
+    run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    Ok(())
+}
+
+impl Rows {
+    fn read(path: &Path, run: &CommandContext) -> Result<Self> {
+        let table = run.stage("reading", 0, |_| read_table(path))?;
+        Ok(Self { text: table.clone().into_text(), table })
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.table.names().iter().any(|own| own.eq_ignore_ascii_case(name))
+    }
+
+    /// The cells of columns of each row, joined.
+    fn keys(&self, names: &[&str], path: &Path) -> Result<Vec<String>> {
+        let columns = self.text.columns(0..self.table.row_count());
+        let of_key: Vec<&Vec<&str>> = names
+            .iter()
+            .filter_map(|name| columns.iter().find(|(own, _)| own.eq_ignore_ascii_case(name)).map(|(_, cells)| cells))
+            .collect();
+        let mut keys = Vec::with_capacity(self.table.row_count());
+        let mut seen = HashMap::new();
+        for row in 0..self.table.row_count() {
+            let key = of_key.iter().map(|cells| cells[row].trim()).collect::<Vec<_>>().join(",");
+            if let Some(other) = seen.insert(key.clone(), row) {
+                let names = names.join(", ");
+                bail!("{}: rows {} and {} have the same {names}: {key}", path.display(), other + 1, row + 1);
+            }
+            keys.push(key);
+        }
+        Ok(keys)
+    }
+}
+
+impl Compared {
+    /// After less before, of rows that have both.
+    fn changes(&self) -> impl Iterator<Item = f64> {
+        self.before.iter().zip(&self.after).map(|(before, after)| after - before).filter(|change| change.is_finite())
+    }
+}
+
+/// The columns by which rows are found again.
+fn key_of(before: &Rows, after: &Rows, paths: [&Path; 2]) -> Result<Vec<&'static str>> {
+    let is_in_both = |name: &&&str| before.has(name) && after.has(name);
+    if let Some(name) = KEYS.iter().find(is_in_both) {
+        // faces of a mesh are numbered within their object
+        let beside = if *name == "object" { ["face"].iter().find(is_in_both) } else { None };
+        return Ok([*name].into_iter().chain(beside.copied()).collect());
+    }
+    let place: Vec<&str> = PLACE.iter().filter(is_in_both).copied().collect();
+    match place.len() {
+        0 | 1 => bail!(
+            "{} and {} have no column in common that names their rows; give both a column id",
+            paths[0].display(),
+            paths[1].display()
+        ),
+        _ => Ok(place),
+    }
+}
+
+/// The columns of numbers that both tables have, of the `pairs` of rows.
+fn compared(before: &Rows, after: &Rows, paths: [&Path; 2], pairs: &[[usize; 2]], key: &[&str]) -> Vec<Compared> {
+    let is_named = |name: &str| key.iter().chain(&PLACE).any(|own| own.eq_ignore_ascii_case(name));
+    let of_name = |name: &String| {
+        let [first, second] = [(before, 0), (after, 1)]
+            .map(|(rows, number): (&Rows, usize)| rows.table.column(paths[number], name).ok().flatten());
+        let (first, second) = (first?, second?);
+        let [before, after] =
+            [(first, 0), (second, 1)].map(|(values, end)| pairs.iter().map(|pair| values[pair[end]]).collect());
+        Some(Compared { name: name.clone(), before, after })
+    };
+    before.table.names().iter().filter(|name| !is_named(name)).filter_map(of_name).collect()
+}
+
+fn summarise(changed: &[&Compared], rows: usize, [only_before, only_after]: [usize; 2], run: &mut CommandContext) {
+    let mut columns = Map::new();
+    for column in changed {
+        let mean = |values: &[f64]| {
+            let known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+            rounded(known.iter().sum::<f64>() / known.len().max(1) as f64, 4)
+        };
+        let (before, after) = (mean(&column.before), mean(&column.after));
+        let count = |is: fn(f64) -> bool| column.changes().filter(|&change| is(change)).count();
+        let (gain, loss) = (count(|change| change > 0.0), count(|change| change < 0.0));
+        let largest = |pick: fn(f64, f64) -> f64| rounded(column.changes().fold(0.0, pick), 4);
+        let (highest, lowest) = (largest(f64::max), largest(f64::min));
+        run.summary.answer(&format!(
+            "{}: mean {before} before, {after} after; {gain} of {rows} rows gain, at most {highest}, {loss} lose, at most {}",
+            column.name, -lowest
+        ));
+        columns.insert(
+            column.name.clone(),
+            json!({
+                "mean_before": before, "mean_after": after, "rows_gain": gain, "rows_loss": loss,
+                "largest_gain": highest, "largest_loss": lowest,
+            }),
+        );
+    }
+    if changed.is_empty() {
+        run.summary.answer(&format!("nothing changes in {rows} rows"));
+    }
+    if only_before + only_after > 0 {
+        let text = format!("rows that one table has alone are left out: {only_before} before, {only_after} after");
+        run.summary.warn("rows-left-out", text);
+    }
+    run.summary.add("difference", json!({ "rows": rows, "columns": Value::Object(columns) }));
+}
+
+/// The rows of the table before, with the values before and after of what changes, and their change.
+fn write(output: &Path, before: &Rows, pairs: &[[usize; 2]], changed: &[&Compared]) -> belvedere::Result<()> {
+    let rows: Vec<usize> = pairs.iter().map(|pair| pair[0]).collect();
+    let is_changed = |name: &str| changed.iter().any(|column| column.name == name);
+    let texts = before.text.columns(rows.iter().copied());
+    let carried = texts.iter().filter(|(name, _)| !is_changed(name));
+    let mut columns: Vec<(String, TableCells<'_>)> =
+        carried.map(|(name, cells)| ((*name).to_owned(), TableCells::Words(cells))).collect();
+    let changes: Vec<Vec<f64>> =
+        changed.iter().map(|column| column.before.iter().zip(&column.after).map(|(b, a)| a - b).collect()).collect();
+    for (column, change) in changed.iter().zip(&changes) {
+        for (end, values) in [("before", &column.before), ("after", &column.after), ("change", change)] {
+            columns.push((format!("{}_{end}", column.name), TableCells::Real(values, DECIMALS)));
+        }
+    }
+    let columns: Vec<(&str, TableCells<'_>)> = columns.iter().map(|(name, cells)| (name.as_str(), *cells)).collect();
+    write_table(output, &columns)
+}
