@@ -186,6 +186,10 @@ pub(crate) fn command() -> Command {
     let with_step =
         |city: Command, (name, text): &(&str, &'static str)| city.mut_subcommand(name, |sub| described(sub, text));
     let command = command.mut_subcommand("city", |city| STEPS_OF_CITY.iter().fold(city, with_step));
+    // a place is enough, where nothing but the sun counts
+    let command = command.mut_subcommand("sun-position", |sub| {
+        sub.mut_arg("clouds", |clouds| clouds.required(false).required_unless_present("location"))
+    });
     let template = overview(&command);
     command.help_template(template)
 }

@@ -8,6 +8,7 @@ use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Ask, Places};
 use belvedere::model::{ModelParts, SceneModel};
+use belvedere::{Bounds, PointCloud};
 use std::sync::Arc;
 
 pub(crate) fn run(arguments: &SunPositionArguments, global: &Global) -> Result<Summary> {
@@ -18,8 +19,13 @@ pub(crate) fn run(arguments: &SunPositionArguments, global: &Global) -> Result<S
     let question = ask::SunPositionQuestion { times: arguments.times.clone(), place };
     question.check()?;
     let mut run = CommandContext::new(global);
-    let cloud = pipeline::read(&arguments.input, &mut run)?;
-    let bounds = pipeline::bounds_of(&cloud)?;
+    let (cloud, bounds) = if arguments.input.clouds.is_empty() {
+        (PointCloud::default(), Bounds { low: [0.0; 3], high: [1.0; 3] })
+    } else {
+        let cloud = pipeline::read(&arguments.input, &mut run)?;
+        let bounds = pipeline::bounds_of(&cloud)?;
+        (cloud, bounds)
+    };
     let parts = ModelParts { frame: cloud.frame.clone(), bounds, ..ModelParts::default() };
     let scene = ask::Scene::new(SceneModel::from_parts(parts)?, Arc::new(cloud));
     let answers = run.ask(&scene, &question, &Places::Scene)?;

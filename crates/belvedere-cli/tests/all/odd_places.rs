@@ -143,6 +143,47 @@ fn an_end_inside_an_obstacle_is_an_answer_of_its_own() {
 }
 
 #[test]
+fn observers_in_degrees_stand_where_their_coordinates_are() {
+    let place = Workplace::new();
+    place.write("field.csv", field(&[]));
+    // 10.4 m north and east of the origin of the Dutch grid, by the lengths of a degree there
+    let eye = |observer: &str| {
+        let words = format!("isovist field.csv --crs EPSG:28992 --orient up --observer {observer} -o i.csv");
+        let eye = place.summary(&words)["observers"]["eye"].clone();
+        [0, 1].map(|axis| eye[axis].as_f64().unwrap())
+    };
+    // tables have no header that could be looked at first: coordinates of the file alone
+    assert_eq!(eye("155010.4,463010.4"), [155_010.4, 463_010.4]);
+    place.summary("normals field.csv --crs EPSG:28992 --orient up -o field.laz");
+    let eye = |observer: &str| {
+        let eye =
+            place.summary(&format!("isovist field.laz --observer {observer} -o i.csv"))["observers"]["eye"].clone();
+        [0, 1].map(|axis| eye[axis].as_f64().unwrap())
+    };
+    let [x, y] = eye("52.1552679,5.3873585");
+    assert!((x - 155_010.4).abs() < 0.6 && (y - 463_010.4).abs() < 0.6, "{x} {y}");
+    place.refusal(2, "isovist field.laz --observer 5.3873585,52.1552679 -o i.csv", &["swapped"]);
+    for (command, flags) in [
+        ("viewshed", "--observer 52.1552679,5.3873585 --cell 4 -o v.tif"),
+        ("horizon", "--observer 52.1552679,5.3873585 -o h.csv"),
+        ("line-of-sight", "--observer 52.1552679,5.3873585 --target 155040,463040"),
+    ] {
+        place.summary(&format!("{command} field.laz {flags}"));
+    }
+}
+
+#[test]
+fn the_sun_of_a_place_needs_no_cloud() {
+    let place = Workplace::new();
+    let times = "--time 2026-06-21T11:44Z --time 2026-12-21T12:00Z";
+    place.summary(&format!("sun-position --location 52,4.4 {times} -o sun.csv"));
+    let elevations = column(&place, "sun.csv", "elevation_deg");
+    // noon of the longest day: 90 - 52 + 23.44 degrees; of the shortest: 90 - 52 - 23.44, and 0.06 of refraction
+    assert!((elevations[0] - 61.44).abs() < 0.05 && (elevations[1] - 14.6).abs() < 0.1, "{elevations:?}");
+    place.refusal(2, &format!("sun-position {times}"), &["CLOUD"]);
+}
+
+#[test]
 fn a_sun_that_cannot_stand_there_is_refused_or_said() {
     let place = Workplace::new();
     place.write_cloud("house.laz", &house());
