@@ -1,6 +1,6 @@
 //! Views of a landmark, its visible part, and building heights before it.
 
-use crate::arrays::to_1d;
+use crate::arrays::{to_1d, to_2d};
 use crate::mesh::PyMesh;
 use crate::observers::standing_observers;
 use crate::outlook::LookingKeywords;
@@ -11,7 +11,7 @@ use crate::work::run;
 use belvedere::apps::ask::{self, LandmarkShape, SharedObject};
 use belvedere::control::Control;
 use belvedere::query::{BackFaces, SurfacePieces, UnprovenAs};
-use numpy::PyReadonlyArray2;
+use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -49,8 +49,8 @@ impl LandmarkKeywords {
     }
 }
 
-/// Columns, the grid of observers, and remarks.
-type LandmarkReply<'py> = (Vec<MeasureColumn<'py>>, Option<Grid>, Vec<Bound<'py, PyDict>>);
+/// Columns, the grid of observers, remarks, and the places of observers in the coordinates of the file.
+type LandmarkReply<'py> = (Vec<MeasureColumn<'py>>, Option<Grid>, Vec<Bound<'py, PyDict>>, Bound<'py, PyArray2<f64>>);
 
 #[pymethods]
 impl PyScene {
@@ -87,7 +87,9 @@ impl PyScene {
         })?;
         let grid = is_grid.then(|| grid_of(&answers.found.ground.ground.grid, self.0.frame()));
         let remarks = remarks_of(py, &answers.remarks)?;
-        Ok((measure_columns(py, answers.measures), grid, remarks))
+        let in_file = |place: &[f64; 3]| self.0.frame().file_from_local(*place);
+        let places = to_2d(py, &answers.found.places.iter().map(in_file).collect::<Vec<_>>())?;
+        Ok((measure_columns(py, answers.measures), grid, remarks, places))
     }
 
     /// Returns the maximum heights above the ground and of the file, their grid, and remarks.

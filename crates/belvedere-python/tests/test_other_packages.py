@@ -35,8 +35,8 @@ def test_points_of_geopandas_in_any_system_are_the_places_that_their_coordinates
     np.testing.assert_array_equal(scene.viewshed(in_degrees, cell=4).values, seen.values)
     # latitude and longitude in rows: half a metre of the step between the datums
     by_degrees = np.column_stack([in_degrees.y, in_degrees.x])
-    horizon = scene.horizon(by_degrees)
-    assert np.abs(horizon.places[:, :2] - places).max() < 0.5
+    seen = scene.isovist(by_degrees)
+    assert np.abs(seen.places[:, :2] - places).max() < 0.5
     assert scene.line_of_sight(shapely.Point(places[0]), shapely.Point(places[1])).answer in belvedere.Answer
     with pytest.raises(belvedere.BelvedereError, match="centroid"):
         scene.sun_hours(date="2026-03-21", targets=geopandas.GeoSeries(points).buffer(1))
@@ -64,7 +64,11 @@ def test_a_frame_of_weather_gives_the_energy_of_a_file(scene, places, tmp_path):
     rows = zip(utc, ghi, strict=True)
     lines = [f"{t.year},{t.month},{t.day},{t.hour},{t.minute},{g},{0.8 * g},{0.4 * g}" for t, g in rows]
     file = tmp_path / "weather.csv"
-    head = ["Latitude,Longitude,Time Zone,Elevation", "52.15,5.39,0,0", "Year,Month,Day,Hour,Minute,GHI,DNI,DHI"]
+    head = [
+        "Source,Latitude,Longitude,Time Zone,Elevation",
+        "x,52.15,5.39,0,0",
+        "Year,Month,Day,Hour,Minute,GHI,DNI,DHI",
+    ]
     file.write_text("\n".join(head + lines) + "\n")
     np.testing.assert_array_equal(energy, scene.irradiance(weather=file, targets=places)["kwh_m2"])
     assert (energy > 100).all()

@@ -482,9 +482,10 @@ def test_comfort_and_envelopes(scene, run_program, folder, standing):
 
     run_program(
         *("envelope", "tile.laz", "--parcel", typed(ring), "--protect", typed(line), "--date", "2026-03-21"),
-        *("--between", "10,14", "--max-height", 25, "-o", "envelope.tif"),
+        *("--between", "10,14", "--zone", "Europe/Amsterdam", "--max-height", 25, "-o", "envelope.tif"),
     )
-    ours = scene.envelope(ring, protect=line, date="2026-03-21", between=(10, 14), max_height=25)
+    hours = {"date": "2026-03-21", "between": (10, 14), "zone": "Europe/Amsterdam"}
+    ours = scene.envelope(ring, protect=line, **hours, max_height=25)
     assert_same_raster(ours, folder / "envelope.tif", folder)
 
 

@@ -244,10 +244,10 @@ fn scanners_on_the_ground_have_doubtful_probabilities_and_no_intervals() {
     place.summary("simulate village -o tls --extent 60 --scanner terrestrial --angle-step-deg 0.6");
     let scans = "tls/cloud.laz --orient stations=tls/stations.csv --cell 6";
     let lit = place.run(&format!("shadow {scans} --sun 200,30 --probability -o lit.tif"));
-    assert!(lit.status == 0 && lit.stderr.contains("probabilities of what it did not see"), "{lit:?}");
+    assert!(lit.status == 0 && lit.stderr.contains("probabilities are left out where nothing"), "{lit:?}");
     let queried = place
         .run("query tls/cloud.laz --orient stations=tls/stations.csv --sun 200,30 --random 50 --probability -o q.csv");
-    assert!(queried.status == 0 && queried.stderr.contains("probabilities of what it did not see"), "{queried:?}");
+    assert!(queried.status == 0 && queried.stderr.contains("probabilities are left out where nothing"), "{queried:?}");
     let sky = place.run(&format!("sky-view {scans} --directions 145 --interval -o sky.tif"));
     assert!(sky.status != 0 && sky.stderr.contains("surveys from the air"), "{sky:?}");
 }

@@ -223,7 +223,7 @@ class Scene:
         unproven: str,
         probability: bool,
         progress: _Progress,
-    ) -> tuple[_Measures, _Grid | None, list[dict[str, Any]]]: ...
+    ) -> tuple[_Measures, _Grid | None, list[dict[str, Any]], npt.NDArray[np.float64]]: ...
     def protected_view(
         self,
         landmark: dict[str, Any],

@@ -252,7 +252,7 @@ def _as_file(weather: Any, location: tuple[float, float] | None) -> tuple[str, b
     columns = {title: weather[names[name]].to_numpy(np.float64) for title, name in known.items() if name in names}
     times = weather.index.tz_convert("UTC")
     parts = [times.year, times.month, times.day, times.hour, times.minute]
-    head = f"Latitude,Longitude,Time Zone,Elevation\n{location[0]!r},{location[1]!r},0,0\n"
+    head = f"Source,Latitude,Longitude,Time Zone,Elevation\nDataFrame,{location[0]!r},{location[1]!r},0,0\n"
     lines = [",".join(["Year", "Month", "Day", "Hour", "Minute", *columns])]
     lines += [",".join(map(str, row)) for row in zip(*parts, *columns.values(), strict=True)]
     return "weather.csv", (head + "\n".join(lines) + "\n").encode()

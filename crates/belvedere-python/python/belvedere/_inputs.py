@@ -192,7 +192,7 @@ def day_text(day: Day, what: str = "date") -> str:
         # days of pandas are midnights
         if day.time() == datetime.time():
             return day.date().isoformat()
-        raise wrong(what, day.isoformat(), "give a day without a time, such as .date()")
+        raise wrong(what, day.isoformat(), "give a day without a time, such as datetime.date(2026, 6, 21)")
     if isinstance(day, datetime.date):
         return day.isoformat()
     if isinstance(day, np.datetime64):

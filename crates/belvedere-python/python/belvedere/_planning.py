@@ -123,10 +123,12 @@ class Planning:
         if observers is not None and cell is not None:
             raise wrong("cell", cell, "it applies only to a grid; leave out observers, or leave this out")
         places = None if observers is None else map_places(observers, "observers", _OBSERVERS, crs=self._core.crs.text)
-        columns, grid, given = self._core.landmark(what, places, looking, unproven, probability, reporter(progress))
+        columns, grid, given, standing = self._core.landmark(
+            what, places, looking, unproven, probability, reporter(progress)
+        )
         if places is None:
             return measures((columns, grid, None, given, None), self._core.crs, None)
-        table = Table({name: values for name, _, values, *_ in columns}, places=places, crs=self._core.crs.text)
+        table = Table({name: values for name, _, values, *_ in columns}, places=standing, crs=self._core.crs.text)
         table.remarks = warned(given)
         return table
 
