@@ -118,7 +118,8 @@ with rasterio.open(lit) as raster:
     assert set(numpy.unique(values.compressed())) == {0, 1}
     # the file says what it shows: command, question, zone, and the sun of each band
     tags = raster.tags()
-    assert tags["COMMAND"].startswith("belvedere shadow balls.npz --ground cloud=town.laz"), tags
+    assert tags["COMMAND"].startswith("belvedere shadow balls.npz --from 2026-06-21T08:00+02:00"), tags
+    assert tags["COMMAND"].endswith("--cell 2 --ground cloud=town.laz"), tags
     assert str(folder) not in str(tags) and tags["TIFFTAG_SOFTWARE"].startswith("belvedere "), tags
     assert json.loads(tags["QUESTION"])["shadow"]["suns"]["days"]["between"][0] == "2026-06-21T08:00+02:00", tags
     assert tags["TIME_ZONE"] == "+02" and raster.units == ("1",) * suns, (tags, raster.units)

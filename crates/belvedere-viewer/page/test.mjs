@@ -639,14 +639,14 @@ async function main() {
     await alone.keyboard.press("2");
     await answered(alone);
     const [first, command] = await alone.evaluate(() => [belvedere.last.visible, document.getElementById("command").innerText]);
-    assert.match(command, /belvedere viewshed town\/cloud\.laz --observer 155000,463000 -o seen\.laz/);
+    assert.match(command, /belvedere viewshed cloud\.laz --observer 155000,463000 -o seen\.laz/);
     await alone.selectOption("#viewpoint", "1");
     await alone.waitForFunction((before) => belvedere.last.visible > before && belvedere.marks.length === 2, first);
     await settled(alone);
     assert.ok(await pixels(alone, [255, 176, 0]) > 500, "visible points are orange");
     await alone.keyboard.press("3");
     await answered(alone);
-    assert.match(await text(alone), /% is lit[\s\S]*belvedere shadow town\/cloud\.laz --time 2026-06-21T/);
+    assert.match(await text(alone), /% is lit[\s\S]*belvedere shadow cloud\.laz --time 2026-06-21T/);
     const noon = await alone.evaluate(() => belvedere.last.lit_share);
     for (let i = 0; i < 7; i++) await alone.keyboard.press(">");
     await alone.waitForFunction((before) => belvedere.last.lit_share < before - 0.1, noon);
