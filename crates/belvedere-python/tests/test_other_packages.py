@@ -55,8 +55,9 @@ def test_days_of_pandas_and_numpy_are_days(scene, places):
 def test_a_frame_of_weather_gives_the_energy_of_a_file(scene, places, tmp_path):
     pandas = pytest.importorskip("pandas")
     times = pandas.date_range("2025-01-01T00:30", "2025-12-31T23:30", freq="h", tz="Europe/Amsterdam")
-    hour = times.tz_convert("UTC").hour.to_numpy()
-    ghi = np.clip(600 * np.sin(np.pi * (hour - 5) / 14), 0, None)
+    # day is around noon of the sun, 11:38 UTC
+    hour = times.tz_convert("UTC").hour.to_numpy() + 0.5
+    ghi = np.clip(600 * np.cos(np.pi * (hour - 11.5) / 9), 0, None) * (abs(hour - 11.5) < 5)
     weather = pandas.DataFrame({"ghi": ghi, "dni": 0.8 * ghi, "dhi": 0.4 * ghi}, index=times)
     location = (52.15, 5.39)
     energy = scene.irradiance(weather=weather, location=location, targets=places)["kwh_m2"]
@@ -70,7 +71,7 @@ def test_a_frame_of_weather_gives_the_energy_of_a_file(scene, places, tmp_path):
         "Year,Month,Day,Hour,Minute,GHI,DNI,DHI",
     ]
     file.write_text("\n".join(head + lines) + "\n")
-    np.testing.assert_array_equal(energy, scene.irradiance(weather=file, targets=places)["kwh_m2"])
+    np.testing.assert_array_equal(energy, scene.irradiance(weather=file, location=location, targets=places)["kwh_m2"])
     assert (energy > 100).all()
     for wrong, said in [
         (dict(weather=weather), "latitude and longitude"),

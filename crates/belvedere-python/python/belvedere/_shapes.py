@@ -26,6 +26,13 @@ def in_system(value: Any, what: str, crs: str | None = None) -> Any:
     return value
 
 
+def is_single(value: Any) -> bool:
+    """Whether a value is one place rather than rows of places."""
+    if in_system(value, "place") is not value:
+        return getattr(value, "geom_type", None) == "Point"
+    return np.ndim(value) == 1
+
+
 def _of_frame(value: Any, what: str, crs: str | None) -> npt.NDArray[np.float64]:
     geometry = getattr(value, "geometry", value)
     if geometry.crs is not None and crs is not None:

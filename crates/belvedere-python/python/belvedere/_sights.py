@@ -12,7 +12,7 @@ from ._answer import Answer
 from ._inputs import Places, Progress, check_finite, pairs_of, place, reporter
 from ._mesh import Mesh
 from ._remarks import Remark, warned
-from ._shapes import in_system
+from ._shapes import in_system, is_single
 from ._table import Table
 from ._targets import Targets, face_table, wanted
 
@@ -195,7 +195,7 @@ class Sights:
         """
         check_finite(refraction=refraction, frequency_ghz=frequency_ghz)
         check_finite(observer_height=observer_height, target_height=target_height)
-        is_one = np.ndim(observer) == 1 and np.ndim(target) == 1
+        is_one = is_single(observer) and is_single(target)
         observers, targets = pairs_of(observer, target, self._core.crs.text)
         ends = {"observer_height": observer_height, "target_height": target_height, "ground": ground}
         columns, standing, given = self._core.lines_of_sight(
