@@ -3,12 +3,12 @@
 use crate::arguments::Global;
 use crate::progress::CommandStages;
 use crate::summary::Summary;
+use crate::typed_command::file_name;
 use belvedere::apps::ask::{Answers, Ask, Places, Question, Scene, ask};
 use belvedere::cache::SceneCache;
 use belvedere::control::{Control, Watcher};
 use belvedere::io::MetadataTag;
 use serde_json::Value;
-use std::path::Path;
 
 /// Context of every command beside its arguments.
 pub(crate) struct CommandContext {
@@ -106,10 +106,7 @@ fn shortened(value: Value) -> Value {
         Value::Object(fields) => {
             let given = fields.into_iter().filter(|(_, value)| !value.is_null());
             let short = |(name, value): (String, Value)| match value {
-                Value::String(path) if name == "file" => {
-                    let file = Path::new(&path).file_name().map(|file| file.to_string_lossy().into_owned());
-                    (name, Value::String(file.unwrap_or(path)))
-                }
+                Value::String(path) if name == "file" => (name, Value::String(file_name(&path))),
                 other => (name, shortened(other)),
             };
             Value::Object(given.map(short).collect())

@@ -42,10 +42,13 @@ fn without_folders(argument: &Arg, value: &OsStr) -> String {
     let text = value.to_string_lossy();
     let Some(path) = files_named(argument, value).pop() else { return text.into_owned() };
     let path = path.to_string_lossy();
-    // parameters of addresses of the web may be private too
+    format!("{}{}", text.strip_suffix(&*path).unwrap_or_default(), file_name(&path))
+}
+
+/// The name of a file, without its folder, and without the parameters of an address of the web, which may be private.
+pub(crate) fn file_name(path: &str) -> String {
     let file = path.split('?').next().unwrap_or_default();
-    let name = Path::new(file).file_name().unwrap_or_default().to_string_lossy();
-    format!("{}{name}", text.strip_suffix(&*path).unwrap_or_default())
+    Path::new(file).file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// A word as shells take it.

@@ -15,7 +15,7 @@ const BIG_FILE_BYTES: usize = 3_900_000_000;
 
 /// The program that a file names as its writer, before its version.
 pub(crate) const SOFTWARE: &str = "belvedere";
-/// The same with its version.
+/// [`SOFTWARE`] with its version.
 pub(crate) const SOFTWARE_VERSION: &str = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
 
 /// The tag in which GDAL keeps names and units of bands, and all else.

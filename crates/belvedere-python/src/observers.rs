@@ -14,10 +14,7 @@ pub(crate) fn standing_observers(array: &PyReadonlyArray2<'_, f64>, scene: &ask:
 /// The places, local metres; z is NaN where it follows from the ground. `what` names the argument.
 pub(crate) fn standing(array: &PyReadonlyArray2<'_, f64>, what: &str, scene: &ask::Scene) -> PyResult<Vec<Standing>> {
     let rows = crate::arrays::fixed_rows(array, what)?;
-    let (frame, bounds) = (scene.frame(), ask::bounds_on_map(scene));
-    let local = |[x, y, z]: [f64; 3]| {
-        let [x, y] = ask::end_on_map([x, y], &frame.crs, bounds).map_err(exception)?;
-        Ok(Standing { place: frame.local_from_file([x, y, z]), height: None })
-    };
+    let (frame, bounds) = (scene.frame(), scene.model().bounds());
+    let local = |[x, y, z]: [f64; 3]| Standing::on_map([x, y], Some(z), frame, &bounds).map_err(exception);
     rows.into_iter().map(local).collect()
 }

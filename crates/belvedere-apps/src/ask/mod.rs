@@ -80,7 +80,7 @@ pub use report::Report;
 pub use scene::Scene;
 pub use shadow::{ShadowQuestion, ShadowResults, UNPROVEN};
 pub use shared::SharedObject;
-pub use single_places::{HeightFrom, PlaceSection, bounds_on_map, end_on_map, position_on_map, standing_on_map};
+pub use single_places::{HeightFrom, PlaceSection, end_on_map, position_on_map, standing_on_map};
 pub use sky_view::{SkyParts, SkyViewQuestion};
 pub use sun::{Days, NamedSun, SunPlace, SunRange, Suns, check_sun, remark_on_sun};
 pub use sun_and_sky::OnTargets;

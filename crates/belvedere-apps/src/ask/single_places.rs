@@ -11,7 +11,7 @@ use belvedere_core::ground::{Ground, GroundPoints};
 use belvedere_data::control::Control;
 use belvedere_data::crs::Crs;
 use belvedere_data::report::rounded;
-use belvedere_data::{Error, Parameter, Result};
+use belvedere_data::{Bounds, Error, Frame, Parameter, Result};
 use serde::Serialize;
 
 /// Places that have a sentence of their own.
@@ -21,7 +21,7 @@ const MAX_FIGURES: usize = 5;
 /// Maximum distance of a place from the box of the points, metres: that of targets of a scene.
 const MARGIN: f64 = 1.0;
 
-/// The same for ends of lines of sight, metres: mountains on the horizon.
+/// Maximum distance of an end of lines of sight from that box, metres: mountains on the horizon.
 const END_MARGIN: f64 = 200e3;
 /// Advice for degrees in the wrong order.
 const SWAPPED: &str = "latitude before longitude: these are swapped";
@@ -96,7 +96,8 @@ pub fn end_on_map(given: [f64; 2], crs: &Crs, bounds: [[f64; 2]; 2]) -> Result<[
         return Ok(place);
     }
     let [latitude, longitude] = given;
-    if projected([longitude, latitude], crs).is_some_and(|place| is_within(place, bounds, MARGIN)) {
+    if projected([longitude, latitude], crs).is_some_and(|place| is_within(place, bounds, MARGIN / crs.metres_per_unit))
+    {
         let value = format!("{latitude}, {longitude}");
         return Err(Error::InvalidParameter { parameter: Parameter::Position, value, expected: SWAPPED });
     }
@@ -130,7 +131,8 @@ pub fn standing_on_map(
     height: Option<f64>,
     scene: &Scene,
 ) -> Result<Vec<Standing>> {
-    let (frame, bounds) = (scene.frame(), bounds_on_map(scene));
+    let frame = scene.frame();
+    let bounds = bounds_in_file(frame, &scene.model().bounds());
     let one = |(place, given): ([f64; 2], Option<f64>)| {
         let [x, y] = position_on_map(place, &frame.crs, bounds)?;
         Ok(Standing { place: frame.local_from_file([x, y, given.unwrap_or(f64::NAN)]), height })
@@ -138,12 +140,23 @@ pub fn standing_on_map(
     places.into_iter().map(one).collect()
 }
 
-/// South-west and north-east corner of the points of a scene, in the coordinates of the file.
-#[must_use]
-pub fn bounds_on_map(scene: &Scene) -> [[f64; 2]; 2] {
-    let (low, high) = scene.model().bounds().on_map();
+impl Standing {
+    /// Creates an end of lines of sight at a place on the map, of coordinates of the file or of degrees
+    /// ([`end_on_map`]), with its height where that is known. `bounds` are those of the points, local metres.
+    ///
+    /// # Errors
+    /// Those of [`end_on_map`].
+    pub fn on_map(place: [f64; 2], height: Option<f64>, frame: &Frame, bounds: &Bounds) -> Result<Self> {
+        let [x, y] = end_on_map(place, &frame.crs, bounds_in_file(frame, bounds))?;
+        Ok(Self { place: frame.local_from_file([x, y, height.unwrap_or(f64::NAN)]), height: None })
+    }
+}
+
+/// South-west and north-east corner of points, in the coordinates of the file.
+fn bounds_in_file(frame: &Frame, bounds: &Bounds) -> [[f64; 2]; 2] {
+    let (low, high) = bounds.on_map();
     [low, high].map(|[x, y]| {
-        let [x, y, _] = scene.frame().file_from_local([x, y, 0.0]);
+        let [x, y, _] = frame.file_from_local([x, y, 0.0]);
         [x, y]
     })
 }

@@ -562,11 +562,11 @@ fn sun_tags(angles: [f64; 2], instant: Option<(&Zone, f64)>) -> Vec<(String, Str
     of_time.chain(of_place).map(|(name, text)| (name.to_owned(), text)).collect()
 }
 
-/// An instant in names: its date and time by the clocks of the zone, such as `20260621_1500`; with
-/// seconds where it has some.
+/// An instant in names: its date and time by the clocks of the zone, such as `20260621_1500`, with seconds where it has
+/// some.
 #[must_use]
 pub fn moment(zone: &Zone, instant: f64) -> String {
     let text: String = zone.display(instant).chars().filter(|c| c.is_ascii_digit() || matches!(c, 'T' | ' ')).collect();
     let to_second: String = text.replace(['T', ' '], "_").chars().take(15).collect();
-    to_second.strip_suffix("00").map_or(to_second.clone(), str::to_owned)
+    to_second.strip_suffix("00").unwrap_or(&to_second).to_owned()
 }

@@ -11,7 +11,7 @@ pub struct SeenProbabilities {
     /// Expected number of observers that see each target: of one observer the probability that it does, (M); NaN where
     /// no observer has an answer.
     pub expected: Vec<f32>,
-    /// Number of their answers below the wanted certainty, (M); NaN if no observer has an answer.
+    /// Number of their answers below the wanted certainty or unknown, (M); NaN if no observer has an answer.
     pub uncertain: Option<Vec<f32>>,
 }
 
@@ -33,7 +33,16 @@ pub fn seen_probabilities(
     for observer in observers.iter().filter(|observer| observer.eye.iter().all(|v| v.is_finite())) {
         let probabilities = scene.visible_probabilities(Viewer::Eye(observer.eye), targets, control)?;
         for (row, (&probability, target)) in probabilities.iter().zip(targets).enumerate() {
-            if probability.is_nan() || !observer.limits.allow(observer.eye, target.map(f64::from)) {
+            if !observer.limits.allow(observer.eye, target.map(f64::from)) {
+                continue;
+            }
+            if probability.is_nan() {
+                // what nothing tells is uncertain
+                if let Some(uncertain) = &mut found.uncertain
+                    && scene.is_unknown(observer.eye, *target)
+                {
+                    add_known(&mut uncertain[row], 1.0);
+                }
                 continue;
             }
             add_known(&mut found.expected[row], probability);

@@ -32,7 +32,7 @@ struct Compared {
 /// Compares the rows of two tables, and writes the change of each column of numbers.
 ///
 /// # Errors
-/// Those of reading, and tables with two equal rows or nothing in common.
+/// Files that cannot be read, and tables with two equal rows or nothing in common.
 pub(super) fn run(arguments: &DifferenceArguments, run: &mut CommandContext) -> Result<()> {
     let flags = [("--relief", arguments.relief.is_some()), ("--title", arguments.title.is_some())];
     if let Some((flag, _)) = flags.into_iter().find(|(_, is_given)| *is_given) {

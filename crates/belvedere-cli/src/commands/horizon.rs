@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summa
     check_formats(arguments, min_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
     let mut run = CommandContext::new(global);
     let scene = arguments.eyes.scene(&arguments.scene, Some(&arguments.far), &mut run)?;
-    let standing = arguments.eyes.standing(scene.frame(), &mut run)?;
+    let standing = arguments.eyes.standing((scene.frame(), &scene.model().bounds()), &mut run)?;
     check_formats(arguments, standing.len())?;
     let answers = run.ask(&scene, &question, &Places::Eyes(standing))?;
     let HorizonResults { elevations_deg: elevations, intervals_deg: intervals, .. } = &answers.found;

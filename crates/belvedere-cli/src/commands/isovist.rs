@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &IsovistArguments, global: &Global) -> Result<Summa
     let typed = (&arguments.scene, &arguments.memory);
     let input = scene_in_reach(typed, &arguments.eyes.eye, distance, &mut run)?;
     let scene = arguments.eyes.scene(&input, None, &mut run)?;
-    let standing = arguments.eyes.standing(scene.frame(), &mut run)?;
+    let standing = arguments.eyes.standing((scene.frame(), &scene.model().bounds()), &mut run)?;
     check_pictures(arguments, standing.len())?;
     let answers = run.ask(&scene, &question, &Places::Eyes(standing))?;
     let found = &answers.found;

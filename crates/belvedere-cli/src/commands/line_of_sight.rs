@@ -96,9 +96,9 @@ pub(super) fn pairs(
 ) -> Result<(Vec<[Standing; 2]>, TextRows)> {
     let frame = scene.frame();
     if let (Some(from), Some(to)) = (&lines.from, &lines.to) {
-        let local =
-            |&MapPosition([x, y], z): &MapPosition| standing(frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]));
-        return Ok((vec![[local(from), local(to)]], TextRows::default()));
+        let bounds = scene.model().bounds();
+        let local = |&MapPosition(place, z): &MapPosition| Standing::on_map(place, z, frame, &bounds);
+        return Ok((vec![[local(from)?, local(to)?]], TextRows::default()));
     }
     if let Some(count) = lines.random {
         let bounds = scene.model().bounds();

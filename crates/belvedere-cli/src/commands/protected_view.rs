@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &ProtectedViewArguments, global: &Global) -> Result
     let mut run = CommandContext::new(global);
     let scene = pipeline::scene(&arguments.scene, KeepPoints::Keep, &mut run)?;
     question.landmark = Some(SharedObject::new(landmark_shape::surface(&arguments.shape, &scene, &mut run)?.0));
-    question.observers = arguments.eyes.standing(&scene.cloud.frame, &mut run)?;
+    question.observers = arguments.eyes.standing((&scene.cloud.frame, &scene.model.bounds()), &mut run)?;
     let ground = &arguments.eyes.ground;
     let scene = scene.into_question_scene(Some(ground), arguments.giving_way.shell, &run)?;
     let places = Places::Cells(GridCells { cell: arguments.cell, ground: ground.points(), ..GridCells::default() });

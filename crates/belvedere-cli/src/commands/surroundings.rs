@@ -5,19 +5,20 @@ use crate::arguments::{EyesArguments, FarTerrainArguments, MapPosition, SceneInp
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use anyhow::Result;
-use belvedere::Frame;
 use belvedere::apps::ask::{self, Standing, remark_on_unused};
 use belvedere::io::{ObserverRow, ObserverRows, RowsAre, TextRows, read_observers, read_table};
+use belvedere::{Bounds, Frame};
 use std::path::Path;
 
 impl EyesArguments {
     /// The observers that were typed or are in the file named.
-    pub(super) fn standing(&self, frame: &Frame, run: &mut CommandContext) -> Result<Vec<Standing>> {
-        let typed = |&MapPosition([x, y], z): &MapPosition| Standing {
-            place: frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]),
-            height: None,
-        };
-        let mut standing: Vec<Standing> = self.eye.iter().map(typed).collect();
+    pub(super) fn standing(
+        &self,
+        (frame, bounds): (&Frame, &Bounds),
+        run: &mut CommandContext,
+    ) -> Result<Vec<Standing>> {
+        let typed = |&MapPosition(place, z): &MapPosition| Standing::on_map(place, z, frame, bounds);
+        let mut standing: Vec<Standing> = self.eye.iter().map(typed).collect::<belvedere::Result<_>>()?;
         if let Some(path) = &self.eyes {
             for row in observer_rows(path, frame, RowsAre::Places, ObserverUse::Places, run)? {
                 let place = |corner: &[f64; 3]| std::array::from_fn(|i| corner[i] - frame.origin[i]);

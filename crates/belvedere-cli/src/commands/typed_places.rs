@@ -6,7 +6,8 @@ use belvedere::apps::ask::end_on_map;
 use belvedere::crs::Crs;
 use belvedere::io::{cloud_files, read_las_head};
 
-/// Replaces the observers and targets of a command that are given in degrees.
+/// Replaces the observers and targets of a command that are given in degrees, as far as headers tell. Parts of surveys
+/// are then read around them; other files have their places converted once they are read.
 ///
 /// # Errors
 /// [`Usage`] for longitude before latitude.
@@ -39,7 +40,7 @@ pub(super) fn in_file_coordinates(command: &mut Command) -> Result<()> {
 /// Reference system and bounds of clouds, south-west and north-east corner, as far as their headers tell.
 ///
 /// # Errors
-/// Those of a reference system that was typed.
+/// An unknown reference system that was typed.
 pub(super) fn on_map(input: &CloudInput) -> Result<Option<(Crs, [[f64; 2]; 2])>> {
     let Ok(files) = cloud_files(&input.clouds) else { return Ok(None) };
     let heads: Option<Vec<_>> = files.iter().map(|file| read_las_head(file.as_path()).ok()).collect();

@@ -8,6 +8,7 @@ use crate::memory::available_bytes;
 use crate::pipeline::{self, KeepPoints, is_file, params};
 use crate::run::CommandContext;
 use crate::summary::{Summary, note};
+use crate::typed_command::file_name;
 use crate::written_files::check_input;
 use anyhow::{Context, Result, anyhow};
 use belvedere::apps::ask;
@@ -213,11 +214,9 @@ impl Folders {
     /// A typed word.
     fn shown(self, word: &str) -> String {
         let (key, value) = word.split_once('=').map_or(("", word), |(key, value)| (&word[..=key.len()], value));
-        match Path::new(value).file_name() {
-            Some(name) if self == Self::Hidden && Path::new(value).exists() => {
-                quoted(&format!("{key}{}", name.to_string_lossy()))
-            }
-            _ => quoted(word),
+        match self == Self::Hidden && Path::new(value).exists() {
+            true => quoted(&format!("{key}{}", file_name(value))),
+            false => quoted(word),
         }
     }
 }

@@ -46,7 +46,7 @@ pub(crate) fn run(arguments: &ViewshedArguments, global: &Global) -> Result<Summ
     let scene = scene.into_question_scene(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
     let areas: Vec<PathBuf> = arguments.output.iter().chain(&arguments.far_output).cloned().collect();
     warn_of_geojson(&areas, &scene.frame().crs, &mut run.summary);
-    question.observers = viewshed_observers::observers(arguments, scene.frame(), &mut run)?;
+    question.observers = viewshed_observers::observers(arguments, (scene.frame(), &scene.model().bounds()), &mut run)?;
     let answers = run.ask(&scene, &question, &Places::Scene)?;
     write(arguments, &answers.found, &scene, &mut run)?;
     let written =
@@ -111,7 +111,7 @@ fn in_tiles(arguments: &ViewshedArguments, question: &ask::ViewshedQuestion, run
         ],
     };
     let Some(survey) = cells.survey(&ask::Question::Viewshed(question.clone()), run)? else { return Ok(false) };
-    let observers = viewshed_observers::observers(arguments, &survey.plan.frame()?, run)?;
+    let observers = viewshed_observers::observers(arguments, (&survey.plan.frame()?, &survey.plan.bounds()), run)?;
     let question = ask::Question::Viewshed(ask::ViewshedQuestion { observers, ..question.clone() });
     let is_reverse = arguments.who.target.is_some();
     let map = |answers: &Answers<SurveyCells>, relief: &HighestPoints| map_of_survey(answers, relief, is_reverse);

@@ -220,6 +220,16 @@ impl MedialScene {
         Some(self.evidence_with(self.proof.as_ref()?, target, towards, range))
     }
 
+    /// Returns true if nothing tells whether `eye`, local metres, sees `target` ([`Evidence::is_unknown`]). False where
+    /// [`MedialScene::visible_from`] has no answer.
+    #[must_use]
+    pub fn is_unknown(&self, eye: [f64; 3], target: [f32; 3]) -> bool {
+        let target = target.map(f64::from);
+        let Some(Ray { origin, direction, ranges: [_, range] }) = Ray::between(target, eye) else { return false };
+        let is_answer = ![eye, target].into_iter().any(|end| self.is_outside_cloud(end));
+        is_answer && self.evidence(origin, direction, range).is_some_and(|evidence| evidence.is_unknown())
+    }
+
     fn evidence_with(&self, proof: &Proof, target: [f64; 3], towards: [f64; 3], range: f64) -> Evidence {
         let end = std::array::from_fn(|i| target[i] + range * towards[i]);
         let is_between_places = range.is_finite() && ![target, end].into_iter().any(|end| proof.is_above_all(end));

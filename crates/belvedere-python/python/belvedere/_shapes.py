@@ -27,7 +27,7 @@ def in_system(value: Any, what: str, crs: str | None = None) -> Any:
 
 
 def is_single(value: Any) -> bool:
-    """Whether a value is one place rather than rows of places."""
+    """Return True for one place, False for rows of places."""
     if in_system(value, "place") is not value:
         return getattr(value, "geom_type", None) == "Point"
     return np.ndim(value) == 1

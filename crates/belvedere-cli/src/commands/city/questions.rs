@@ -170,15 +170,14 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandCont
         questions.extend(TileQuestion::of(&question, (plan, &whereabouts), &mut context, &run.control())?);
     }
     if !arguments.observers.is_empty() {
-        let observer = |&MapPosition([x, y], z): &MapPosition| ask::StandingObserver {
-            standing: ask::Standing {
-                place: frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]),
-                height: arguments.observer_height,
-            },
-            limits: ask::ViewLimits::default(),
+        let bounds = plan.bounds();
+        let observer = |&MapPosition(place, z): &MapPosition| -> belvedere::Result<ask::StandingObserver> {
+            let standing = ask::Standing::on_map(place, z, &frame, &bounds)?;
+            let standing = ask::Standing { height: arguments.observer_height, ..standing };
+            Ok(ask::StandingObserver { standing, limits: ask::ViewLimits::default() })
         };
         let question = ask::Question::Viewshed(ask::ViewshedQuestion {
-            observers: arguments.observers.iter().map(observer).collect(),
+            observers: arguments.observers.iter().map(observer).collect::<belvedere::Result<_>>()?,
             limits: ask::ViewLimits { max_distance: arguments.max_distance, ..ask::ViewLimits::default() },
             how_sure: how_sure(arguments),
             ..ask::ViewshedQuestion::default()

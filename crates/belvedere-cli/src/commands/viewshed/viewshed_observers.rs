@@ -5,10 +5,10 @@ use crate::commands::extension;
 use crate::commands::surroundings::{ObserverUse, min_count, observer_rows};
 use crate::run::CommandContext;
 use anyhow::Result;
-use belvedere::Frame;
 use belvedere::apps::ask::{Standing, StandingObserver, ViewLimits};
 use belvedere::apps::viewshed::places_along;
 use belvedere::io::{ObserverRow, RowsAre};
+use belvedere::{Bounds, Frame};
 use std::path::PathBuf;
 
 /// Metres between the observers on a line of GeoJSON.
@@ -57,7 +57,7 @@ pub(super) fn limits(arguments: &ViewshedArguments) -> ViewLimits {
 /// The observers of the flags or of the file, or the target.
 pub(super) fn observers(
     arguments: &ViewshedArguments,
-    frame: &Frame,
+    (frame, bounds): (&Frame, &Bounds),
     run: &mut CommandContext,
 ) -> Result<Vec<StandingObserver>> {
     let (who, looking) = (&arguments.who, &arguments.looking);
@@ -65,13 +65,13 @@ pub(super) fn observers(
         standing: Standing { place, height },
         limits,
     };
-    let typed = |&MapPosition([x, y], z): &MapPosition| {
-        at(frame.local_from_file([x, y, z.unwrap_or(f64::NAN)]), None, ViewLimits::default())
+    let typed = |&MapPosition(place, z): &MapPosition| {
+        Ok(at(Standing::on_map(place, z, frame, bounds)?.place, None, ViewLimits::default()))
     };
     if let Some(target) = &who.target {
-        return Ok(vec![typed(target)]);
+        return Ok(vec![typed(target)?]);
     }
-    let Some(path) = &who.observers else { return Ok(who.observer.iter().map(typed).collect()) };
+    let Some(path) = &who.observers else { return who.observer.iter().map(typed).collect() };
     let rows_are = if looking.step.is_some() { RowsAre::Corners } else { RowsAre::Places };
     let usual = limits(arguments);
     let mut observers = Vec::new();

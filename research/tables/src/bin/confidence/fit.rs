@@ -81,7 +81,7 @@ fn fitted_alone(cases: &[(f64, f64, f64)]) -> f64 {
     score
 }
 
-/// How often a case counts.
+/// Weight of a case.
 fn weight(case: &Case) -> f64 {
     if case.set == QuerySet::LinesOfSight { LINES_OF_SIGHT } else { 1.0 }
 }
