@@ -3,8 +3,9 @@
 use crate::arguments::{DifferenceArguments, Usage};
 use crate::run::CommandContext;
 use anyhow::{Result, bail};
+use belvedere::apps::difference::{Difference, DifferenceReport, difference};
 use belvedere::io::{Table, TableCells, TextRows, read_table, write_table};
-use belvedere::report::rounded;
+use belvedere::vector::to_f32;
 use serde_json::{Map, Value, json};
 use std::collections::HashMap;
 use std::path::Path;
@@ -15,6 +16,8 @@ const KEYS: [&str; 6] = ["id", "fid", "window", "object", "face", "name"];
 const PLACE: [&str; 3] = ["x", "y", "z"];
 /// Decimals of changes.
 const DECIMALS: usize = 4;
+/// Maximum number of columns in the summary.
+const MAX_LISTED: usize = 5;
 
 /// A table, with the text of its cells.
 struct Rows {
@@ -22,11 +25,11 @@ struct Rows {
     text: TextRows,
 }
 
-/// A column of numbers that both tables have, of the rows that both have.
+/// A column of numbers that both tables have, of the rows that both have: before, after, and the change.
 struct Compared {
     name: String,
-    before: Vec<f64>,
-    after: Vec<f64>,
+    ends: [Vec<f64>; 2],
+    change: Difference,
 }
 
 /// Compares the rows of two tables, and writes the change of each column of numbers.
@@ -51,9 +54,7 @@ pub(super) fn run(arguments: &DifferenceArguments, run: &mut CommandContext) -> 
     if pairs.is_empty() {
         bail!("{}: no row has the {} of a row of {}", paths[1].display(), key.join(", "), paths[0].display());
     }
-    let compared = compared(&before, &after, paths, &pairs, &key);
-    let changed: Vec<&Compared> =
-        compared.iter().filter(|column| column.changes().any(|change| change != 0.0)).collect();
+    let changed = changed(&before, &after, paths, &pairs, &key)?;
     summarise(&changed, pairs.len(), [first.len(), second.len()].map(|count| count - pairs.len()), run);
     for output in &arguments.output {
         run.stage("writing", 0, |_| write(output, &before, &pairs, &changed))?;
@@ -93,13 +94,6 @@ impl Rows {
     }
 }
 
-impl Compared {
-    /// After less before, of rows that have both.
-    fn changes(&self) -> impl Iterator<Item = f64> {
-        self.before.iter().zip(&self.after).map(|(before, after)| after - before).filter(|change| change.is_finite())
-    }
-}
-
 /// The columns by which rows are found again.
 fn key_of(before: &Rows, after: &Rows, paths: [&Path; 2]) -> Result<Vec<&'static str>> {
     let is_in_both = |name: &&&str| before.has(name) && after.has(name);
@@ -119,46 +113,55 @@ fn key_of(before: &Rows, after: &Rows, paths: [&Path; 2]) -> Result<Vec<&'static
     }
 }
 
-/// The columns of numbers that both tables have, of the `pairs` of rows.
-fn compared(before: &Rows, after: &Rows, paths: [&Path; 2], pairs: &[[usize; 2]], key: &[&str]) -> Vec<Compared> {
+/// The columns of numbers that both tables have and that differ in one of the `pairs` of rows.
+fn changed(
+    before: &Rows,
+    after: &Rows,
+    paths: [&Path; 2],
+    pairs: &[[usize; 2]],
+    key: &[&str],
+) -> Result<Vec<Compared>> {
     let is_named = |name: &str| key.iter().chain(&PLACE).any(|own| own.eq_ignore_ascii_case(name));
-    let of_name = |name: &String| {
-        let [first, second] = [(before, 0), (after, 1)]
-            .map(|(rows, number): (&Rows, usize)| rows.table.column(paths[number], name).ok().flatten());
-        let (first, second) = (first?, second?);
-        let [before, after] =
-            [(first, 0), (second, 1)].map(|(values, end)| pairs.iter().map(|pair| values[pair[end]]).collect());
-        Some(Compared { name: name.clone(), before, after })
-    };
-    before.table.names().iter().filter(|name| !is_named(name)).filter_map(of_name).collect()
+    let mut changed = Vec::new();
+    for name in before.table.names().iter().filter(|name| !is_named(name)) {
+        // columns of text are not compared
+        let [first, second] =
+            [(before, paths[0]), (after, paths[1])].map(|(rows, path)| rows.table.column(path, name).ok().flatten());
+        let (Some(first), Some(second)) = (first, second) else { continue };
+        let of_rows = |values: &[f64], end: usize| -> Vec<f64> { pairs.iter().map(|pair| values[pair[end]]).collect() };
+        let ends = [of_rows(first, 0), of_rows(second, 1)];
+        let [first, second] = [0, 1].map(|end| ends[end].iter().map(|&value| to_f32(value)).collect::<Vec<f32>>());
+        let change = difference(&first, &second, 1.0)?;
+        let DifferenceReport { cells_gain, cells_loss, cells_only_before, cells_only_after, .. } = change.report;
+        if cells_gain + cells_loss + cells_only_before + cells_only_after > 0 {
+            changed.push(Compared { name: name.clone(), ends, change });
+        }
+    }
+    Ok(changed)
 }
 
-fn summarise(changed: &[&Compared], rows: usize, [only_before, only_after]: [usize; 2], run: &mut CommandContext) {
+fn summarise(changed: &[Compared], rows: usize, [only_before, only_after]: [usize; 2], run: &mut CommandContext) {
     let mut columns = Map::new();
-    for column in changed {
-        let mean = |values: &[f64]| {
-            let known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-            rounded(known.iter().sum::<f64>() / known.len().max(1) as f64, 4)
-        };
-        let (before, after) = (mean(&column.before), mean(&column.after));
-        let count = |is: fn(f64) -> bool| column.changes().filter(|&change| is(change)).count();
-        let (gain, loss) = (count(|change| change > 0.0), count(|change| change < 0.0));
-        let largest = |pick: fn(f64, f64) -> f64| rounded(column.changes().fold(0.0, pick), 4);
-        let (highest, lowest) = (largest(f64::max), largest(f64::min));
-        run.summary.answer(&format!(
-            "{}: mean {before} before, {after} after; {gain} of {rows} rows gain, at most {highest}, {loss} lose, at most {}",
-            column.name, -lowest
-        ));
-        columns.insert(
-            column.name.clone(),
-            json!({
-                "mean_before": before, "mean_after": after, "rows_gain": gain, "rows_loss": loss,
-                "largest_gain": highest, "largest_loss": lowest,
-            }),
-        );
+    for (number, Compared { name, change: Difference { report, .. }, .. }) in changed.iter().enumerate() {
+        let DifferenceReport { mean_before, mean_after, cells_gain, cells_loss, .. } = *report;
+        let (gain, loss) = (report.largest_gain, report.largest_loss);
+        if number < MAX_LISTED {
+            run.summary.answer(&format!(
+                "{name}: mean {mean_before} before, {mean_after} after; of {rows} rows {cells_gain} gain, at most {gain}, {cells_loss} lose, at most {}",
+                -loss
+            ));
+        }
+        let figures = json!({
+            "mean_before": mean_before, "mean_after": mean_after, "rows_gain": cells_gain, "rows_loss": cells_loss,
+            "rows_only_before": report.cells_only_before, "rows_only_after": report.cells_only_after,
+            "largest_gain": gain, "largest_loss": loss,
+        });
+        columns.insert(name.clone(), figures);
     }
-    if changed.is_empty() {
-        run.summary.answer(&format!("nothing changes in {rows} rows"));
+    match changed.len() {
+        0 => run.summary.answer(&format!("nothing changes in {rows} rows")),
+        count if count > MAX_LISTED => run.summary.answer(&format!("{} further columns change", count - MAX_LISTED)),
+        _ => {}
     }
     if only_before + only_after > 0 {
         let text = format!("rows that one table has alone are left out: {only_before} before, {only_after} after");
@@ -168,18 +171,16 @@ fn summarise(changed: &[&Compared], rows: usize, [only_before, only_after]: [usi
 }
 
 /// The rows of the table before, with the values before and after of what changes, and their change.
-fn write(output: &Path, before: &Rows, pairs: &[[usize; 2]], changed: &[&Compared]) -> belvedere::Result<()> {
-    let rows: Vec<usize> = pairs.iter().map(|pair| pair[0]).collect();
-    let is_changed = |name: &str| changed.iter().any(|column| column.name == name);
-    let texts = before.text.columns(rows.iter().copied());
-    let carried = texts.iter().filter(|(name, _)| !is_changed(name));
+fn write(output: &Path, before: &Rows, pairs: &[[usize; 2]], changed: &[Compared]) -> belvedere::Result<()> {
+    let texts = before.text.columns(pairs.iter().map(|pair| pair[0]));
+    let carried = texts.iter().filter(|(name, _)| changed.iter().all(|column| column.name != *name));
     let mut columns: Vec<(String, TableCells<'_>)> =
         carried.map(|(name, cells)| ((*name).to_owned(), TableCells::Words(cells))).collect();
     let changes: Vec<Vec<f64>> =
-        changed.iter().map(|column| column.before.iter().zip(&column.after).map(|(b, a)| a - b).collect()).collect();
-    for (column, change) in changed.iter().zip(&changes) {
-        for (end, values) in [("before", &column.before), ("after", &column.after), ("change", change)] {
-            columns.push((format!("{}_{end}", column.name), TableCells::Real(values, DECIMALS)));
+        changed.iter().map(|column| column.change.values.iter().map(|&change| f64::from(change)).collect()).collect();
+    for (Compared { name, ends: [before, after], .. }, change) in changed.iter().zip(&changes) {
+        for (end, values) in [("before", before), ("after", after), ("change", change)] {
+            columns.push((format!("{name}_{end}"), TableCells::Real(values, DECIMALS)));
         }
     }
     let columns: Vec<(&str, TableCells<'_>)> = columns.iter().map(|(name, cells)| (name.as_str(), *cells)).collect();

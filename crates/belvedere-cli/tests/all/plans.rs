@@ -137,6 +137,12 @@ fn tables_are_compared_row_by_row_whatever_their_order() {
     let hours = &run["difference"]["columns"]["hours"];
     assert_eq!((hours["rows_gain"].as_u64(), hours["largest_loss"].as_f64()), (Some(1), Some(-3.0)), "{run}");
     assert!(remarks(&run)[0].contains("1 before, 1 after"), "{run}");
+    // a value that is gone is a change
+    std::fs::write(place.path("light.csv"), "id,first_light\n1,9.5\n2,10\n").unwrap();
+    std::fs::write(place.path("dark.csv"), "id,first_light\n1,\n2,10\n").unwrap();
+    let gone = place.summary("difference light.csv dark.csv -o gone.csv");
+    assert_eq!(gone["difference"]["columns"]["first_light"]["rows_only_before"], 1, "{gone}");
+    assert!(place.text("gone.csv").contains("\n1,9.5000,,\n"), "{}", place.text("gone.csv"));
     // without a name, rows are those of the same place
     std::fs::write(place.path("here.csv"), "x,y,hours\n1,2,4\n3,4,5\n").unwrap();
     std::fs::write(place.path("then.csv"), "x,y,hours\n3,4,5\n1,2,4\n").unwrap();
