@@ -122,12 +122,18 @@ fn changed(
     key: &[&str],
 ) -> Result<Vec<Compared>> {
     let is_named = |name: &str| key.iter().chain(&PLACE).any(|own| own.eq_ignore_ascii_case(name));
-    let mut changed = Vec::new();
+    let (mut changed, mut compared) = (Vec::new(), 0);
     for name in before.table.names().iter().filter(|name| !is_named(name)) {
-        // columns of text are not compared
-        let [first, second] =
-            [(before, paths[0]), (after, paths[1])].map(|(rows, path)| rows.table.column(path, name).ok().flatten());
-        let (Some(first), Some(second)) = (first, second) else { continue };
+        if !after.has(name) {
+            continue;
+        }
+        let [first, second] = [(before, paths[0]), (after, paths[1])].map(|(rows, path)| rows.table.column(path, name));
+        // what is text in both tables is not compared
+        if first.is_err() && second.is_err() {
+            continue;
+        }
+        let (Some(first), Some(second)) = (first?, second?) else { continue };
+        compared += 1;
         let of_rows = |values: &[f64], end: usize| -> Vec<f64> { pairs.iter().map(|pair| values[pair[end]]).collect() };
         let ends = [of_rows(first, 0), of_rows(second, 1)];
         let [first, second] = [0, 1].map(|end| ends[end].iter().map(|&value| to_f32(value)).collect::<Vec<f32>>());
@@ -136,6 +142,14 @@ fn changed(
         if cells_gain + cells_loss + cells_only_before + cells_only_after > 0 {
             changed.push(Compared { name: name.clone(), ends, change });
         }
+    }
+    if compared == 0 {
+        bail!(
+            "{} and {} have no column of numbers in common, beside {}",
+            paths[0].display(),
+            paths[1].display(),
+            key.join(", ")
+        );
     }
     Ok(changed)
 }
@@ -146,9 +160,12 @@ fn summarise(changed: &[Compared], rows: usize, [only_before, only_after]: [usiz
         let DifferenceReport { mean_before, mean_after, cells_gain, cells_loss, .. } = *report;
         let (gain, loss) = (report.largest_gain, report.largest_loss);
         if number < MAX_LISTED {
+            let gone = report.cells_only_before + report.cells_only_after;
+            let one_sided = if gone > 0 { format!("; {gone} with a value in one table only") } else { String::new() };
             run.summary.answer(&format!(
-                "{name}: mean {mean_before} before, {mean_after} after; of {rows} rows {cells_gain} gain, at most {gain}, {cells_loss} lose, at most {}",
-                -loss
+                "{name}: mean {mean_before} before, {mean_after} after; of {rows} rows {cells_gain} gain (at most \
+                 {gain}), {cells_loss} lose (at most {}){one_sided}",
+                loss.abs()
             ));
         }
         let figures = json!({

@@ -149,8 +149,11 @@ fn tables_are_compared_row_by_row_whatever_their_order() {
     let same = place.run("difference here.csv then.csv -o same.csv");
     assert!(same.status == 0 && same.stdout.contains("nothing changes in 2 rows"), "{same:?}");
     std::fs::write(place.path("twice.csv"), "x,y,hours\n1,2,4\n1,2,5\n").unwrap();
+    std::fs::write(place.path("words.csv"), "x,y,hours\n1,2,many\n3,4,5\n").unwrap();
     for (words, status, said) in [
         ("twice.csv then.csv -o no.csv", 1, "rows 1 and 2 have the same x, y: 1,2"),
+        ("here.csv words.csv -o no.csv", 1, "words.csv: row 1: \"many\" in column hours is not a number"),
+        ("before.csv words.csv -o no.csv", 1, "words.csv"),
         ("before.csv then.csv -o no.tif", 2, "is a table (.csv)"),
         ("before.csv here.csv -o no.csv --title T", 2, "--title"),
     ] {
