@@ -169,6 +169,12 @@ parameters! {
     AirContent => "content of the air",
     /// Share of light that the ground sends back.
     Albedo => "albedo",
+    /// Factor of the wind.
+    WindFactor => "factor of the wind",
+    /// Surfaces of a scene.
+    Surfaces => "surfaces of the scene",
+    /// Share of the warming of sunlit surfaces.
+    GroundWarming => "share of the warming of sunlit surfaces",
     /// Cell that gathers suns.
     SunCell => "cell of sun directions in degrees",
     /// Share of light that passes crowns.

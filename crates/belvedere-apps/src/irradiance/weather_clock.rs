@@ -80,7 +80,7 @@ fn middle_of_light(day: &[&WeatherStep]) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::sun::sun_position;
-    use belvedere_data::weather::RowsHold;
+    use belvedere_data::weather::{RowsHold, WeatherAir};
 
     /// Rows of so many hours on every fifth day of a year, under a clear sky and every third afternoon overcast, whose
     /// times are `late` minutes too late.
@@ -112,7 +112,7 @@ mod tests {
                 ghi: Some(parts.iter().sum::<f64>() / 5.0),
                 dni: None,
                 dhi: None,
-                temperature: None,
+                air: WeatherAir::default(),
             }
         };
         Weather {

@@ -17,6 +17,19 @@ pub struct Irradiance {
     pub dhi: f64,
 }
 
+/// The air of a row of a weather file, as far as the file has it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WeatherAir {
+    /// Temperature, °C.
+    pub temperature: Option<f64>,
+    /// Relative humidity, %.
+    pub relative_humidity: Option<f64>,
+    /// Wind speed 10 m above the ground, m/s.
+    pub wind_speed: Option<f64>,
+    /// Longwave radiation of the sky on a level plane, W/m².
+    pub sky_longwave: Option<f64>,
+}
+
 /// One row of a weather file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeatherStep {
@@ -33,8 +46,8 @@ pub struct WeatherStep {
     pub dni: Option<f64>,
     /// Diffuse radiation on a level plane, W/m², where the file has it.
     pub dhi: Option<f64>,
-    /// Temperature of the air, °C, where the file has it.
-    pub temperature: Option<f64>,
+    /// The air, where the file has it.
+    pub air: WeatherAir,
 }
 
 /// Meaning of the value of a row in a weather file.
@@ -146,7 +159,7 @@ mod tests {
             ghi: Some(100.0),
             dni: None,
             dhi: None,
-            temperature: None,
+            air: WeatherAir::default(),
         };
         Weather {
             format: "EPW",

@@ -8,14 +8,15 @@ use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
 const HEAD: usize = 8;
 /// Cells of a row.
 const TEMPERATURE: usize = 6;
+const HUMIDITY: usize = 8;
+const SKY_LONGWAVE: usize = 12;
 const GLOBAL: usize = 13;
 const DIRECT: usize = 14;
 const DIFFUSE: usize = 15;
+const WIND: usize = 21;
 /// Cells that a row has, and the line of the place. More are decimal commas.
 const MAX_CELLS: usize = 35;
 const PLACE_CELLS: usize = 10;
-/// Temperature from which on it is missing.
-const MISSING_TEMPERATURE: f64 = 99.9;
 
 pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
     let place = lines.line(1)?;
@@ -85,10 +86,12 @@ fn step(line: &WeatherLine<'_>, cells: &[&str], zone: f64, per_hour: i32) -> Res
     if ghi.is_none() && dni.zip(dhi).is_none() {
         return Ok(None);
     }
-    let temperature = Some(line.number_in(cells, TEMPERATURE, "the temperature")?).filter(|v| *v < MISSING_TEMPERATURE);
+    // a word in place of the temperature means that columns are shifted
+    line.number_in(cells, TEMPERATURE, "the temperature")?;
+    let air = WeatherLine::air(cells, [TEMPERATURE, HUMIDITY, WIND, SKY_LONGWAVE].map(Some));
     let hours = 1.0 / f64::from(per_hour);
     // with one record an hour programs write 0 or 60 for the minute, and mean the same
     let end = if per_hour == 1 { f64::from(hour) } else { f64::from(hour - 1) + f64::from(minute) / 60.0 };
     let instant = unix_day(day) as f64 * 86_400.0 + (end - 0.5 * hours - zone) * 3600.0;
-    Ok(Some(WeatherStep { instant, hours, month: day.month, ghi, dni, dhi, temperature }))
+    Ok(Some(WeatherStep { instant, hours, month: day.month, ghi, dni, dhi, air }))
 }

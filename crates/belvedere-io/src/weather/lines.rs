@@ -1,13 +1,14 @@
 //! Lines of cells parted by commas, and errors that name them.
 
-use belvedere_data::weather::CalendarDay;
+use belvedere_data::weather::{CalendarDay, WeatherAir};
 use belvedere_data::{Error, Result};
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 /// Maximum radiation that any instrument below the atmosphere shows, W/m², with room for clouds that reflect.
 const MAX_RADIATION: f64 = 3000.0;
 /// Values that mark missing radiation: nines, in some files with zeros behind.
-const MISSING: std::ops::RangeInclusive<f64> = 9999.0..=1e7;
+const MISSING: RangeInclusive<f64> = 9999.0..=1e7;
 const MISSING_BELOW_ZERO: [f64; 5] = [-99.0, -999.0, -9999.0, -9900.0, -99900.0];
 /// Noise of sensors at night, W/m².
 const NOISE: f64 = -20.0;
@@ -108,6 +109,21 @@ impl<'a> WeatherLine<'a> {
             return Err(self.wrong(&format!("{name} is {value} W/m², but must be {NOISE} to {MAX_RADIATION}")));
         }
         Ok(Some(value.max(0.0)))
+    }
+
+    /// The air of a row, from the columns of temperature, relative humidity, wind and longwave radiation of the sky.
+    /// Values that are missing, or that no air has, are left out.
+    pub(super) fn air(cells: &[&str], columns: [Option<usize>; 4]) -> WeatherAir {
+        let value = |number: usize, range: RangeInclusive<f64>| {
+            let value: f64 = cells.get(columns[number]?)?.parse().ok()?;
+            range.contains(&value).then_some(value)
+        };
+        WeatherAir {
+            temperature: value(0, -90.0..=70.0),
+            relative_humidity: value(1, 0.0..=110.0).map(|percent| percent.min(100.0)),
+            wind_speed: value(2, 0.0..=100.0),
+            sky_longwave: value(3, 50.0..=700.0),
+        }
     }
 
     pub(super) fn day(&self, year: i32, month: i32, day: i32) -> Result<CalendarDay> {

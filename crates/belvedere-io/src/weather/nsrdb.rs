@@ -1,6 +1,6 @@
 //! Series and typical years of the National Solar Radiation Database.
 
-use super::lines::WeatherLines;
+use super::lines::{WeatherLine, WeatherLines};
 use belvedere_data::Result;
 use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
 
@@ -24,7 +24,8 @@ pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
     let needed = |name: &str| column(name).ok_or_else(|| head.wrong(&format!("there is no column {name}")));
     let [year, month, day, hour, minute, global] =
         [needed("Year")?, needed("Month")?, needed("Day")?, needed("Hour")?, needed("Minute")?, needed("GHI")?];
-    let (direct, diffuse, air) = (column("DNI"), column("DHI"), column("Temperature"));
+    let (direct, diffuse) = (column("DNI"), column("DHI"));
+    let air = [column("Temperature"), column("Relative Humidity"), column("Wind Speed"), None];
     let mut weather = Weather {
         format: "NSRDB",
         latitude: latitude.to_radians(),
@@ -62,9 +63,9 @@ pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
             weather.left_out_count += 1;
             continue;
         }
-        let temperature = air.and_then(|column| cells.get(column)?.parse().ok()).filter(|v| (-90.0..=70.0).contains(v));
         let instant = local - zone * 3600.0;
-        weather.steps.push(WeatherStep { instant, hours: USUAL_STEP, month: date.month, ghi, dni, dhi, temperature });
+        let air = WeatherLine::air(&cells, air);
+        weather.steps.push(WeatherStep { instant, hours: USUAL_STEP, month: date.month, ghi, dni, dhi, air });
     }
     if min_step <= 24.0 {
         weather.steps.iter_mut().for_each(|step| step.hours = min_step);

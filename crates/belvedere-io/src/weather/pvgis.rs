@@ -67,7 +67,7 @@ pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
         let what = format!("no radiation among the columns {}", shortened(names.text));
         return Err(names.wrong(&what));
     };
-    let temperature = column("T2m");
+    let air = ["T2m", "RH", "WS10m", "IR(h)"].map(column);
     let mut weather = Weather {
         format: if matches!(found, RadiationColumns::Typical(_)) { "PVGIS, typical year" } else { "PVGIS, series" },
         latitude: latitude.to_radians(),
@@ -80,7 +80,7 @@ pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
     };
     let is_row = |line: &WeatherLine<'_>| line.text.starts_with(|c: char| c.is_ascii_digit());
     for line in lines.all().skip(names.number).take_while(is_row) {
-        match step(&line, &columns, found, temperature, head.offset)? {
+        match step(&line, &columns, found, air, head.offset)? {
             Some(step) => weather.steps.push(step),
             None => weather.left_out_count += 1,
         }
@@ -114,7 +114,7 @@ fn step(
     line: &WeatherLine<'_>,
     names: &[&str],
     columns: RadiationColumns,
-    air: Option<usize>,
+    air: [Option<usize>; 4],
     offset: f64,
 ) -> Result<Option<WeatherStep>> {
     let cells = line.row_of(names)?;
@@ -146,8 +146,8 @@ fn step(
     if ghi.is_none() && dni.zip(dhi).is_none() {
         return Ok(None);
     }
-    let temperature = air.and_then(|column| cells.get(column)?.parse().ok()).filter(|v| (-90.0..=70.0).contains(v));
+    let air = WeatherLine::air(&cells, air);
     let clock = f64::from(hour) + f64::from(minute) / 60.0 + offset;
     let instant = unix_day(date) as f64 * 86_400.0 + clock * 3600.0;
-    Ok(Some(WeatherStep { instant, hours: 1.0, month: date.month, ghi, dni, dhi, temperature }))
+    Ok(Some(WeatherStep { instant, hours: 1.0, month: date.month, ghi, dni, dhi, air }))
 }

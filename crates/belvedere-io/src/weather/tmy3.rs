@@ -1,6 +1,6 @@
 //! Typical years of the National Renewable Energy Laboratory, third edition.
 
-use super::lines::WeatherLines;
+use super::lines::{WeatherLine, WeatherLines};
 use belvedere_data::Result;
 use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
 
@@ -16,7 +16,8 @@ pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
     let column = |name: &str| names.iter().position(|own| own.eq_ignore_ascii_case(name));
     let needed = |name: &str| column(name).ok_or_else(|| head.wrong(&format!("there is no column {name}")));
     let (date, time, global) = (needed("Date (MM/DD/YYYY)")?, needed("Time (HH:MM)")?, needed("GHI (W/m^2)")?);
-    let (direct, diffuse, air) = (column("DNI (W/m^2)"), column("DHI (W/m^2)"), column("Dry-bulb (C)"));
+    let (direct, diffuse) = (column("DNI (W/m^2)"), column("DHI (W/m^2)"));
+    let air = [column("Dry-bulb (C)"), column("RHum (%)"), column("Wspd (m/s)"), None];
     let mut weather = Weather {
         format: "TMY3",
         latitude: latitude.to_radians(),
@@ -50,10 +51,10 @@ pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
             weather.left_out_count += 1;
             continue;
         }
-        let temperature = air.and_then(|column| text(column).parse().ok()).filter(|v| (-90.0..=70.0).contains(v));
+        let air = WeatherLine::air(&cells, air);
         let middle = f64::from(hour) + f64::from(minute) / 60.0 - 0.5 - zone;
         let instant = unix_day(day) as f64 * 86_400.0 + middle * 3600.0;
-        weather.steps.push(WeatherStep { instant, hours: 1.0, month: day.month, ghi, dni, dhi, temperature });
+        weather.steps.push(WeatherStep { instant, hours: 1.0, month: day.month, ghi, dni, dhi, air });
     }
     Ok(weather)
 }

@@ -12,7 +12,7 @@ use belvedere::medial::MedialBalls;
 use belvedere::query::{Answer, BlockRule, MedialScene};
 use belvedere::random::uniform;
 use belvedere::vector::dot;
-use belvedere::weather::{CalendarDay, Irradiance, RowsHold, Weather, WeatherStep, unix_day};
+use belvedere::weather::{CalendarDay, Irradiance, RowsHold, Weather, WeatherAir, WeatherStep, unix_day};
 
 const YEAR: i32 = 2025;
 
@@ -235,7 +235,15 @@ fn weather(steps: Vec<WeatherStep>) -> Weather {
 
 fn step(hour_of_year: f64, dni: f64) -> WeatherStep {
     let instant = year_start(YEAR) + hour_of_year * 3600.0;
-    WeatherStep { instant, hours: 1.0, month: 6, ghi: Some(300.0), dni: Some(dni), dhi: Some(100.0), temperature: None }
+    WeatherStep {
+        instant,
+        hours: 1.0,
+        month: 6,
+        ghi: Some(300.0),
+        dni: Some(dni),
+        dhi: Some(100.0),
+        air: WeatherAir::default(),
+    }
 }
 
 #[test]

@@ -38,7 +38,10 @@ fn hours_of_epw_end_in_local_standard_time() {
     // hour 13 is 12:00 to 13:00 in a zone one hour ahead of UTC: its middle is 11:30 UTC
     let step = weather.steps[0];
     assert_eq!((step.instant, step.hours, step.month), (instant(1999, 6, 21, 11.5), 1.0, 6));
-    assert_eq!((step.ghi, step.dni, step.dhi, step.temperature), (Some(800.0), Some(700.0), Some(150.0), Some(10.5)));
+    assert_eq!(
+        (step.ghi, step.dni, step.dhi, step.air.temperature),
+        (Some(800.0), Some(700.0), Some(150.0), Some(10.5))
+    );
     // the other has neither global radiation nor both of its parts
     assert_eq!((weather.steps.len(), weather.left_out_count), (1, 1));
     // missing direct and diffuse radiation is not zero; noise at night is
@@ -67,7 +70,7 @@ fn rows_of_pvgis_are_instants_of_utc_with_an_offset() {
     );
     let step = weather.steps[0];
     assert!((step.instant - (instant(2016, 1, 1, 11.0) + 0.1761 * 3600.0)).abs() < 1e-6);
-    assert_eq!((step.ghi, step.dni, step.dhi, step.temperature), (Some(310.0), Some(520.5), Some(95.0), Some(3.1)));
+    assert_eq!((step.ghi, step.dni, step.dhi, step.air.temperature), (Some(310.0), Some(520.5), Some(95.0), Some(3.1)));
     assert_eq!((weather.steps[1].month, weather.steps[1].dni), (2, Some(0.0)));
     let older = PVGIS_TYPICAL.replace("Irradiance Time Offset (h): 0.1761\r\n", "");
     assert_eq!(read(&older).unwrap().steps[0].instant, instant(2016, 1, 1, 11.0));
@@ -121,7 +124,10 @@ fn rows_of_nsrdb_are_instants_of_the_zone_in_their_head() {
     assert_eq!((weather.format, weather.rows_hold), ("NSRDB", RowsHold::Instants));
     let step = weather.steps[1];
     assert_eq!((step.instant, step.hours), (instant(2017, 7, 1, 17.5), 0.5));
-    assert_eq!((step.ghi, step.dni, step.dhi, step.temperature), (Some(775.0), Some(690.0), Some(160.0), Some(27.5)));
+    assert_eq!(
+        (step.ghi, step.dni, step.dhi, step.air.temperature),
+        (Some(775.0), Some(690.0), Some(160.0), Some(27.5))
+    );
     assert!((weather.hours() - 1.5).abs() < 1e-12);
 }
 
