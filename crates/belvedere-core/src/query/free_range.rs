@@ -6,6 +6,17 @@ use super::{Blocker, MedialScene};
 use crate::ray_index::Ray;
 use belvedere_data::vector::{dot, sub};
 
+/// The first surface before a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceBefore {
+    /// What it is of.
+    pub blocker: Blocker,
+    /// Distance from the place, metres.
+    pub range: f64,
+    /// Unit normal of a face towards the place; `None` for a ball.
+    pub normal: Option<[f64; 3]>,
+}
+
 impl MedialScene {
     /// Returns the first obstacle that an eye at `eye`, local metres, sees along the unit vector `direction` within
     /// `reach` metres (may be infinite), and its range, metres. `None` if nothing blocks. Balls that hold the eye are
@@ -34,6 +45,12 @@ impl MedialScene {
     /// even with the shell.
     #[must_use]
     pub fn seen_from_surface(&self, place: [f64; 3], direction: [f64; 3]) -> Option<(Blocker, f64)> {
+        self.surface_before(place, direction).map(|seen| (seen.blocker, seen.range))
+    }
+
+    /// Returns the same obstacle as [`MedialScene::seen_from_surface`], with the normal of a face.
+    #[must_use]
+    pub fn surface_before(&self, place: [f64; 3], direction: [f64; 3]) -> Option<SurfaceBefore> {
         // a ball may be entered before the bias, after which it must be left
         let from = self.tree().rule().bias.min(0.0);
         let ray = Ray { origin: place, direction, ranges: [from, f64::INFINITY] };
@@ -45,6 +62,9 @@ impl MedialScene {
         let ball = ball.and_then(|(number, range)| Some((self.blocker_of_ball(number)?, range)));
         let line = Ray { ranges: [0.0, f64::INFINITY], ..ray };
         let ends = LineEnds { target: place, viewer: None };
-        nearest_blocker(ball, self.triangles().and_then(|triangles| triangles.nearest(&line, &ends)))
+        let face = self.triangles().and_then(|triangles| triangles.nearest_face(&line, &ends));
+        let normal = face.map(|(_, normal)| normal);
+        let (blocker, range) = nearest_blocker(ball, face.map(|(face, _)| face))?;
+        Some(SurfaceBefore { blocker, range, normal: normal.filter(|_| blocker.ball().is_none()) })
     }
 }

@@ -52,6 +52,7 @@ pub use coverage::Coverage;
 pub use cpu::Cpu;
 pub use earth::{Curvature, EarthParams};
 pub use far_terrain::FarTerrain;
+pub use free_range::SurfaceBefore;
 pub use freed_space::FreedSpace;
 pub use fresnel::RadioWave;
 pub use medial_scene::MedialScene;

@@ -8,7 +8,7 @@ use crate::ray_index::Ray;
 use crate::triangle_tree::{Corners, TriangleTree};
 use belvedere_data::model::FARTHEST;
 use belvedere_data::raster::Raster;
-use belvedere_data::vector::{cross, sub, to_f32, unit};
+use belvedere_data::vector::{cross, dot, sub, to_f32, unit};
 use belvedere_data::{Error, Mesh, Parameter, Result, SurfacePatches};
 use std::sync::Arc;
 
@@ -257,6 +257,15 @@ impl BlockingTriangles {
     pub(super) fn nearest(&self, ray: &Ray, ends: &LineEnds) -> Option<(Blocker, f64)> {
         let (row, range) = self.tree.nearest(ray, |row| self.is_between(row, ends))?;
         Some((self.faces.get(row)?.blocker, range))
+    }
+
+    /// Returns the same obstacle with the unit normal of its triangle towards the beginning of the line.
+    pub(super) fn nearest_face(&self, ray: &Ray, ends: &LineEnds) -> Option<((Blocker, f64), [f64; 3])> {
+        let (row, range) = self.tree.nearest(ray, |row| self.is_between(row, ends))?;
+        let [a, b, c] = *self.tree.triangles().get(row)?;
+        let normal = unit(cross(sub(b, a), sub(c, a))).unwrap_or(ray.direction.map(|v| -v));
+        let is_turned = dot(normal, ray.direction) > 0.0;
+        Some(((self.faces.get(row)?.blocker, range), normal.map(|v| if is_turned { -v } else { v })))
     }
 
     /// The triangles that the piece `ray` of a line of sight between `ends` passes through.
