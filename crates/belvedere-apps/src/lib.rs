@@ -7,6 +7,7 @@ pub mod difference;
 pub mod edge;
 pub mod exposure;
 pub mod eyes;
+pub mod heat;
 pub mod held_out;
 pub mod horizon;
 pub mod irradiance;

@@ -230,6 +230,11 @@ fn remark_on(weather: &Weather, site: &Site, context: &mut Context) {
     context.add(Remark::of_share("weather-rows-left-out", weather.left_out_count, rows, "rows", so));
     let period = weather.period_remark();
     context.add(period.map(|text| Remark::warning("weather-period", text).with("hours", weather.hours())));
+    remark_on_place_of(weather, site, context);
+}
+
+/// Adds remarks on the place and the clock of weather.
+pub(super) fn remark_on_place_of(weather: &Weather, site: &Site, context: &mut Context) {
     let distance = site.distance_to([weather.latitude, weather.longitude]);
     if distance > FAR {
         let text = format!("the weather is for a location {:.0} km away", distance / 1000.0);

@@ -18,6 +18,7 @@ mod cameras;
 mod comfort;
 mod depth_map;
 mod envelope;
+mod heat;
 mod horizon;
 mod how_sure;
 mod in_parts;
@@ -59,6 +60,7 @@ pub use cameras::{
 pub use comfort::{ComfortQuestion, ComfortResults, ExposureSection, RoutesOrWindows};
 pub use depth_map::{DepthMapQuestion, DepthMapResults, PictureSection, ViewFrom, ViewSection};
 pub use envelope::{EnvelopeQuestion, EnvelopeResults, EnvelopeSection, Protected, ProtectedShape, ProtectedSuns};
+pub use heat::{HeatQuestion, HeatSection};
 pub use horizon::{BelowLevel, HorizonQuestion, HorizonResults};
 pub use how_sure::{
     BEING_FREE, CertaintySection, EXPECTED, EXPECTED_OBSERVERS, HowSure, PROBABILITY, UNCERTAIN, check_interval,
@@ -124,6 +126,8 @@ pub enum Question {
     SkyView(SkyViewQuestion),
     /// Energy of sun and sky.
     Irradiance(IrradianceQuestion),
+    /// Radiant temperature and thermal stress of people.
+    Heat(HeatQuestion),
     /// Position of the sun.
     SunPosition(SunPositionQuestion),
     /// Visibility between observers and targets, pair by pair.
@@ -168,6 +172,7 @@ one_of_all! {
     SunHours: SunHoursQuestion,
     SkyView: SkyViewQuestion,
     Irradiance: IrradianceQuestion,
+    Heat: HeatQuestion,
     SunPosition: SunPositionQuestion,
     LineOfSight: LinesOfSightQuestion,
     Horizon: HorizonQuestion,
@@ -188,7 +193,7 @@ one_of_all! {
 pub enum QuestionResults {
     /// Results of [`Question::Shadow`].
     Shadow(ShadowResults),
-    /// Results of [`Question::SunHours`] and [`Question::SkyView`].
+    /// Results of [`Question::SunHours`], [`Question::SkyView`] and [`Question::Heat`].
     OnTargets(OnTargets),
     /// Results of [`Question::Irradiance`].
     Irradiance(IrradianceResults),
@@ -387,6 +392,7 @@ impl Ask for Question {
             Self::SunHours(question) => question.check(),
             Self::SkyView(question) => question.check(),
             Self::Irradiance(question) => question.check(),
+            Self::Heat(question) => question.check(),
             Self::SunPosition(question) => question.check(),
             Self::LineOfSight(question) => question.check(),
             Self::Horizon(question) => question.check(),
@@ -412,6 +418,7 @@ impl Ask for Question {
             Self::SkyView(question) => {
                 question.answer(scene, places, context, control)?.map(QuestionResults::OnTargets)
             }
+            Self::Heat(question) => question.answer(scene, places, context, control)?.map(QuestionResults::OnTargets),
             Self::Irradiance(question) => {
                 question.answer(scene, places, context, control)?.map(QuestionResults::Irradiance)
             }

@@ -71,6 +71,18 @@ pub struct GridCells {
 }
 
 impl Places {
+    /// The same places, with cells and single places that have no height of their own `height` metres above the ground,
+    /// or what covers it.
+    pub(super) fn at_height(&self, height: f64) -> Self {
+        let mut places = self.clone();
+        match &mut places {
+            Self::Cells(cells) => cells.height = cells.height.or(Some(height)),
+            Self::At(single, _) => single.iter_mut().for_each(|place| place.height = place.height.or(Some(height))),
+            _ => {}
+        }
+        places
+    }
+
     /// The targets of a scene, without those outside its cloud.
     ///
     /// # Errors

@@ -4,6 +4,7 @@ use super::cameras::CamerasReport;
 use super::comfort::ExposureSection;
 use super::depth_map::{PictureSection, ViewSection};
 use super::envelope::EnvelopeSection;
+use super::heat::HeatSection;
 use super::horizon::HorizonsSection;
 use super::how_sure::CertaintySection;
 use super::landmark::LandmarkSection;
@@ -42,6 +43,9 @@ pub struct Report {
     /// Radiation of sun and sky.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radiation: Option<RadiationSection>,
+    /// Weather and model of heat.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heat: Option<HeatSection>,
     /// The landmark.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub landmark: Option<LandmarkSection>,

@@ -128,24 +128,26 @@ impl WindowViewsQuestion {
     fn are_faces(&self) -> bool {
         matches!(self.windows, GivenWindows::Faces(_))
     }
+}
 
-    /// The kind of each ball of a scene.
-    fn kinds(&self, scene: &Scene, context: &mut Context) -> Result<Vec<SeenKind>> {
-        let (model, cloud) = (scene.model(), scene.cloud());
-        let classes = cloud.attributes.classification.as_deref();
-        let of_balls = classes.filter(|_| are_made_from(model.balls(), &cloud.positions));
-        if of_balls.is_none() {
-            let why = match classes {
-                _ if cloud.is_empty() => "; give the cloud that the balls were built from",
-                Some(_) => "; the balls were not built from the cloud that was given",
-                None => "",
-            };
-            let text = format!("the classes of points are unknown: only vegetation is known, from pulses{why}");
-            context.add(Some(Remark::warning("classes-unknown", text)));
-        }
-        let meanings = self.classes.iter().fold(ClassMeanings::default(), |all, &(class, seen)| all.with(class, seen));
-        balls_seen(model.balls(), of_balls, model.vegetation(), &meanings)
+/// Returns the kind of each ball of a scene.
+///
+/// # Errors
+/// Those of [`balls_seen`].
+pub(super) fn kinds_of_balls(scene: &Scene, meanings: &ClassMeanings, context: &mut Context) -> Result<Vec<SeenKind>> {
+    let (model, cloud) = (scene.model(), scene.cloud());
+    let classes = cloud.attributes.classification.as_deref();
+    let of_balls = classes.filter(|_| are_made_from(model.balls(), &cloud.positions));
+    if of_balls.is_none() {
+        let why = match classes {
+            _ if cloud.is_empty() => "; give the cloud that the balls were built from",
+            Some(_) => "; the balls were not built from the cloud that was given",
+            None => "",
+        };
+        let text = format!("the classes of points are unknown: only vegetation is known, from pulses{why}");
+        context.add(Some(Remark::warning("classes-unknown", text)));
     }
+    balls_seen(model.balls(), of_balls, model.vegetation(), meanings)
 }
 
 impl Ask for WindowViewsQuestion {
@@ -184,7 +186,8 @@ impl Ask for WindowViewsQuestion {
         context.north(&north);
         let WindowTargets { mut targets, windows, names } =
             self.targets(scene, north.of_grid, &directions, context, control)?;
-        let kinds = self.kinds(scene, context)?;
+        let meanings = self.classes.iter().fold(ClassMeanings::default(), |all, &(class, seen)| all.with(class, seen));
+        let kinds = kinds_of_balls(scene, &meanings, context)?;
         let blockers = scene.blockers(self.unproven.unwrap_or(UnprovenAs::Reported), control)?;
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         let count = targets.target_count();

@@ -33,6 +33,7 @@ mod far_lines;
 mod far_terrain;
 mod far_viewsheds;
 mod ground;
+mod heat;
 mod horizons;
 mod irradiance_models;
 mod irradiation;
