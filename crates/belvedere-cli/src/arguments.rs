@@ -6,6 +6,7 @@ mod cameras;
 mod city;
 mod difference;
 mod envelope;
+mod heat;
 mod irradiance;
 mod numbers;
 mod observers;
@@ -31,6 +32,7 @@ pub(crate) use cameras::{CameraLensArguments, CameraTargetsArguments, CamerasArg
 pub(crate) use city::{CellFor, City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, MemoryAmount};
 pub(crate) use difference::DifferenceArguments;
 pub(crate) use envelope::{ComfortArguments, CornersArgument, EnvelopeArguments};
+pub(crate) use heat::HeatArguments;
 pub(crate) use irradiance::{ClearSkyChoice, IrradianceArguments, RadiationModel};
 pub(crate) use numbers::{Numbers, Rectangle};
 use numbers::{above_zero, at_least_one, at_most, finite, height, known_crs, length, location, rectangle};
@@ -227,6 +229,8 @@ pub(crate) enum Command {
     SkyView(SkyViewArguments),
     /// Compute yearly solar irradiation and shading loss, also for each roof plane
     Irradiance(IrradianceArguments),
+    /// Compute heat stress of people from weather: UTCI and mean radiant temperature
+    Heat(HeatArguments),
     /// Compute the hours of direct sun on a day, over a period, or for a daylight rule
     #[command(name = "sun-hours")]
     SunHours(SunHoursArguments),

@@ -23,9 +23,9 @@ pub(crate) const BALL_FLAGS: [&str; 15] = [
 ];
 
 /// Commands by task, in the order of the overview.
-const GROUPS: [(&str, &[&str]); 8] = [
+const GROUPS: [(&str, &[&str]); 7] = [
     ("start", &["demo", "info", "view", "simulate"]),
-    ("sun", &["shadow", "sun-hours", "irradiance", "sky-view", "sun-position", "envelope", "comfort"]),
+    ("sun", &["shadow", "sun-hours", "irradiance", "heat", "sky-view", "sun-position", "envelope", "comfort"]),
     (
         "sight",
         &[
@@ -40,10 +40,9 @@ const GROUPS: [(&str, &[&str]); 8] = [
             "survey-plan",
         ],
     ),
-    ("plan", &["difference"]),
     ("scene", &["balls", "calibrate", "normals", "surfaces", "trajectory", "cache"]),
     ("research", &["depth-map", "query"]),
-    ("scale", &["city"]),
+    ("maps", &["difference", "city"]),
     ("other", &["bench", "describe", "completions", "man"]),
 ];
 
@@ -112,6 +111,7 @@ const RARE: &[&str] = &[
     "unproven",
     "up",
     "vertical-fov",
+    "wind-factor",
     "without",
     "year",
 ];
@@ -153,6 +153,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("shadow", include_str!("help/shadow.txt")),
     ("sky-view", include_str!("help/sky-view.txt")),
     ("irradiance", include_str!("help/irradiance.txt")),
+    ("heat", include_str!("help/heat.txt")),
     ("sun-hours", include_str!("help/sun-hours.txt")),
     ("sun-position", include_str!("help/sun-position.txt")),
     ("envelope", include_str!("help/envelope.txt")),
@@ -189,6 +190,11 @@ pub(crate) fn command() -> Command {
     // a place is enough, where nothing but the sun counts
     let command = command.mut_subcommand("sun-position", |sub| {
         sub.mut_arg("clouds", |clouds| clouds.required(false).required_unless_present("location"))
+    });
+    let command = command.mut_subcommand("heat", |sub| {
+        sub.mut_arg("height", |height| {
+            height.help("Height above the ground or above --surface, in metres [default: 1.1]")
+        })
     });
     let template = overview(&command);
     command.help_template(template)

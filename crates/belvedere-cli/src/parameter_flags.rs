@@ -68,6 +68,8 @@ pub(crate) fn flags_of(parameter: Parameter) -> &'static [&'static str] {
         Parameter::WeatherParts => &["--parts-per-row"],
         Parameter::Turbidity => &["--linke"],
         Parameter::Albedo => &["--albedo"],
+        Parameter::WindFactor => &["--wind-factor"],
+        Parameter::GroundWarming => &["--ground-warming"],
         Parameter::SunCell => &["--sun-cell-deg"],
         Parameter::Transmissivity => &["--through-trees"],
         Parameter::ThroughTrees => &["--through-trees"],

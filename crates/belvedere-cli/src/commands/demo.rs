@@ -8,6 +8,9 @@ use crate::simulated::{cloud_of, write_text};
 use crate::summary::{Summary, percent};
 use anyhow::Result;
 use belvedere::Frame;
+use belvedere::apps::heat::{saturation_pressure, sky_longwave};
+use belvedere::apps::irradiance::{ClearSky, extraterrestrial};
+use belvedere::apps::sun::{Date, Site, sun_position};
 use belvedere::cloud::{PointCloud, to_local};
 use belvedere::depth::{DepthMap, ItemBuffer, Profile, depth_map};
 use belvedere::figures::{Canvas, Colors, class_color, depth_picture, in_shadow, ramp_colors, side_by_side, write_png};
@@ -24,6 +27,7 @@ use belvedere_scenes::{
     AirborneParams, PlanPlacement, Scan, TownParams, TriangleScene, Truth, extruded, scan_airborne, town,
 };
 use std::borrow::Cow;
+use std::f64::consts::{FRAC_PI_2, TAU};
 use std::io::Write;
 use std::path::Path;
 
@@ -36,6 +40,10 @@ const TERRAIN_CELL_M: f64 = 25.0;
 const TERRAIN_CELLS: usize = 480;
 /// Distance of the hills, width up to their crests, and height, metres.
 const HILLS_M: [f64; 3] = [900.0, 2500.0, 260.0];
+/// Day of the weather, its dew point, °C, and its wind, m/s.
+const HOT_DAY: &str = "2026-07-21";
+const DEW_POINT: f64 = 14.0;
+const WIND: f64 = 1.5;
 /// Height of a pedestrian's chest above the ground, metres.
 const PEDESTRIAN: f64 = 1.5;
 
@@ -80,6 +88,8 @@ pub(crate) fn run(arguments: &Demo, global: &Global) -> Result<Summary> {
     let [azimuth, elevation] = SUN_DEG.map(f64::to_radians);
     let sun = to_sun(azimuth, elevation);
     let bounds = pipeline::bounds_of(&cloud)?;
+    let (site, _) = Site::of_scene(&cloud.frame, &bounds, None, None)?;
+    write_text(&folder.join("weather.csv"), &hot_day(&site)?)?;
     let (low, high) = bounds.corners();
     let view = View::parallel(sun.map(|v| -v), low, high, default_pixel_size(low, high))?;
     let map = run.stage("drawing depth map", 0, |control| {
@@ -147,6 +157,31 @@ fn write_town(folder: &Path, scene: &TriangleScene, scan: &Scan) -> Result<()> {
     Ok(())
 }
 
+/// The weather of a hot day without clouds, as PVGIS writes it.
+fn hot_day(site: &Site) -> Result<String> {
+    let [latitude, longitude] = [site.latitude, site.longitude].map(f64::to_degrees);
+    let midnight = Date::parse(HOT_DAY)?.noon_utc() - 12.0 * 3600.0;
+    let mut text = format!("Latitude (decimal degrees): {latitude:.4}\nLongitude (decimal degrees): {longitude:.4}\n");
+    text += "time(UTC),T2m,RH,G(h),Gb(n),Gd(h),IR(h),WS10m\n";
+    for hour in 0..24_u32 {
+        let instant = midnight + f64::from(hour) * 3600.0;
+        let zenith = FRAC_PI_2 - sun_position(site, instant)?.elevation;
+        let light = ClearSky::default().irradiance(zenith, site.height, extraterrestrial(instant));
+        // the warmest hour is two hours and a half after noon, in the mean time of the place
+        let after_warmest = f64::from(hour) + longitude / 15.0 - 14.5;
+        let temperature = 25.0 + 7.0 * (after_warmest / 24.0 * TAU).cos();
+        let vapour = saturation_pressure(DEW_POINT);
+        let humidity = 100.0 * vapour / saturation_pressure(temperature);
+        let infrared = sky_longwave(temperature, vapour, 0.0);
+        let day = HOT_DAY.replace('-', "");
+        text += &format!(
+            "{day}:{hour:02}00,{temperature:.2},{humidity:.1},{:.1},{:.1},{:.1},{infrared:.1},{WIND}\n",
+            light.ghi, light.dni, light.dhi
+        );
+    }
+    Ok(text)
+}
+
 /// Hills around the plain in which the town lies, as an elevation raster.
 fn write_terrain(path: &Path, town: &TriangleScene, frame: &Frame) -> Result<()> {
     let Some((low, high)) = town.bounds() else { return Ok(()) };
@@ -164,7 +199,7 @@ fn write_terrain(path: &Path, town: &TriangleScene, frame: &Frame) -> Result<()>
         let outward = ((east.hypot(south) - begin) / width).clamp(0.0, 2.0);
         // valleys part the ring of hills, and smaller ones its slopes
         let ridge = 0.55 + 0.3 * (5.0 * south.atan2(east)).sin() + 0.15 * (east / 310.0).sin() * (south / 270.0).sin();
-        to_f32(plain + top * ridge * (outward * std::f64::consts::FRAC_PI_2).sin().powi(2))
+        to_f32(plain + top * ridge * (outward * FRAC_PI_2).sin().powi(2))
     };
     let heights = (0..TERRAIN_CELLS * TERRAIN_CELLS).map(height).collect();
     let raster = Raster::from_values(TERRAIN_CELLS, TERRAIN_CELLS, heights)?;

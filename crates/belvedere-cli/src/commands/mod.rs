@@ -15,6 +15,7 @@ mod difference_of_tables;
 mod envelope;
 mod fading;
 mod far_terrain;
+mod heat;
 mod heights;
 mod horizon;
 mod in_tiles;
@@ -94,6 +95,7 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         Command::Horizon(arguments) => horizon::run(arguments, global),
         Command::Shadow(arguments) => shadow::run(arguments, global),
         Command::SkyView(arguments) => sky_view::run(arguments, global),
+        Command::Heat(arguments) => heat::run(arguments, global),
         Command::Irradiance(arguments) => irradiance::run(arguments, global),
         Command::SunHours(arguments) => sun_hours::run(arguments, global),
         Command::SunPosition(arguments) => sun_position::run(arguments, global),

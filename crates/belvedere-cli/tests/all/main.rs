@@ -19,6 +19,7 @@ mod devices;
 mod envelopes;
 mod far_terrain;
 mod given_rows;
+mod heat;
 mod help_examples;
 mod holes;
 mod how_sure;
