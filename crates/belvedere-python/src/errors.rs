@@ -81,6 +81,8 @@ fn keyword(parameter: Parameter) -> &'static str {
         Parameter::Interval => "interval",
         Parameter::HeldOutShare => "share",
         Parameter::WeatherParts => "parts_per_row",
+        Parameter::WindFactor => "wind_factor",
+        Parameter::GroundWarming => "ground_warming",
         other => other.name(),
     }
 }

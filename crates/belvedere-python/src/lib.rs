@@ -9,6 +9,7 @@ mod cloud;
 mod device;
 mod energy;
 mod errors;
+mod heat;
 mod landmark;
 mod mesh;
 mod observers;

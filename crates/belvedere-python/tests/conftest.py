@@ -33,6 +33,22 @@ def tile(folder: Path) -> Path:
     return path
 
 
+@pytest.fixture(scope="session", autouse=True)
+def hot_day(folder: Path) -> Path:
+    """A day of weather, as PVGIS writes it."""
+    path = folder / "weather.csv"
+    rows = [
+        "Latitude (decimal degrees): 52.15",
+        "Longitude (decimal degrees): 5.39",
+        "time(UTC),T2m,RH,G(h),Gb(n),Gd(h),IR(h),WS10m",
+    ]
+    for hour in range(24):
+        light = "600,700,100" if 5 <= hour < 19 else "0,0,0"
+        rows.append(f"20150721:{hour:02}00,{20 + hour % 12},50,{light},350,2")
+    path.write_text("\n".join(rows) + "\n")
+    return path
+
+
 @pytest.fixture(scope="session")
 def cloud(tile: Path) -> belvedere.Cloud:
     return belvedere.read(tile)

@@ -447,6 +447,20 @@ def test_irradiance(scene, run_program, folder):
         assert_same_raster(raster, folder / "energy" / f"{measure}.tif", folder)
 
 
+def test_heat(scene, run_program, folder, hot_day):
+    run_program(
+        *("heat", "tile.laz", "--weather", hot_day, "--date", "07-21", "--zone", "Europe/Amsterdam", "--cell", 8),
+        *("--between", "10:00,16:00", "--pet", "--by-hour", "-o", "heat.tif", "--measures", "heat"),
+    )
+    rasters = scene.heat(
+        weather=hot_day, date="07-21", zone="Europe/Amsterdam", cell=8, between=(10, 16), pet=True, by_hour=True
+    )
+    assert {path.stem for path in (folder / "heat").iterdir()} == set(rasters)
+    for measure, raster in rasters.items():
+        assert_same_raster(raster, folder / "heat" / f"{measure}.tif", folder)
+    assert rasters["tmrt_20150721_1400"].tags["TIME"].startswith("2015-07-21T14:00")
+
+
 def test_depth_maps(scene, run_program, folder, eye):
     x, y, z = eye
     views = [

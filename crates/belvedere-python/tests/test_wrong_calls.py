@@ -128,6 +128,9 @@ WRONG = {
         lambda s, c, f: s.cameras("roofs", count=1, fresnel_percent=60), "fresnel_percent", "frequency_ghz"),
     "radiation": (lambda s, c, f: s.irradiance(), "radiation", "weather="),
     "albedo": (lambda s, c, f: s.irradiance(clear_sky="ineichen", albedo=2), "albedo", "0 to 1"),
+    "body": (lambda s, c, f: s.heat(weather=f / "weather.csv", date="07-21", body="cat"), "body", "'round'"),
+    "wind": (lambda s, c, f: s.heat(weather=f / "weather.csv", date="07-21", wind_factor=9), "wind_factor", "0 to 2"),
+    "day of heat": (lambda s, c, f: s.heat(weather=f / "weather.csv"), "period", "days"),
     "view": (lambda s, c, f: s.depth_map(), "view", "one of"),
     "route of one corner": (lambda s, c, f: s.comfort(route=[(1, 2)], date="2026-06-21"), "route", "2 at least"),
     "windows without azimuth": (

@@ -262,6 +262,15 @@ class Scene:
     def irradiance(
         self, radiation: dict[str, Any], targets: dict[str, Any], trees: dict[str, Any], progress: _Progress
     ) -> _Results: ...
+    def heat(
+        self,
+        given: dict[str, Any],
+        days: dict[str, Any],
+        place: dict[str, Any],
+        targets: dict[str, Any],
+        trees: dict[str, Any],
+        progress: _Progress,
+    ) -> _Results: ...
     def roof_planes(
         self,
         radiation: dict[str, Any],

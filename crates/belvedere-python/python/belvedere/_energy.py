@@ -226,15 +226,18 @@ class Energy:
         return table
 
 
+def native_weather(weather: Any, location: tuple[float, float] | None) -> Any:
+    """A file of weather, or rows of a DataFrame, as the native part takes them."""
+    return _as_file(weather, location) if hasattr(weather, "columns") else native_source(weather, None)
+
+
 def _radiation(**given: Any) -> dict[str, Any]:
     """Where radiation comes from, as the native part takes it."""
     check_finite(linke=given["linke"], albedo=given["albedo"], sun_cell_deg=given["sun_cell"])
     location = location_pair(given["location"])
     weather = given["weather"]
-    if hasattr(weather, "columns"):
-        weather = _as_file(weather, location)
-    elif weather is not None:
-        weather = native_source(weather, None)
+    if weather is not None:
+        weather = native_weather(weather, location)
     return given | {"weather": weather, "location": location}
 
 
@@ -248,7 +251,14 @@ def _as_file(weather: Any, location: tuple[float, float] | None) -> tuple[str, b
     if location is None:
         advice = "a DataFrame does not say where it holds; give latitude and longitude"
         raise wrong("location", "missing", advice)
-    known = {"GHI": "ghi", "DNI": "dni", "DHI": "dhi", "Temperature": "temp_air"}
+    known = {
+        "GHI": "ghi",
+        "DNI": "dni",
+        "DHI": "dhi",
+        "Temperature": "temp_air",
+        "Relative Humidity": "relative_humidity",
+        "Wind Speed": "wind_speed",
+    }
     columns = {title: weather[names[name]].to_numpy(np.float64) for title, name in known.items() if name in names}
     times = weather.index.tz_convert("UTC")
     parts = [times.year, times.month, times.day, times.hour, times.minute]

@@ -17,6 +17,7 @@ from ._cloud import Cloud, read
 from ._core import Scene as NativeScene
 from ._energy import Energy
 from ._errors import BelvedereWarning, wrong
+from ._heat import Heat
 from ._inputs import Progress, Source, as_list, check_finite, native_source, place, reporter
 from ._mesh import Mesh, native_mesh
 from ._outlook import Outlook
@@ -27,7 +28,7 @@ from ._sights import Sights
 from ._sunlight import Sunlight
 
 
-class Scene(Sights, Outlook, Sunlight, Energy, Planning, Cameras):
+class Scene(Sights, Outlook, Sunlight, Energy, Heat, Planning, Cameras):
     """A scene that answers what can be seen: medial balls, cut with the space that laser pulses prove empty.
 
     Parameters
