@@ -16,6 +16,7 @@ GROUPS = {
     "sun-hours": "Sun and sky",
     "sky-view": "Sun and sky",
     "irradiance": "Sun and sky",
+    "heat": "Sun and sky",
     "envelope": "Sun and sky",
 }
 TITLES = {
@@ -28,6 +29,7 @@ TITLES = {
     "sun-hours": "Sun hours",
     "sky-view": "Sky view factor",
     "irradiance": "Solar irradiance",
+    "heat": "Heat stress",
     "envelope": "Solar envelope",
 }
 # Headings of parameters that few people change.

@@ -47,6 +47,7 @@ RAMPS = {
     ("sun-hours", "OUTPUT"): Ramp(INFERNO),
     ("sky-view", "OUTPUT"): Ramp(VIRIDIS, 0.0, 1.0),
     ("irradiance", "OUTPUT"): Ramp(INFERNO),
+    ("heat", "OUTPUT"): Ramp(INFERNO, None),
     ("envelope", "OUTPUT"): Ramp(VIRIDIS),
     ("envelope", "TOPS"): Ramp(VIRIDIS, None),
 }
@@ -61,6 +62,7 @@ FIELDS = {
     ("sun-hours", "OUTPUT_LAYER"): ("sun_hours", INFERNO),
     ("sky-view", "OUTPUT_LAYER"): ("sky_view_factor", VIRIDIS),
     ("irradiance", "OUTPUT_LAYER"): ("kwh_m2", INFERNO),
+    ("heat", "OUTPUT_LAYER"): ("utci_max", INFERNO),
     ("irradiance", "PLANES"): ("kwh_m2", INFERNO),
 }
 HEAD = "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n"

@@ -95,6 +95,14 @@ def values(layer, band=1):
     return [None if block.isNoData(row, column) else block.value(row, column) for row in range(layer.height()) for column in range(layer.width())]
 
 
+def hot_noon():
+    """An hour of weather, as PVGIS writes it."""
+    path = FOLDER / "weather.csv"
+    head = "Latitude (decimal degrees): 52.01\nLongitude (decimal degrees): 4.36\ntime(UTC),T2m,RH,G(h),Gb(n),Gd(h),IR(h),WS10m\n"
+    path.write_text(head + "20260721:1200,31,35,850,885,98,370,1.5\n", encoding="utf-8")
+    return str(path)
+
+
 def check_algorithms():
     eye = "85036,447527"
     scene = {"CLOUDS": str(DATA), "CRS": "EPSG:28992"}
@@ -139,6 +147,13 @@ def check_algorithms():
             "OUTPUT": "energy.tif",
             "PLANES": "roofs.gpkg",
         },
+        "heat": {
+            "WEATHER": hot_noon(),
+            "DATE": "2026-07-21",
+            "ZONE": "Europe/Amsterdam",
+            "CELL": 8,
+            "OUTPUT": "heat.tif",
+        },
         "envelope": {
             "PARCEL": geojson("parcel", [parcel], "EPSG:4326"),
             "PROTECT": geojson("protect", ["LINESTRING(85025 447575, 85055 447575)"]),
@@ -164,6 +179,7 @@ def check_results():
         "sun_hours.tif": QgsSingleBandPseudoColorRenderer,
         "sky_view.tif": QgsSingleBandPseudoColorRenderer,
         "energy.tif": QgsSingleBandPseudoColorRenderer,
+        "heat.tif": QgsSingleBandPseudoColorRenderer,
         "envelope.tif": QgsSingleBandPseudoColorRenderer,
     }
     vectors = {

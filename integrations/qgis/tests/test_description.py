@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-ALL = {"viewshed", "line-of-sight", "landmark", "cameras", "survey-plan", "shadow", "sun-hours", "sky-view", "irradiance", "envelope"}
+ALL = {"viewshed", "line-of-sight", "landmark", "cameras", "survey-plan", "shadow", "sun-hours", "sky-view", "irradiance", "heat", "envelope"}
 
 
 def parameter(commands, command, flag):
