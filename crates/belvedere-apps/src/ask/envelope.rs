@@ -2,7 +2,7 @@
 
 use super::scene::KnownGround;
 use super::sections::{LinesSection, PeriodSection};
-use super::sun::{Days, SunPlace, SunRange, check_min_elevation, check_sun, remark_on_sun};
+use super::sun::{Days, SunPlace, SunRange, check_min_elevation, check_sun, remark_on_solar_hours, remark_on_sun};
 use super::{Answers, Ask, Context, Places, Remark, Scene, SharedObject};
 use crate::solar_envelope::{
     EnvelopeParams, Parcel, ProtectedPiece, SolarEnvelope, check_fence, check_hours, envelope_suns, existing_shade,
@@ -187,7 +187,8 @@ impl EnvelopeQuestion {
                 let site = self.place.site(scene, context, None)?;
                 let zone = self.place.zone_at(&site, days.times())?;
                 let is_solar = self.place.zone.is_none() && days.times().next().is_none();
-                context.add(hours.filter(|_| is_solar).map(remark_on_solar_hours));
+                let hours = hours.filter(|_| is_solar);
+                context.add(hours.map(|hours| remark_on_solar_hours("the sun is protected", hours)));
                 let dates = self.dates(days, &site, &zone)?;
                 let params = days.params(&self.place);
                 let (suns, low) = envelope_suns(&site, &zone, &dates, hours.unwrap_or(ALL_DAY), &params)?;
@@ -360,15 +361,6 @@ impl Ask for EnvelopeQuestion {
             .with_unit("m");
         Ok(Answers::new(EnvelopeResults { envelope, ground: below }, vec![height]))
     }
-}
-
-/// A warning of hours of the day that nobody's clocks show.
-fn remark_on_solar_hours([from, to]: [f64; 2]) -> Remark {
-    let text = format!(
-        "the sun is protected from {from} to {to} hours of mean solar time, which clocks are up to two hours ahead of; \
-         give the zone of the clocks, such as Europe/Amsterdam"
-    );
-    Remark::warning("hours-in-solar-time", text).with("from_hour", from).with("to_hour", to)
 }
 
 impl EnvelopeQuestion {

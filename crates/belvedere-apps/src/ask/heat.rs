@@ -2,7 +2,7 @@
 
 use super::irradiance::remark_on_place_of;
 use super::sections::{MeasuresSection, PlacesReport};
-use super::sun::{Days, SunPlace, moment};
+use super::sun::{Days, SunPlace, moment, remark_on_solar_hours};
 use super::sun_and_sky::{Light, OnTargets};
 use super::trees::remark_on_leaves;
 use super::window_views::kinds_of_balls;
@@ -226,10 +226,8 @@ impl HeatQuestion {
         let weather = self.weather()?;
         let zone = self.place.zone_at(site, self.days.times())?;
         let Some(period) = self.dated().period(&self.place, site, &zone)? else { return missing_period() };
-        if self.hours.is_some() && self.place.zone.is_none() {
-            let text = "hours are those of mean solar time, which clocks are up to two hours ahead of; give the zone \
-                        of the clocks, such as Europe/Amsterdam";
-            context.add(Some(Remark::warning("hours-in-solar-time", text)));
+        if let (Some(hours), None) = (self.hours, &self.place.zone) {
+            context.add(Some(remark_on_solar_hours("heat is computed", hours)));
         }
         let rows = HeatRows { period: &period, hours: self.hours.unwrap_or([0.0, 24.0]), zone: &zone };
         let mut found = days_of_heat(weather, &rows, site, (&self.surfaces, self.parts))?;

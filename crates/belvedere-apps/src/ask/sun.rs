@@ -191,6 +191,15 @@ pub(super) fn remark_on_clock(zone: &Zone, site: &Site) -> Option<Remark> {
     Remark::of_contradiction(CLOCK_OF_ZONE.found(text).with("hours", rounded(difference, 1)))
 }
 
+/// A warning of hours of the day that nobody's clocks show, between which something `happens`.
+pub(super) fn remark_on_solar_hours(happens: &str, [from, to]: [f64; 2]) -> Remark {
+    let text = format!(
+        "{happens} from {from} to {to} hours of mean solar time, which clocks are up to two hours ahead of; give the \
+         zone of the clocks, such as Europe/Amsterdam"
+    );
+    Remark::warning("hours-in-solar-time", text).with("from_hour", from).with("to_hour", to)
+}
+
 fn refused<T>(parameter: Parameter, value: impl Into<String>, expected: &'static str) -> Result<T> {
     Err(Error::InvalidParameter { parameter, value: value.into(), expected })
 }

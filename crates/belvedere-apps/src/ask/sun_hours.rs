@@ -3,13 +3,13 @@
 use super::how_sure::{check_interval, check_interval_scene, knows_intervals};
 use super::scene::Whereabouts;
 use super::sections::{MeasuresSection, NamedValues, PeriodSection, PlacesReport};
-use super::sun::{Days, SunPlace, sun_days_above};
+use super::sun::{Days, SunPlace, remark_on_solar_hours, sun_days_above};
 use super::sun_and_sky::{Light, OnTargets};
 use super::trees::remark_on_leaves;
 use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
 use crate::sum_errors::Intervals;
 use crate::sun::{Binning, DayParams, Period, Site, SunSchedule, Zone};
-use crate::sun_hours::{SunPlan, SunRule, scene_sun_hours};
+use crate::sun_hours::{RuleWindow, SunPlan, SunRule, WindowClock, scene_sun_hours};
 use crate::targets::{Measure, ResultKind};
 use crate::tree_light::Season;
 use belvedere_core::query::UnprovenAs;
@@ -87,7 +87,13 @@ impl SunHoursQuestion {
         for (column, rule) in rules(&self.rules)? {
             let dates = self.days.dates_of(rule.days, site, &zone)?;
             let min_elevation = self.days.min_sun_elevation_deg.map_or(rule.min_elevation, f64::to_radians);
-            let schedule = schedule(&Period::Days(dates), &params.with_min_elevation(min_elevation))?;
+            let params = params.with_min_elevation(min_elevation);
+            let days = rule.sun_days(dates, site, &zone, &params)?;
+            if days.iter().all(|day| day.steps.is_empty()) {
+                // says why there is no sun
+                sun_days_above(site, &zone, &Period::Days(days.iter().map(|day| day.date).collect()), &params)?;
+            }
+            let schedule = SunSchedule::new(&days, self.binning())?;
             of_rules.push((column.to_owned(), rule, schedule));
         }
         let main = match (self.days.period(&self.place, site, &zone)?, of_rules.first()) {
@@ -141,6 +147,11 @@ impl Ask for SunHoursQuestion {
         let has_interval = self.interval || is_single && !self.trees.is_light() && knows_intervals(scene, control)?;
         let site = self.place.site(scene, context, None)?;
         let (plan, zone) = self.plan(&site)?;
+        let by_clock = |rule: &SunRule| rule.window.filter(|window| window.clock == WindowClock::Zone);
+        let window = plan.rules().iter().find_map(|planned| by_clock(&planned.rule));
+        if let (Some(RuleWindow { hours, .. }), None) = (window, &self.place.zone) {
+            context.add(Some(remark_on_solar_hours("the rule counts sun", hours)));
+        }
         context.report.period = Some(section(&plan, &zone, &self.days.params(&self.place)));
         let trees = (&self.trees, Some(site.latitude), UnprovenAs::Visible);
         let light = Light::resolve(places, plan.directions(), trees, scene, context, control)?;

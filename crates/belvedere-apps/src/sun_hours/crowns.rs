@@ -1,7 +1,7 @@
 //! Hours of sun where crowns of trees let a share of it through.
 
 use super::stretches::{DayStretch, runs_of};
-use super::{CHUNK, ROUNDING, SunHours, SunHoursParams, sun_hours};
+use super::{CHUNK, Counted, ROUNDING, SunHours, SunHoursParams, sun_hours};
 use crate::rows::{LineLight, RowBlock};
 use crate::sun::SunSchedule;
 use belvedere_core::query::VisibilityMatrix;
@@ -71,7 +71,10 @@ pub fn sun_hours_through_crowns(
     hours.hours = column(&|sum| sum.total / day_count);
     hours.share = column(&|sum| if possible > 0.0 { (sum.total / possible).min(1.0) } else { f64::NAN });
     hours.min = column(&|sum| sum.min);
-    hours.days = sums.iter().map(|sum| sum.days).collect();
+    // a piece without a break is one of suns that count as free
+    if params.counted == Counted::All {
+        hours.days = sums.iter().map(|sum| sum.days).collect();
+    }
     Ok(hours)
 }
 

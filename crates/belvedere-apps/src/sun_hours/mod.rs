@@ -7,7 +7,7 @@ mod stretches;
 
 pub use crowns::sun_hours_through_crowns;
 pub use plan::{PlannedRule, SunPlan, SunSums, scene_sun_hours};
-pub use rules::{RuleDays, SunRule};
+pub use rules::{Counted, NeededDays, RuleDays, RuleWindow, SunRule, WindowClock};
 
 use crate::sun::SunSchedule;
 use belvedere_core::query::VisibilityMatrix;
@@ -67,16 +67,19 @@ pub struct SunHoursParams {
     pub first_direction: usize,
     /// Hours of sun that a day must have to count in [`SunHours::days`], 0 to 24. Default 0: each day counts.
     pub sufficient_hours: f64,
+    /// Hours of a day that must suffice. Default: all together.
+    pub counted: Counted,
 }
 
 belvedere_data::setters!(SunHoursParams {
     with_first_direction(first_direction: usize),
     with_sufficient_hours(sufficient_hours: f64),
+    with_counted(counted: Counted),
 });
 
 impl Default for SunHoursParams {
     fn default() -> Self {
-        Self { first_direction: 0, sufficient_hours: 0.0 }
+        Self { first_direction: 0, sufficient_hours: 0.0, counted: Counted::All }
     }
 }
 
@@ -106,7 +109,7 @@ pub fn sun_hours(
         let value = params.sufficient_hours.to_string();
         return Err(Error::InvalidParameter { parameter: Parameter::SufficientHours, value, expected: "0 to 24" });
     }
-    let sufficient = params.sufficient_hours - ROUNDING;
+    let sufficient = (params.sufficient_hours - ROUNDING, params.counted);
     let day_count = schedule.days.len().max(1) as f64;
     let possible = schedule.possible_hours();
     let days: Vec<Vec<DayStretch>> = schedule.days.iter().map(runs_of).collect();
@@ -149,11 +152,11 @@ struct TargetSum {
 }
 
 impl TargetSum {
-    fn over(days: &[Vec<DayStretch>], lit: &Lit, sufficient: f64) -> Self {
+    fn over(days: &[Vec<DayStretch>], lit: &Lit, (sufficient, counted): (f64, Counted)) -> Self {
         let mut sum =
             Self { total: 0.0, min: 24.0, first: f32::INFINITY, last: f32::NEG_INFINITY, longest: 0.0, days: 0 };
         for runs in days {
-            let [mut hours, mut stretch] = [0.0_f32; 2];
+            let [mut hours, mut stretch, mut longest] = [0.0_f32; 3];
             for run in runs {
                 stretch = if run.continues { stretch } else { 0.0 };
                 // where the run is lit: from one stretch to the next
@@ -166,7 +169,7 @@ impl TargetSum {
                         let lasts = run.hours * (end - start) as f32;
                         hours += lasts;
                         stretch += lasts;
-                        sum.longest = sum.longest.max(stretch);
+                        longest = longest.max(stretch);
                         sum.first = sum.first.min(run.start + run.hours * (start - run.first) as f32);
                         sum.last = sum.last.max(run.start + run.hours * (end - run.first) as f32);
                     }
@@ -174,10 +177,12 @@ impl TargetSum {
                     from = end;
                 }
             }
+            sum.longest = sum.longest.max(longest);
+            let counting = f64::from(if counted == Counted::All { hours } else { longest });
             let hours = f64::from(hours);
             sum.total += hours;
             sum.min = sum.min.min(hours);
-            sum.days += u32::from(hours >= sufficient);
+            sum.days += u32::from(counting >= sufficient);
         }
         sum
     }

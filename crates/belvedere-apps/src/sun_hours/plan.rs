@@ -111,16 +111,16 @@ impl SunSums {
         self.period.append(of(&plan.period, &SunHoursParams::default())?);
         self.rules.resize_with(plan.rules.len(), SunHours::default);
         for (sums, planned) in self.rules.iter_mut().zip(&plan.rules) {
-            let params =
-                SunHoursParams { first_direction: planned.first_direction, sufficient_hours: planned.rule.hours };
+            let SunRule { hours: sufficient_hours, counted, .. } = planned.rule;
+            let params = SunHoursParams { first_direction: planned.first_direction, sufficient_hours, counted };
             sums.append(of(&planned.schedule, &params)?);
         }
         Ok(())
     }
 
     /// Converts all figures into measures of `targets`: `sun_hours`, `sun_share`, `first_light`, `last_light`,
-    /// `longest`. Several days also have `min_sun_hours` and `total_hours`. Each rule has 1 if it is met on all of its
-    /// days, otherwise 0.
+    /// `longest`. Several days also have `min_sun_hours` and `total_hours`. Each rule has 1 if it is met on the days that
+    /// it needs, otherwise 0.
     #[must_use]
     pub fn into_measures(self, plan: &SunPlan, targets: &Targets) -> Vec<Measure> {
         let max = plan.period.days.iter().map(|day| day.possible_hours).fold(0.0, f64::max);
@@ -153,7 +153,8 @@ impl SunSums {
         }
         for (planned, found) in plan.rules.iter().zip(self.rules) {
             let days = planned.schedule.days.len();
-            let is_met = found.days.iter().map(|&met| if met as usize == days { 1.0 } else { 0.0 }).collect();
+            let is_met = |met: &u32| f32::from(u8::from(planned.rule.needed.are_met(*met as usize, days)));
+            let is_met = found.days.iter().map(is_met).collect();
             measures.push(measure(&planned.column, RULE_IS_MET, share, is_met).with_kind(ResultKind::Answer));
         }
         measures.iter_mut().for_each(|measure| targets.clear_unasked(&mut measure.values));

@@ -62,7 +62,7 @@ pub(crate) struct CityPlan {
     pub(crate) sun_hours: bool,
     /// Map where a daylight rule is met; repeatable
     ///
-    /// nl-light, nl-strict, the-hague, bre-equinox, or your own as HOURS@DAYS, such as 1.5@03-21, 1@shortest-day, and
+    /// By name, as in `belvedere help sun-hours`, or your own as HOURS@DAYS, such as 1.5@03-21, 3@equinoxes@7-17, and
     /// with a minimum sun elevation of 10 degrees 2@02-19..10-21>10.
     #[arg(long, value_name = "RULE", help_heading = "Questions")]
     pub(crate) rule: Vec<String>,

@@ -83,10 +83,11 @@ pub(crate) struct SunPeriod {
 pub(crate) struct SunHoursArguments {
     #[command(flatten)]
     pub(crate) when: SunPeriod,
-    /// Daylight rule: nl-light, nl-strict, the-hague, bre-equinox, or your own as HOURS@DAYS; repeatable
+    /// Daylight rule by name, such as nl-light, en17037-minimum or pl, or your own as HOURS@DAYS; repeatable
     ///
-    /// Examples of your own: 1.5@03-21, 1@shortest-day, and with a minimum sun elevation of 10 degrees
-    /// 2@02-19..10-21>10. Without --date or --from, the results are for the days of the first rule.
+    /// Names are in the text above. Examples of your own: 1.5@03-21, 2@02-19..10-21>10 (sun above 10 degrees),
+    /// 3@equinoxes@7-17, 2@shortest-day@9-15,piece. Without --date or --from, the results are for the days of the first
+    /// rule.
     #[arg(long, value_name = "RULE", help_heading = "Period")]
     pub(crate) rule: Vec<String>,
     /// Maximum angle between a sun and the direction used for it, in degrees, 0 to 5

@@ -192,7 +192,7 @@ class Sunlight:
         period : pair of days or of times, optional
             First and last day, or begin and end, in place of `date`. Results are means of the days.
         rule : str or list of str, optional
-            Daylight rules such as ``'nl-light'`` or ``'1.5@03-21'``, with `year`.
+            Daylight rules such as ``'nl-light'``, ``'pl'`` or ``'3@equinoxes@7-17'``, with `year`.
         year : int, optional
             Year of days that are given without one.
         time_step_min : float, optional

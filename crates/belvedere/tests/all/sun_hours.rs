@@ -1,17 +1,21 @@
 //! Hours of sun against closed forms, and against every sun and every ball tried in turn.
 
 use crate::common::light_share;
-use belvedere::ExtinctionVoxels;
+use belvedere::apps::ask::{Days, SunHoursQuestion, SunPlace};
 use belvedere::apps::rows::{CrownRows, RowBlock};
 use belvedere::apps::sun::{
     Binning, Date, DayParams, Period, Refraction, Site, SunSchedule, Zone, sun_days, sun_position_with,
 };
-use belvedere::apps::sun_hours::{RuleDays, SunHours, SunHoursParams, SunRule, sun_hours, sun_hours_through_crowns};
+use belvedere::apps::sun_hours::{
+    RuleDays, SunHours, SunHoursParams, SunRule, SunSums, sun_hours, sun_hours_through_crowns,
+};
+use belvedere::apps::targets::Targets;
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
 use belvedere::medium::Medium;
 use belvedere::query::{BlockRule, MedialScene, VisibilityMatrix};
 use belvedere::random::uniform;
+use belvedere::{ExtinctionVoxels, Frame};
 
 fn scene(centers: &[[f32; 3]], radii: &[f32]) -> MedialScene {
     let count = radii.len();
@@ -303,6 +307,12 @@ fn rules_know_their_days() {
         "2@03-21..",
         "2@..",
         "2@03-é",
+        "2@03-21@7",
+        "2@03-21@17-7",
+        "2@03-21@7-25",
+        "2@03-21@7-17@8-9",
+        "2@03-21,solar",
+        "2@03-21@7-17,twice",
     ] {
         let message = SunRule::parse(bad).unwrap_err().to_string();
         assert!(message.contains("nl-light"), "{bad}: {message}");
@@ -360,4 +370,76 @@ fn bits_of_a_matrix_have_the_size_of_its_rows() {
     assert!(!matrix.is_free(2, 43) && !matrix.is_free(1, 0));
     assert!(VisibilityMatrix::from_words(3, 70, vec![0; 5]).is_err());
     assert!(VisibilityMatrix::from_words(usize::MAX, 70, vec![0; 6]).is_err());
+}
+
+/// Returns true if a place with sun between the given hours of the clock of each day, and never else, meets a rule.
+fn meets(rule: &str, latitude_deg: f64, sun: &[[f64; 2]]) -> bool {
+    let place = Site { latitude: latitude_deg.to_radians(), longitude: 0.0, height: 0.0, convergence: 0.0 };
+    let question = SunHoursQuestion {
+        rules: vec![rule.to_owned()],
+        days: Days { year: Some(2026), time_step_min: Some(1.0), ..Days::default() },
+        place: SunPlace { zone: Some("UTC".to_owned()), ..SunPlace::default() },
+        sun_tolerance_deg: Some(0.0),
+        ..SunHoursQuestion::default()
+    };
+    let (plan, _) = question.plan(&place).unwrap();
+    let count = plan.directions().len();
+    let mut words = vec![0_u64; count.div_ceil(64)];
+    for step in plan.rules()[0].schedule.days.iter().flat_map(|day| &day.steps) {
+        let is_lit = sun.iter().any(|[from, to]| (*from..*to).contains(&step.middle()));
+        words[step.direction as usize / 64] |= u64::from(is_lit) << (step.direction % 64);
+    }
+    let matrix = VisibilityMatrix::from_words(1, count, words).unwrap();
+    let mut sums = SunSums::default();
+    sums.add(&plan, &RowBlock::from(matrix), None, None).unwrap();
+    let targets = Targets::of_places(&[[0.0; 3]], Frame::default());
+    let measures = sums.into_measures(&plan, &targets);
+    measures.last().unwrap().values[0] == 1.0
+}
+
+/// A rule, the latitude of a place, and hours of sun that just meet it and that just do not.
+type RuleCase<'a> = (&'a str, f64, &'a [[f64; 2]], &'a [[f64; 2]]);
+
+#[test]
+fn rules_are_met_as_they_are_by_hand() {
+    // of each rule a place that just meets it and one that just does not, by the clock: sun of a few minutes more and
+    // less than the hours that count. UTC is the solar time of the place but for the equation of time: -7 minutes on 21
+    // March, +8 on 23 September, -13 on 1 March, -10 on 17 January, -11 on 20 January, +2 on 21 December
+    let cases: &[RuleCase] = &[
+        ("nl-light", 52.0, &[[11.0, 13.1]], &[[11.0, 12.9]]),
+        ("nl-strict", 52.0, &[[10.5, 13.6]], &[[10.5, 13.4]]),
+        // the sun stands above 10° all around noon, even in February
+        ("the-hague", 52.0, &[[11.0, 13.1]], &[[11.0, 12.9]]),
+        ("bre-equinox", 52.0, &[[7.0, 8.1], [15.0, 16.0]], &[[7.0, 8.0], [15.0, 15.9]]),
+        ("en17037-minimum", 52.0, &[[11.0, 12.6]], &[[11.0, 12.4]]),
+        // in the evening after half past five, the sun is up on the last days only: sunset is at 18:13 on 21 March
+        ("1@02-01..03-21,any", 52.0, &[[17.0, 24.0]], &[[17.3, 24.0]]),
+        ("1@03-21", 52.0, &[[17.0, 24.0]], &[[17.3, 24.0]]),
+        ("en17037-medium", 52.0, &[[10.0, 13.1]], &[[10.0, 12.9]]),
+        ("en17037-high", 52.0, &[[10.0, 14.1]], &[[10.0, 13.9]]),
+        ("din-winter", 52.0, &[[11.5, 12.6]], &[[11.5, 12.4]]),
+        // at the equinox the sun stands above 6° at 52° north until 40 minutes before sunset
+        ("din-equinox", 52.0, &[[10.0, 14.1]], &[[6.0, 6.5], [14.0, 17.4]]),
+        ("pl", 52.0, &[[6.0, 10.1]], &[[6.0, 9.9]]),
+        ("pl-centre", 52.0, &[[15.4, 20.0]], &[[15.6, 20.0]]),
+        ("cz", 50.0, &[[11.0, 12.6]], &[[11.0, 12.4]]),
+        ("se", 59.0, &[[6.0, 14.1]], &[[6.0, 13.9]]),
+        ("nsw", -34.0, &[[7.0, 11.1]], &[[7.0, 10.9]]),
+        ("nsw-outer", -34.0, &[[11.9, 17.0]], &[[12.1, 17.0]]),
+        // from 8 o'clock solar time, 8:11 by the clock, and until 16:11
+        ("cn", 40.0, &[[7.0, 10.3]], &[[7.0, 10.1]]),
+        ("2@01-20@8-16,solar", 40.0, &[[14.1, 18.0]], &[[14.3, 18.0]]),
+        // one piece, not two
+        ("kr", 37.0, &[[8.0, 11.1]], &[[9.0, 10.5], [12.0, 13.5]]),
+        ("2@shortest-day@9-15", 37.0, &[[9.0, 10.5], [12.0, 13.5]], &[[8.0, 10.9]]),
+    ];
+    for (rule, latitude, met, missed) in cases {
+        assert!(meets(rule, *latitude, met), "{rule} is met");
+        assert!(!meets(rule, *latitude, missed), "{rule} is missed");
+    }
+    let named: Vec<&str> = SunRule::columns().map(|(name, _)| name).collect();
+    assert_eq!(named.len(), 17);
+    for name in named {
+        assert!(cases.iter().any(|(rule, ..)| *rule == name), "{name} has no case");
+    }
 }
