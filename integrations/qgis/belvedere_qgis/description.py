@@ -9,7 +9,11 @@ from dataclasses import dataclass, field
 GROUPS = {
     "viewshed": "Visibility",
     "line-of-sight": "Visibility",
+    "isovist": "Visibility",
+    "horizon": "Visibility",
     "landmark": "Visibility",
+    "protected-view": "Visibility",
+    "window-views": "Visibility",
     "cameras": "Visibility",
     "survey-plan": "Visibility",
     "shadow": "Sun and sky",
@@ -18,11 +22,17 @@ GROUPS = {
     "irradiance": "Sun and sky",
     "heat": "Sun and sky",
     "envelope": "Sun and sky",
+    "comfort": "Sun and sky",
+    "surfaces": "Scene",
 }
 TITLES = {
     "viewshed": "Viewshed",
     "line-of-sight": "Line of sight",
+    "isovist": "Visible space",
+    "horizon": "Horizon",
     "landmark": "Visibility of a landmark",
+    "protected-view": "Protected view",
+    "window-views": "Views from windows",
     "cameras": "Where to put cameras",
     "survey-plan": "Where to scan again",
     "shadow": "Shadow",
@@ -31,6 +41,8 @@ TITLES = {
     "irradiance": "Solar irradiance",
     "heat": "Heat stress",
     "envelope": "Solar envelope",
+    "comfort": "Sun and sky along walks",
+    "surfaces": "Roofs and walls",
 }
 # Headings of parameters that few people change.
 RARE = ("Lines of sight", "Scene", "Balls", "Global options")
@@ -39,6 +51,9 @@ GEOMETRIES = {
     ("line-of-sight", "--pairs"): "line",
     ("landmark", "--observers"): "point",
     ("landmark", "--target-polygon"): "polygon",
+    ("protected-view", "--observers"): "point",
+    ("protected-view", "--target-polygon"): "polygon",
+    ("comfort", "--route"): "line",
     ("envelope", "--parcel"): "polygon",
 }
 # Names of layers that say more than those of their flags.

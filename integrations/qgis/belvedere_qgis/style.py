@@ -48,6 +48,8 @@ RAMPS = {
     ("sky-view", "OUTPUT"): Ramp(VIRIDIS, 0.0, 1.0),
     ("irradiance", "OUTPUT"): Ramp(INFERNO),
     ("heat", "OUTPUT"): Ramp(INFERNO, None),
+    ("protected-view", "OUTPUT"): Ramp(VIRIDIS),
+    ("protected-view", "TOPS"): Ramp(VIRIDIS, None),
     ("envelope", "OUTPUT"): Ramp(VIRIDIS),
     ("envelope", "TOPS"): Ramp(VIRIDIS, None),
 }
@@ -63,6 +65,10 @@ FIELDS = {
     ("sky-view", "OUTPUT_LAYER"): ("sky_view_factor", VIRIDIS),
     ("irradiance", "OUTPUT_LAYER"): ("kwh_m2", INFERNO),
     ("heat", "OUTPUT_LAYER"): ("utci_max", INFERNO),
+    ("comfort", "OUTPUT"): ("sun_hours", INFERNO),
+    ("isovist", "OUTPUT"): ("openness", VIRIDIS),
+    ("window-views", "OUTPUT"): ("sky", VIRIDIS),
+    ("window-views", "OUTPUT_LAYER"): ("sky", VIRIDIS),
     ("irradiance", "PLANES"): ("kwh_m2", INFERNO),
 }
 HEAD = "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n"

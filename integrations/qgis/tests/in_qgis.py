@@ -95,6 +95,13 @@ def values(layer, band=1):
     return [None if block.isNoData(row, column) else block.value(row, column) for row in range(layer.height()) for column in range(layer.width())]
 
 
+def windows():
+    """A window that looks to the street, as a table."""
+    path = FOLDER / "windows.csv"
+    path.write_text("x,y,z,azimuth\n85036,447527,5,0\n", encoding="utf-8")
+    return str(path)
+
+
 def hot_noon():
     """An hour of weather, as PVGIS writes it."""
     path = FOLDER / "weather.csv"
@@ -128,6 +135,22 @@ def check_algorithms():
         },
         "line_of_sight": {"PAIRS": geojson("lines", fan), "OUTPUT": "sights.gpkg"},
         "landmark": {"TARGET_POLYGON": geojson("building", [building]), "CELL": 16, "OUTPUT": "landmark.tif"},
+        "isovist": {"OBSERVER": f"{eye} [EPSG:28992]", "MAX_DISTANCE": 60, "OUTPUT": "isovist.gpkg"},
+        "horizon": {"OBSERVER": f"{eye} [EPSG:28992]", "OUTPUT": "horizon.gpkg"},
+        "protected_view": {
+            "TARGET_POLYGON": geojson("seen", [building]),
+            "OBSERVERS": geojson("viewer", ["POINT(85036 447527)"]),
+            "CELL": 2,
+            "OUTPUT": "protected.tif",
+        },
+        "window_views": {"WINDOWS": windows(), "DIRECTIONS": 200, "OUTPUT": "windows.gpkg"},
+        "comfort": {
+            "ROUTE": geojson("walk", ["LINESTRING(85036 447527, 85050 447620)"]),
+            "DATE": "2026-06-21",
+            "ZONE": "Europe/Amsterdam",
+            "OUTPUT": "walk_sun.gpkg",
+        },
+        "surfaces": {"OUTPUT": "surfaces.gpkg"},
         "cameras": {
             "ON_ROOFS": 25,
             "COUNT": 3,
@@ -180,6 +203,7 @@ def check_results():
         "sky_view.tif": QgsSingleBandPseudoColorRenderer,
         "energy.tif": QgsSingleBandPseudoColorRenderer,
         "heat.tif": QgsSingleBandPseudoColorRenderer,
+        "protected.tif": QgsSingleBandPseudoColorRenderer,
         "envelope.tif": QgsSingleBandPseudoColorRenderer,
     }
     vectors = {
@@ -187,6 +211,7 @@ def check_results():
         "sights.gpkg": QgsCategorizedSymbolRenderer,
         "roofs.gpkg": QgsGraduatedSymbolRenderer,
         "cameras.gpkg": QgsGraduatedSymbolRenderer,
+        "walk_sun.gpkg": QgsGraduatedSymbolRenderer,
     }
     layers = {}
     for name, renderer in {**rasters, **vectors}.items():
@@ -201,6 +226,10 @@ def check_results():
     for feature in sights:
         first = feature.geometry().constGet().startPoint()
         assert abs(first.x() - 85036) < 1e-3 and abs(first.y() - 447527) < 1e-3 and -2 < first.z() < 4, first.asWkt()
+
+    # rows of tables and outlines that need no style of their own
+    rows = {name: list(QgsVectorLayer(str(FOLDER / f"{name}.gpkg"), name, "ogr").getFeatures()) for name in ("isovist", "horizon", "windows", "surfaces")}
+    assert len(rows["isovist"]) == 1 and len(rows["windows"]) == 1 and len(rows["horizon"]) > 100 and len(rows["surfaces"]) > 10, rows
 
     # cameras stand above roofs, and no cell has more of them than there are
     cameras = list(layers["cameras.gpkg"].getFeatures())

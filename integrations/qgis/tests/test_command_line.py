@@ -56,7 +56,7 @@ def test_the_program_takes_what_is_built_for_every_parameter(commands, binary, t
         "--orient": "up",
     }
     forms |= {"--density": "identify", "--azimuth-range": "10,60", "--elevation-range": "0,20", "--memory": "3G"}
-    forms |= {"--bounds": "1,2,3,4"}
+    forms |= {"--bounds": "1,2,3,4", "--class": "26=ground", "--map-of": "sky", "--neighbors": "12"}
     table = tmp_path / "table.csv"
     table.write_text("x,y\n1,2\n")
     seen = 0

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-ALL = {"viewshed", "line-of-sight", "landmark", "cameras", "survey-plan", "shadow", "sun-hours", "sky-view", "irradiance", "heat", "envelope"}
+ALL = {"viewshed", "line-of-sight", "isovist", "horizon", "landmark", "protected-view", "window-views", "cameras", "survey-plan"} | {
+    *("shadow", "sun-hours", "sky-view", "irradiance", "heat", "envelope", "comfort", "surfaces")
+}
 
 
 def parameter(commands, command, flag):
