@@ -3,12 +3,11 @@
 use crate::arguments::Global;
 use crate::progress::CommandStages;
 use crate::summary::Summary;
-use crate::typed_command::file_name;
 use belvedere::apps::ask::{Answers, Ask, Places, Question, Scene, ask};
 use belvedere::cache::SceneCache;
 use belvedere::control::{Control, Watcher};
 use belvedere::io::MetadataTag;
-use serde_json::Value;
+use belvedere::results::question_tags;
 
 /// Context of every command beside its arguments.
 pub(crate) struct CommandContext {
@@ -20,9 +19,6 @@ pub(crate) struct CommandContext {
     /// Metadata of the rasters that are written: the command, and when it is answered the question.
     pub(crate) tags: Vec<MetadataTag>,
 }
-
-/// Maximum length of a question in the metadata of a raster, bytes. Longer ones hold shapes or weather.
-const MAX_QUESTION: usize = 8192;
 
 impl CommandContext {
     pub(crate) fn new(global: &Global) -> Self {
@@ -65,17 +61,14 @@ impl CommandContext {
         places: &Places,
     ) -> belvedere::Result<Answers<Q::Found>> {
         let answers = ask(scene, question, places, &self.control())?;
-        self.name_question(question.clone().into(), answers.time_zone());
+        self.name_question(&question.clone().into(), answers.time_zone());
         self.answered(&answers);
         Ok(answers)
     }
 
     /// Adds the question and the zone of its clock to the metadata of rasters.
-    pub(crate) fn name_question(&mut self, question: Question, time_zone: Option<&str>) {
-        let question = serde_json::to_value(question).map(shortened).unwrap_or_default().to_string();
-        let question = Some(question).filter(|text| text.len() <= MAX_QUESTION);
-        let tags = [("QUESTION", question), ("TIME_ZONE", time_zone.map(str::to_owned))];
-        self.tags.extend(tags.into_iter().filter_map(|(name, text)| Some((name.to_owned(), text?))));
+    pub(crate) fn name_question(&mut self, question: &Question, time_zone: Option<&str>) {
+        self.tags.extend(question_tags(question, time_zone));
     }
 
     /// Reports on answers: the answer itself, all figures, and what a user must know beside them.
@@ -97,21 +90,5 @@ impl CommandContext {
         let Self { stages, mut summary, .. } = self;
         summary.add_seconds(stages.into_seconds());
         summary
-    }
-}
-
-/// This without the fields that were not given, and without the folders of files.
-fn shortened(value: Value) -> Value {
-    match value {
-        Value::Object(fields) => {
-            let given = fields.into_iter().filter(|(_, value)| !value.is_null());
-            let short = |(name, value): (String, Value)| match value {
-                Value::String(path) if name == "file" => (name, Value::String(file_name(&path))),
-                other => (name, shortened(other)),
-            };
-            Value::Object(given.map(short).collect())
-        }
-        Value::Array(values) => Value::Array(values.into_iter().map(shortened).collect()),
-        other => other,
     }
 }

@@ -1,10 +1,10 @@
 //! The command that was typed, as files name it: what decides the answer, without folders.
 
 use crate::written_files::{files_named, is_written};
+use belvedere::results::file_name;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Command};
 use std::ffi::OsStr;
-use std::path::Path;
 
 /// Describes the command in `matches`, such as `belvedere shadow town.laz --time 2026-06-21T15:00+02:00`. Outputs and
 /// settings of the program, such as threads, are left out; files have no folders, which may be private.
@@ -43,12 +43,6 @@ fn without_folders(argument: &Arg, value: &OsStr) -> String {
     let Some(path) = files_named(argument, value).pop() else { return text.into_owned() };
     let path = path.to_string_lossy();
     format!("{}{}", text.strip_suffix(&*path).unwrap_or_default(), file_name(&path))
-}
-
-/// The name of a file, without its folder, and without the parameters of an address of the web, which may be private.
-pub(crate) fn file_name(path: &str) -> String {
-    let file = path.split('?').next().unwrap_or_default();
-    Path::new(file).file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// A word as shells take it.

@@ -3,10 +3,11 @@
 use crate::errors::wrong;
 use crate::scene::PyScene;
 use crate::sun::SiteKeywords;
-use crate::targets::{RequestedTargets, TargetResults};
+use crate::targets::{RequestedTargets, TargetResults, tagged};
 use crate::trees::Through;
 use crate::work::run;
 use belvedere::apps::ask::{self, SkyParts};
+use belvedere::results::question_tags;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -74,8 +75,10 @@ impl PyScene {
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;
         let places = chosen.places.clone();
+        let named = question.clone();
         let answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
-        chosen.results(py, &answers.found.targets, answers.measures, &answers.remarks)
+        let tags = question_tags(&named.into(), answers.time_zone());
+        chosen.results(py, &answers.found.targets, tagged(answers.measures, &tags), &answers.remarks)
     }
 
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
@@ -93,7 +96,9 @@ impl PyScene {
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;
         let places = chosen.places.clone();
+        let named = question.clone();
         let answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
-        chosen.results(py, &answers.found.targets, answers.measures, &answers.remarks)
+        let tags = question_tags(&named.into(), answers.time_zone());
+        chosen.results(py, &answers.found.targets, tagged(answers.measures, &tags), &answers.remarks)
     }
 }

@@ -17,6 +17,15 @@ use pyo3::types::PyDict;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+/// Measures with the metadata of their question.
+pub(crate) fn tagged(mut measures: Vec<Measure>, tags: &[(String, String)]) -> Vec<Measure> {
+    for measure in &mut measures {
+        let known: Vec<String> = measure.tags.iter().map(|(name, _)| name.clone()).collect();
+        measure.tags.extend(tags.iter().filter(|(name, _)| !known.contains(name)).cloned());
+    }
+    measures
+}
+
 /// Targets in Python.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]

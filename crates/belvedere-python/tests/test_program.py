@@ -458,7 +458,10 @@ def test_heat(scene, run_program, folder, hot_day):
     assert {path.stem for path in (folder / "heat").iterdir()} == set(rasters)
     for measure, raster in rasters.items():
         assert_same_raster(raster, folder / "heat" / f"{measure}.tif", folder)
-    assert rasters["tmrt_20150721_1400"].tags["TIME"].startswith("2015-07-21T14:00")
+    tags = rasters["tmrt_20150721_1400"].tags
+    assert tags["TIME"].startswith("2015-07-21T14:00") and tags["TIME_ZONE"] == "Europe/Amsterdam"
+    with rasterio.open(folder / "heat.tif") as file:
+        assert json.loads(tags["QUESTION"]) == json.loads(file.tags()["QUESTION"]), tags
 
 
 def test_depth_maps(scene, run_program, folder, eye):

@@ -410,8 +410,10 @@ fn leave_out_inside(light: &mut Light, context: &mut Context, control: &Control<
 fn summarise(measures: &[Measure], section: &HeatSection, places: &str, context: &mut Context) {
     let days = if section.days == 1 { "1 day".to_owned() } else { format!("{} days", section.days) };
     context.headline(format!(
-        "heat on {places}: {} hours of {days}, air up to {} °C",
-        section.hours, section.max_air_temperature_c
+        "heat on {places}: {} {} of {days}, air up to {} °C",
+        section.hours,
+        if section.hours == 1.0 { "hour" } else { "hours" },
+        section.max_air_temperature_c
     ));
     let [index, _, radiant, ..] = measures else { return };
     let class = index.statistics().and_then(|found| Stress::of(found.mean)).map_or("unknown", Stress::name);

@@ -144,7 +144,7 @@ impl<'a> TypedCells<'a> {
         city::refuse_failed(&report, "run the command again to try them again")?;
         run.summary.add_report(&report);
         let answers = survey.answers(&report, &run.control())?;
-        run.name_question(question, answers.time_zone());
+        run.name_question(&question, answers.time_zone());
         run.answered(&answers);
         self.write(&answers, map, run)?;
         match (&run.cache, is_temporary) {

@@ -8,13 +8,13 @@ use crate::memory::available_bytes;
 use crate::pipeline::{self, KeepPoints, is_file, params};
 use crate::run::CommandContext;
 use crate::summary::{Summary, note};
-use crate::typed_command::file_name;
 use crate::written_files::check_input;
 use anyhow::{Context, Result, anyhow};
 use belvedere::apps::ask;
 use belvedere::apps::sun::{Date, Site, Zone};
 use belvedere::io::{Source, atomic, has_point_results, is_ball_file, is_mesh};
 use belvedere::model::SceneModel;
+use belvedere::results::file_name;
 use belvedere::{Bounds, Error, Frame, PointCloud};
 use belvedere_tiles::{Plan, merged_within};
 use belvedere_viewer::{

@@ -11,6 +11,7 @@ mod difference;
 mod faces;
 #[cfg(feature = "figures")]
 mod map;
+mod question;
 mod raster;
 
 #[cfg(feature = "figures")]
@@ -18,6 +19,7 @@ pub use difference::{difference_map, relief_of};
 pub use faces::FaceRows;
 #[cfg(feature = "figures")]
 pub use map::measure_map;
+pub use question::{file_name, question_tags};
 pub use raster::{ADDED_BAND, Pixels, ResultRaster, UNPROVEN_BAND, viewshed_words};
 
 pub use crate::apps::targets::ResultKind;
