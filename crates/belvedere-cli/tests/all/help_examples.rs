@@ -110,7 +110,7 @@ fn the_overview_and_every_short_help_fit_a_screen() {
 fn commands_are_listed_by_task() {
     let place = Workplace::new();
     let overview = place.run("--help").stdout;
-    let groups = ["start", "sun", "sight", "plan", "scene", "research", "scale", "other"];
+    let groups = ["start", "sun", "sight", "scene", "research", "maps", "other"];
     let headings: Vec<&str> = overview.lines().filter(|line| groups.contains(line)).collect();
     assert_eq!(headings, groups);
     for command in place.summary("describe")["commands"].as_array().unwrap() {
