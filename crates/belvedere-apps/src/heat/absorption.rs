@@ -32,7 +32,7 @@ pub struct AbsorbedBlock {
 
 /// Computes the radiation that a receiver absorbs at each of `targets`, (M, 3) local metres, in each hour of `days`,
 /// W/m² of its surface, and passes it to `fold`, block after block. Targets that are not finite get NaN. Progress
-/// counts targets, [`Obstacles::matrix_count`] times and once more.
+/// counts targets, [`Obstacles::matrix_count`] times and one more.
 ///
 /// # Errors
 /// Those of [`SceneSurfaces::validate`] and [`fold_rows`].

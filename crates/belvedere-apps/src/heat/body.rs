@@ -22,8 +22,8 @@ const FACES_SIDE: f64 = 0.22;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Body {
-    /// A standing person as six faces: 0.06 of its surface up and down each, 0.22 to each of four sides, as six net
-    /// radiometers measure it. Default.
+    /// A standing person as six faces: 0.06 of its surface up and down each, 0.22 to each of four sides, as it is
+    /// measured from six directions. Default.
     #[default]
     Standing,
     /// A sitting person as six equal faces.

@@ -55,7 +55,7 @@ pub struct HeatHour {
     pub sky_longwave: f64,
     /// Excess of lit surfaces over the air, K: ground, and what is built.
     pub warming: [f64; Material::WARMED],
-    /// Share of the excess before that is left, 0 to 1; 0 for the first row of a day.
+    /// Share of the excess of the row before that remains, 0 to 1; 0 for the first row of a day.
     pub memory: f64,
 }
 

@@ -7,7 +7,7 @@ use super::humidity::ZERO_CELSIUS;
 ///
 /// # Source
 /// Jonsson, Eliasson, Holmer & Grimmond 2006, Longwave incoming radiation in the Tropics: results from field work in
-/// three African cities. Radiometers at squares in Gothenburg show the same.
+/// three African cities. Measurements at squares in Gothenburg agree: docs/methods/heat.md.
 const EXCESS_OF_PRATA: f64 = 25.0;
 
 /// Returns the longwave radiation of a sky without clouds on a level plane, W/m², from the air near the ground: its

@@ -1,7 +1,7 @@
-//! Heat: the mean radiant temperature of a body outdoors, and what it makes of the air.
+//! Heat: the mean radiant temperature of a body outdoors, and the felt temperature that follows.
 //!
 //! The body absorbs radiation from the whole sphere. In each direction it sees the sky or a surface: ground, wall, roof
-//! or crown, in the sun or in the shade, with its own temperature. One sum over directions gives all fluxes.
+//! or crown, in the sun or in the shade. One sum over directions gives all fluxes.
 //!
 //! | step | function |
 //! |---|---|

@@ -43,7 +43,7 @@ pub struct Person {
     pub age: f64,
     /// Metabolic rate of activity, W.
     pub activity: f64,
-    /// Insulation of clothes, clo, above 0.3.
+    /// Insulation of clothes, clo; more than 0.3.
     pub clothes: f64,
     /// True for a standing man, false for a sitting one.
     pub is_standing: bool,

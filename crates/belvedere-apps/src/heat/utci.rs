@@ -1,4 +1,4 @@
-//! The Universal Thermal Climate Index: the temperature of calm, shaded air that strains a walker alike.
+//! The Universal Thermal Climate Index: the temperature of calm, shaded air with the same stress for a walker.
 
 use serde::Serialize;
 use std::ops::RangeInclusive;

@@ -119,8 +119,8 @@ impl SunSums {
     }
 
     /// Converts all figures into measures of `targets`: `sun_hours`, `sun_share`, `first_light`, `last_light`,
-    /// `longest`. Several days also have `min_sun_hours` and `total_hours`. Each rule has 1 if it is met on the days that
-    /// it needs, otherwise 0.
+    /// `longest`. Several days also have `min_sun_hours` and `total_hours`. Each rule has 1 if it is met on the days
+    /// that it needs, otherwise 0.
     #[must_use]
     pub fn into_measures(self, plan: &SunPlan, targets: &Targets) -> Vec<Measure> {
         let max = plan.period.days.iter().map(|day| day.possible_hours).fold(0.0, f64::max);

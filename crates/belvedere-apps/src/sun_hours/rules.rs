@@ -321,8 +321,8 @@ fn window(text: &str) -> Option<[f64; 2]> {
 }
 
 impl RuleDays {
-    /// Days written as MM-DD or MM-DD..MM-DD, or by a name: "equinox" (21 March, as rules have it), "equinoxes", "shortest-day" or
-    /// "winter-solstice", "longest-day" or "summer-solstice"; `None` for other texts.
+    /// Days written as MM-DD or MM-DD..MM-DD, or by a name: "equinox" (21 March, as rules have it), "equinoxes",
+    /// "shortest-day" or "winter-solstice", "longest-day" or "summer-solstice"; `None` for other texts.
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
         match text {

@@ -76,7 +76,7 @@ pub(crate) struct HeatArguments {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum BodyChoice {
-    /// Six faces of a standing person (VDI 3787), as six radiometers measure it
+    /// Six faces of a standing person (VDI 3787), as sensors measure it from six directions
     Standing,
     /// Six equal faces
     Sitting,

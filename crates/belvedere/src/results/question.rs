@@ -7,8 +7,8 @@ use std::path::Path;
 /// Maximum length of a question in the metadata of a raster, bytes. Longer ones hold shapes or weather.
 const MAX_QUESTION: usize = 8192;
 
-/// Returns the metadata of rasters that answer a question: itself as `QUESTION`, JSON without fields that were not given
-/// and without the folders of files, unless it is long; and the zone of its clock as `TIME_ZONE`.
+/// Returns the metadata of rasters that answer a question. `QUESTION` is itself as JSON, without fields that were not
+/// given and without the folders of files; left out if long. `TIME_ZONE` is the zone of its clock.
 #[must_use]
 pub fn question_tags(question: &Question, time_zone: Option<&str>) -> Vec<(String, String)> {
     let text = serde_json::to_value(question).map(shortened).unwrap_or_default().to_string();

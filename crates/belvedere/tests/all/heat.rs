@@ -1,4 +1,4 @@
-//! Heat: published values of the index, an open plain, and radiation that six radiometers measured at two squares.
+//! Heat: published values of the index, an open plain, and radiation measured from six directions at two squares.
 
 use crate::common::data;
 use belvedere::apps::heat::{
@@ -260,7 +260,7 @@ impl Mast<'_> {
 }
 
 #[test]
-fn radiation_at_two_squares_is_that_of_six_radiometers() {
+fn radiation_at_two_squares_is_that_measured_from_six_directions() {
     let control = Control::none();
     let rule = BlockRule::default();
     let mut radiant = Comparison::default();
