@@ -377,7 +377,7 @@ fn meets(rule: &str, latitude_deg: f64, sun: &[[f64; 2]]) -> bool {
     let place = Site { latitude: latitude_deg.to_radians(), longitude: 0.0, height: 0.0, convergence: 0.0 };
     let question = SunHoursQuestion {
         rules: vec![rule.to_owned()],
-        days: Days { year: Some(2026), time_step_min: Some(1.0), ..Days::default() },
+        days: Days { year: Some(2026), time_step_min: Some(3.0), ..Days::default() },
         place: SunPlace { zone: Some("UTC".to_owned()), ..SunPlace::default() },
         sun_tolerance_deg: Some(0.0),
         ..SunHoursQuestion::default()
