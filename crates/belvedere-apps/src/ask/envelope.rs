@@ -186,9 +186,7 @@ impl EnvelopeQuestion {
             ProtectedSuns::Days { days, hours } => {
                 let site = self.place.site(scene, context, None)?;
                 let zone = self.place.zone_at(&site, days.times())?;
-                let is_solar = self.place.zone.is_none() && days.times().next().is_none();
-                let of_sun = hours.filter(|_| is_solar);
-                context.add(of_sun.map(|hours| remark_on_solar_hours("the sun is protected", hours)));
+                context.add(remark_on_solar_hours("the sun is protected", *hours, (&zone, &site)));
                 let dates = self.dates(days, &site, &zone)?;
                 let params = days.params(&self.place);
                 let (suns, low) = envelope_suns(&site, &zone, &dates, hours.unwrap_or(ALL_DAY), &params)?;

@@ -192,12 +192,17 @@ pub(super) fn remark_on_clock(zone: &Zone, site: &Site) -> Option<Remark> {
 }
 
 /// A warning of hours of the day that nobody's clocks show, between which something `happens`.
-pub(super) fn remark_on_solar_hours(happens: &str, [from, to]: [f64; 2]) -> Remark {
+pub(super) fn remark_on_solar_hours(
+    happens: &str,
+    hours: Option<[f64; 2]>,
+    (zone, site): (&Zone, &Site),
+) -> Option<Remark> {
+    let [from, to] = hours.filter(|_| zone.name() == Zone::mean_solar(site).name())?;
     let text = format!(
         "{happens} from {from} to {to} hours of mean solar time, which clocks are up to two hours ahead of; give the \
          zone of the clocks, such as Europe/Amsterdam"
     );
-    Remark::warning("hours-in-solar-time", text).with("from_hour", from).with("to_hour", to)
+    Some(Remark::warning("hours-in-solar-time", text).with("from_hour", from).with("to_hour", to))
 }
 
 fn refused<T>(parameter: Parameter, value: impl Into<String>, expected: &'static str) -> Result<T> {

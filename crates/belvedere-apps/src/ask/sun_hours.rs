@@ -9,7 +9,7 @@ use super::trees::remark_on_leaves;
 use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
 use crate::sum_errors::Intervals;
 use crate::sun::{Binning, DayParams, Period, Site, SunSchedule, Zone};
-use crate::sun_hours::{RuleWindow, SunPlan, SunRule, WindowClock, scene_sun_hours};
+use crate::sun_hours::{SunPlan, SunRule, WindowClock, scene_sun_hours};
 use crate::targets::{Measure, ResultKind};
 use crate::tree_light::Season;
 use belvedere_core::query::UnprovenAs;
@@ -148,10 +148,8 @@ impl Ask for SunHoursQuestion {
         let site = self.place.site(scene, context, None)?;
         let (plan, zone) = self.plan(&site)?;
         let by_clock = |rule: &SunRule| rule.window.filter(|window| window.clock == WindowClock::Zone);
-        let window = plan.rules().iter().find_map(|planned| by_clock(&planned.rule));
-        if let (Some(RuleWindow { hours, .. }), None) = (window, &self.place.zone) {
-            context.add(Some(remark_on_solar_hours("the rule counts sun", hours)));
-        }
+        let hours = plan.rules().iter().find_map(|planned| by_clock(&planned.rule)).map(|window| window.hours);
+        context.add(remark_on_solar_hours("the rule counts sun", hours, (&zone, &site)));
         context.report.period = Some(section(&plan, &zone, &self.days.params(&self.place)));
         let trees = (&self.trees, Some(site.latitude), UnprovenAs::Visible);
         let light = Light::resolve(places, plan.directions(), trees, scene, context, control)?;
