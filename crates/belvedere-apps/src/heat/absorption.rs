@@ -57,11 +57,19 @@ pub fn fold_absorbed(
         fold_rows(obstacles.into(), block, &sky.directions, control, |rows| {
             let own = &block[rows.rows.clone()];
             let seen = SeenSurfaces::find(surfaces, own, &rows, &directions, control)?;
-            let count = seen.surfaces.len() * obstacles.matrix_count();
-            let shares = control
-                .stage("testing the sky of surfaces", count, || sky_shares(obstacles, &seen.surfaces, &sky, control))?;
+            let mut shares = Vec::new();
+            let mut factor_of_shares = None;
             for (day, hours) in days.iter().enumerate() {
                 let of_day = DayOfBlock { obstacles, crowns, receiver, cover: surfaces.cover, hours };
+                // crowns change with the season, and with them the sky of what lies below
+                let factor = hours.iter().find(|hour| !hour.suns.is_empty()).map_or(0.0, |hour| of_day.factor(hour));
+                if factor_of_shares != Some(factor) {
+                    let count = seen.surfaces.len() * obstacles.matrix_count();
+                    shares = control.stage("testing the sky of surfaces", count, || {
+                        sky_shares((obstacles, factor), &seen.surfaces, &sky, control)
+                    })?;
+                    factor_of_shares = Some(factor);
+                }
                 let count = (seen.surfaces.len() + own.len()) * obstacles.matrix_count();
                 let absorbed = control.stage("testing the sun of surfaces", count, || {
                     of_day.absorbed((own, &rows), (&seen, &shares), &directions, control)
@@ -216,9 +224,10 @@ fn areas(receiver: Receiver, directions: &[([f64; 3], f64)]) -> Vec<f64> {
     areas.into_iter().map(|area| area * PI / sum).collect()
 }
 
-/// The share of the half space of each surface that is sky, by the cosine to its normal. Leaves have a half at most.
+/// The share of the half space of each surface that is sky, by the cosine to its normal. Crowns, whose light has a
+/// [`CrownLight::factor`], let a share through. Leaves have a half at most.
 fn sky_shares(
-    obstacles: Obstacles<'_>,
+    (obstacles, factor): (Obstacles<'_>, f64),
     surfaces: &[Surface],
     sky: &SkyDirections,
     control: &Control<'_>,
@@ -229,13 +238,11 @@ fn sky_shares(
         let of_row = |row: usize| {
             let normal = surfaces.get(rows.rows.start + row).and_then(|surface| surface.normal);
             let patches = sky.directions.iter().zip(&sky.solid_angles).enumerate();
-            let free = patches.filter(|(column, _)| rows.matrix.is_free(row, *column));
-            let sum: f64 = free
-                .map(|(_, (direction, angle))| match normal {
-                    Some(normal) => angle * dot(normal.map(f64::from), *direction).max(0.0),
-                    None => angle / 4.0,
-                })
-                .sum();
+            let part = |(column, (direction, angle)): (usize, (&[f64; 3], &f64))| {
+                let cosine = normal.map_or(0.25, |normal| dot(normal.map(f64::from), *direction).max(0.0));
+                if cosine > 0.0 { angle * cosine * rows.line(row, column).share(factor) } else { 0.0 }
+            };
+            let sum: f64 = patches.map(part).sum();
             sum / PI
         };
         shares.extend((0..rows.matrix.target_count()).into_par_iter().with_min_len(64).map(of_row).collect::<Vec<_>>());

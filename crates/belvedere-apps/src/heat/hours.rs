@@ -64,13 +64,13 @@ pub type HeatHours = Vec<HeatHour>;
 
 /// Rows that a question is about.
 #[derive(Clone, Debug, PartialEq)]
-pub struct HeatRows<'a> {
+pub(crate) struct HeatRows<'a> {
     /// Days, or a period between instants.
-    pub period: &'a Period,
+    pub(crate) period: &'a Period,
     /// First and last hour of the clock; rows whose middle lies between them count.
-    pub hours: [f64; 2],
+    pub(crate) hours: [f64; 2],
     /// The clock.
-    pub zone: &'a Zone,
+    pub(crate) zone: &'a Zone,
 }
 
 /// Rows of each day, and what was assumed.
@@ -176,7 +176,8 @@ pub(crate) fn days_of_heat(
         found.without_wind += steps.iter().filter(|step| step.air.wind_speed.is_none()).count();
         let season = Season::on(date, site);
         let hours = heat_hours(&steps, site, season, (surfaces, parts))?;
-        if !hours.is_empty() {
+        // rows without air may have been all that were wanted
+        if wanted.contains(&true) {
             found.days.push((hours, wanted));
         }
     }

@@ -23,8 +23,8 @@ mod utci;
 
 pub use absorption::{AbsorbedBlock, fold_absorbed};
 pub use body::{Body, Receiver, STEFAN_BOLTZMANN};
-pub(crate) use hours::{HeatDays, days_of_heat};
-pub use hours::{HeatHour, HeatHours, HeatRows, HeatSun, heat_hours};
+pub(crate) use hours::{HeatDays, HeatRows, days_of_heat};
+pub use hours::{HeatHour, HeatHours, HeatSun, heat_hours};
 pub use humidity::saturation_pressure;
 pub use longwave::{clear_sky_longwave, sky_longwave};
 pub use materials::{GroundCover, Material, SurfaceParams, Warming};

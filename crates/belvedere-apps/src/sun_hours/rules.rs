@@ -192,11 +192,6 @@ impl SunRule {
         NAMED.iter().map(|named| (named.0, named.1))
     }
 
-    /// Names of the rules that have one, with their requirement.
-    pub fn descriptions() -> impl Iterator<Item = (&'static str, &'static str)> {
-        NAMED.iter().map(|named| (named.0, named.3))
-    }
-
     /// Parses a rule from its name, or one's own, written as HOURS@DAYS with days as in [`RuleDays::parse`]. A sign and
     /// degrees add a minimum elevation of the sun: "2@02-19..10-21>10". A second @ adds hours of the day that count:
     /// "3@equinoxes@7-17". Words behind commas say more: "solar" (hours by the sun), "piece" (without a break), "any"
