@@ -5,7 +5,7 @@ use crate::cloud::PyInput;
 use crate::errors::{exception, wrong};
 use crate::remarks::remarks_of;
 use crate::scene::PyScene;
-use crate::targets::{RequestedTargets, TargetResults, ground_points, tagged};
+use crate::targets::{RequestedTargets, TargetResults, asked, ground_points};
 use crate::trees::Through;
 use crate::work::run;
 use belvedere::apps::ask::{self, Roofs, SunPlace};
@@ -13,7 +13,6 @@ use belvedere::apps::irradiance::{
     BirdParams, CLEAR_SKY_YEAR, ClearSky, Grouping, IrradianceParams, PARTS, SkyModel, Surroundings, roof_columns,
 };
 use belvedere::io::read_weather;
-use belvedere::results::question_tags;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -151,12 +150,10 @@ impl PyScene {
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;
         let places = chosen.places.clone();
-        let named = question.clone();
-        let answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
-        let tags = question_tags(&named.into(), answers.time_zone());
+        let answers = asked(py, progress, scene, question, places)?;
         let Some(on) = &answers.found.on else {
             return Err(PyRuntimeError::new_err("there are no targets"));
         };
-        chosen.results(py, &on.targets, tagged(answers.measures, &tags), &answers.remarks)
+        chosen.results(py, &on.targets, answers.measures, &answers.remarks)
     }
 }

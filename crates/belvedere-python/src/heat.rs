@@ -5,13 +5,11 @@ use crate::errors::{exception, wrong};
 use crate::scene::PyScene;
 use crate::sky::DaysKeywords;
 use crate::sun::SiteKeywords;
-use crate::targets::{RequestedTargets, TargetResults, tagged};
+use crate::targets::{RequestedTargets, TargetResults, asked};
 use crate::trees::Through;
-use crate::work::run;
 use belvedere::apps::ask;
 use belvedere::apps::heat::{Body, GroundCover, SurfaceParams};
 use belvedere::io::read_weather;
-use belvedere::results::question_tags;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -89,9 +87,7 @@ impl PyScene {
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;
         let places = chosen.places.clone();
-        let named = question.clone();
-        let answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
-        let tags = question_tags(&named.into(), answers.time_zone());
-        chosen.results(py, &answers.found.targets, tagged(answers.measures, &tags), &answers.remarks)
+        let answers = asked(py, progress, scene, question, places)?;
+        chosen.results(py, &answers.found.targets, answers.measures, &answers.remarks)
     }
 }

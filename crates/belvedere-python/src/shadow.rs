@@ -3,13 +3,11 @@
 use crate::errors::wrong;
 use crate::scene::{HowSureKeywords, PyScene};
 use crate::sun::{SiteKeywords, SunChoice};
-use crate::targets::{RequestedTargets, TargetResults, tagged};
+use crate::targets::{RequestedTargets, TargetResults, asked};
 use crate::trees::Through;
-use crate::work::run;
 use belvedere::apps::ask;
 use belvedere::apps::shadow::Edges;
 use belvedere::apps::targets::Measure;
-use belvedere::results::question_tags;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -44,10 +42,8 @@ impl PyScene {
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;
         let places = chosen.places.clone();
-        let named = question.clone();
-        let answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
-        let tags = question_tags(&named.into(), answers.time_zone());
-        let (found, mut measures) = (answers.found, tagged(answers.measures, &tags));
+        let answers = asked(py, progress, scene, question, places)?;
+        let (found, mut measures) = (answers.found, answers.measures);
         let further = measures.split_off(found.suns.len().min(measures.len()));
         let is_one = found.suns.len() == 1;
         let mut remarks = Some(answers.remarks);

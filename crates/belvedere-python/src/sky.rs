@@ -3,11 +3,9 @@
 use crate::errors::wrong;
 use crate::scene::PyScene;
 use crate::sun::SiteKeywords;
-use crate::targets::{RequestedTargets, TargetResults, tagged};
+use crate::targets::{RequestedTargets, TargetResults, asked};
 use crate::trees::Through;
-use crate::work::run;
 use belvedere::apps::ask::{self, SkyParts};
-use belvedere::results::question_tags;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -75,10 +73,8 @@ impl PyScene {
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;
         let places = chosen.places.clone();
-        let named = question.clone();
-        let answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
-        let tags = question_tags(&named.into(), answers.time_zone());
-        chosen.results(py, &answers.found.targets, tagged(answers.measures, &tags), &answers.remarks)
+        let answers = asked(py, progress, scene, question, places)?;
+        chosen.results(py, &answers.found.targets, answers.measures, &answers.remarks)
     }
 
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
@@ -96,9 +92,7 @@ impl PyScene {
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;
         let places = chosen.places.clone();
-        let named = question.clone();
-        let answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
-        let tags = question_tags(&named.into(), answers.time_zone());
-        chosen.results(py, &answers.found.targets, tagged(answers.measures, &tags), &answers.remarks)
+        let answers = asked(py, progress, scene, question, places)?;
+        chosen.results(py, &answers.found.targets, answers.measures, &answers.remarks)
     }
 }

@@ -5,11 +5,12 @@ use crate::cloud::Cloud;
 use crate::errors::{exception, wrong};
 use crate::mesh::{Faces, rows_of};
 use crate::remarks::remarks_of;
-use belvedere::apps::ask::{self, Remark};
+use crate::work::run;
+use belvedere::apps::ask::{self, Answers, Ask, Question, Remark};
 use belvedere::apps::targets::{CellLevel, Measure, ResultKind, Targets};
 use belvedere::ground::{GroundPoints, MapGrid};
 use belvedere::io::Georeference;
-use belvedere::results::{FaceRows, georeference};
+use belvedere::results::{FaceRows, georeference, question_tags};
 use belvedere::{Frame, Mesh};
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -17,13 +18,26 @@ use pyo3::types::PyDict;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Measures with the metadata of their question.
-pub(crate) fn tagged(mut measures: Vec<Measure>, tags: &[(String, String)]) -> Vec<Measure> {
-    for measure in &mut measures {
-        let known: Vec<String> = measure.tags.iter().map(|(name, _)| name.clone()).collect();
-        measure.tags.extend(tags.iter().filter(|(name, _)| !known.contains(name)).cloned());
+/// Puts a question to a scene. Its measures have the metadata of the question beside their own.
+pub(crate) fn asked<Q>(
+    py: Python<'_>,
+    progress: Option<Py<PyAny>>,
+    scene: Arc<ask::Scene>,
+    question: Q,
+    places: ask::Places,
+) -> PyResult<Answers<Q::Found>>
+where
+    Q: Ask<Found: Send + 'static> + Clone + Into<Question> + Send + 'static,
+{
+    let named = question.clone();
+    let mut answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
+    let tags = question_tags(&named.into(), answers.time_zone());
+    for measure in &mut answers.measures {
+        let is_new = |(name, _): &&(String, String)| measure.tags.iter().all(|(known, _)| known != name);
+        let new: Vec<(String, String)> = tags.iter().filter(is_new).cloned().collect();
+        measure.tags.extend(new);
     }
-    measures
+    Ok(answers)
 }
 
 /// Targets in Python.

@@ -16,4 +16,4 @@ pub use position::{
 };
 pub use schedule::{Binning, DayOfLight, LightStep, SunSchedule};
 pub use site::{Site, SiteFrom};
-pub use time::{Date, Zone, parse_instant, zone_of_instant};
+pub use time::{Date, Zone, parse_hour, parse_instant, zone_of_instant};

@@ -309,3 +309,12 @@ fn seconds(t: Timestamp) -> f64 {
 fn shortened(text: &str) -> String {
     text.chars().take(80).collect()
 }
+
+/// Parses an hour of a day as clocks show it, 0 to 24: "9", "09:30"; `None` for other texts.
+#[must_use]
+pub fn parse_hour(text: &str) -> Option<f64> {
+    let (hours, minutes) = text.split_once(':').unwrap_or((text, "0"));
+    let (hours, minutes) = (hours.parse::<u8>().ok()?, minutes.parse::<u8>().ok()?);
+    let value = f64::from(hours) + f64::from(minutes) / 60.0;
+    (minutes < 60 && value <= 24.0).then_some(value)
+}

@@ -1,6 +1,6 @@
 //! Rules of sunlight as planners know them: so many hours on such days.
 
-use crate::sun::{Date, DayParams, Period, Site, SunDay, Zone, declination, sun_day, sun_days};
+use crate::sun::{Date, DayParams, Period, Site, SunDay, Zone, declination, parse_hour, sun_day, sun_days};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
@@ -304,14 +304,8 @@ impl SunRule {
 
 /// Hours of a day, written as 9-15 or 08:30-16:00.
 fn window(text: &str) -> Option<[f64; 2]> {
-    let hour = |text: &str| {
-        let (hours, minutes) = text.split_once(':').unwrap_or((text, "0"));
-        let (hours, minutes): (u8, u8) = (hours.parse().ok()?, minutes.parse().ok()?);
-        let value = f64::from(hours) + f64::from(minutes) / 60.0;
-        (minutes < 60 && value <= 24.0).then_some(value)
-    };
     let (from, to) = text.split_once('-')?;
-    let hours = [hour(from)?, hour(to)?];
+    let hours = [parse_hour(from)?, parse_hour(to)?];
     (hours[0] < hours[1]).then_some(hours)
 }
 

@@ -4,6 +4,7 @@ use super::{
     GroundChoice, NorthArguments, Numbers, PatchesChoice, SceneInput, Shell, SunPeriod, SunPlaceArguments, above_zero,
     at_least_one, height,
 };
+use belvedere::apps::sun::parse_hour;
 use clap::Args;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -47,14 +48,8 @@ impl FromStr for Hours {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let expected = || "expected two times of day, such as 09:00,15:00".to_owned();
-        let hour = |word: &str| {
-            let (hours, minutes) = word.trim().split_once(':').unwrap_or((word.trim(), "0"));
-            let (hours, minutes) = (hours.parse::<u8>().ok()?, minutes.parse::<u8>().ok()?);
-            let value = f64::from(hours) + f64::from(minutes) / 60.0;
-            (minutes < 60 && value <= 24.0).then_some(value)
-        };
         let (first, last) = text.split_once(',').ok_or_else(expected)?;
-        match (hour(first), hour(last)) {
+        match (parse_hour(first.trim()), parse_hour(last.trim())) {
             (Some(first), Some(last)) if first <= last => Ok(Self([first, last])),
             _ => Err(expected()),
         }
