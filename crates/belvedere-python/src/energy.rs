@@ -5,7 +5,7 @@ use crate::cloud::PyInput;
 use crate::errors::{exception, wrong};
 use crate::remarks::remarks_of;
 use crate::scene::PyScene;
-use crate::targets::{RequestedTargets, TargetResults, asked, ground_points};
+use crate::targets::{RequestedTargets, TargetResults, ground_points, put_to_scene};
 use crate::trees::Through;
 use crate::work::run;
 use belvedere::apps::ask::{self, Roofs, SunPlace};
@@ -150,7 +150,7 @@ impl PyScene {
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;
         let places = chosen.places.clone();
-        let answers = asked(py, progress, scene, question, places)?;
+        let answers = put_to_scene(py, progress, scene, question, places)?;
         let Some(on) = &answers.found.on else {
             return Err(PyRuntimeError::new_err("there are no targets"));
         };

@@ -5,7 +5,7 @@ use crate::errors::{exception, wrong};
 use crate::scene::PyScene;
 use crate::sky::DaysKeywords;
 use crate::sun::SiteKeywords;
-use crate::targets::{RequestedTargets, TargetResults, asked};
+use crate::targets::{RequestedTargets, TargetResults, put_to_scene};
 use crate::trees::Through;
 use belvedere::apps::ask;
 use belvedere::apps::heat::{Body, GroundCover, SurfaceParams};
@@ -87,7 +87,7 @@ impl PyScene {
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;
         let places = chosen.places.clone();
-        let answers = asked(py, progress, scene, question, places)?;
+        let answers = put_to_scene(py, progress, scene, question, places)?;
         chosen.results(py, &answers.found.targets, answers.measures, &answers.remarks)
     }
 }

@@ -3,7 +3,7 @@
 use crate::errors::wrong;
 use crate::scene::{HowSureKeywords, PyScene};
 use crate::sun::{SiteKeywords, SunChoice};
-use crate::targets::{RequestedTargets, TargetResults, asked};
+use crate::targets::{RequestedTargets, TargetResults, put_to_scene};
 use crate::trees::Through;
 use belvedere::apps::ask;
 use belvedere::apps::shadow::Edges;
@@ -42,7 +42,7 @@ impl PyScene {
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;
         let places = chosen.places.clone();
-        let answers = asked(py, progress, scene, question, places)?;
+        let answers = put_to_scene(py, progress, scene, question, places)?;
         let (found, mut measures) = (answers.found, answers.measures);
         let further = measures.split_off(found.suns.len().min(measures.len()));
         let is_one = found.suns.len() == 1;

@@ -3,7 +3,7 @@
 use crate::errors::wrong;
 use crate::scene::PyScene;
 use crate::sun::SiteKeywords;
-use crate::targets::{RequestedTargets, TargetResults, asked};
+use crate::targets::{RequestedTargets, TargetResults, put_to_scene};
 use crate::trees::Through;
 use belvedere::apps::ask::{self, SkyParts};
 use pyo3::prelude::*;
@@ -73,7 +73,7 @@ impl PyScene {
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;
         let places = chosen.places.clone();
-        let answers = asked(py, progress, scene, question, places)?;
+        let answers = put_to_scene(py, progress, scene, question, places)?;
         chosen.results(py, &answers.found.targets, answers.measures, &answers.remarks)
     }
 
@@ -92,7 +92,7 @@ impl PyScene {
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;
         let places = chosen.places.clone();
-        let answers = asked(py, progress, scene, question, places)?;
+        let answers = put_to_scene(py, progress, scene, question, places)?;
         chosen.results(py, &answers.found.targets, answers.measures, &answers.remarks)
     }
 }

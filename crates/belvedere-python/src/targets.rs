@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Puts a question to a scene. Its measures have the metadata of the question beside their own.
-pub(crate) fn asked<Q>(
+pub(crate) fn put_to_scene<Q>(
     py: Python<'_>,
     progress: Option<Py<PyAny>>,
     scene: Arc<ask::Scene>,
