@@ -23,6 +23,7 @@ pub mod sky_view;
 pub mod solar_envelope;
 pub mod sum_errors;
 pub mod sun;
+pub mod sun_calendar;
 pub mod sun_hours;
 pub mod survey_plan;
 pub mod survey_reliability;

@@ -15,6 +15,7 @@ mod scene;
 mod shadow;
 mod sky;
 mod sun;
+mod sunlight;
 mod surroundings;
 mod survey_plan;
 mod towns;
@@ -48,6 +49,7 @@ pub(crate) use scene::{
 pub(crate) use shadow::ShadowArguments;
 pub(crate) use sky::{FacingChoice, FarTerrainArguments, PatchesChoice, SkyOutputs, SkyPlaces, SkyViewArguments};
 pub(crate) use sun::{ElevationChoice, SunHoursArguments, SunPeriod, SunPlaceArguments, SunPositionArguments};
+pub(crate) use sunlight::{ReportArguments, SunCalendarArguments};
 pub(crate) use surroundings::{
     BelowChoice, EyesArguments, HorizonArguments, IsovistArguments, LandmarkArguments, LandmarkShapeArguments,
     MeshTargets, ProtectedViewArguments,
@@ -239,6 +241,11 @@ pub(crate) enum Command {
     SunPosition(SunPositionArguments),
     /// Compute the largest volume on a parcel that casts no shadow on its neighbours
     Envelope(EnvelopeArguments),
+    /// Write a sunlight report of a plan for windows and gardens: verdicts, maps, days, sources
+    Report(ReportArguments),
+    /// List from when to when the sun shines at windows and places, and what shades them
+    #[command(name = "sun-calendar")]
+    SunCalendar(SunCalendarArguments),
     /// Measure sun, shade and sky along walking routes and at windows
     Comfort(ComfortArguments),
     /// Measure what is seen from windows: sky, vegetation, water, buildings, ground

@@ -25,7 +25,21 @@ pub(crate) const BALL_FLAGS: [&str; 15] = [
 /// Commands by task, in the order of the overview.
 const GROUPS: [(&str, &[&str]); 7] = [
     ("start", &["demo", "info", "view", "simulate"]),
-    ("sun", &["shadow", "sun-hours", "irradiance", "heat", "sky-view", "sun-position", "envelope", "comfort"]),
+    (
+        "sun",
+        &[
+            "shadow",
+            "sun-hours",
+            "irradiance",
+            "heat",
+            "sky-view",
+            "sun-calendar",
+            "sun-position",
+            "report",
+            "envelope",
+            "comfort",
+        ],
+    ),
     (
         "sight",
         &[
@@ -158,6 +172,8 @@ const TEXTS: &[(&str, &str)] = &[
     ("sun-position", include_str!("help/sun-position.txt")),
     ("envelope", include_str!("help/envelope.txt")),
     ("comfort", include_str!("help/comfort.txt")),
+    ("report", include_str!("help/report.txt")),
+    ("sun-calendar", include_str!("help/sun-calendar.txt")),
     ("window-views", include_str!("help/window-views.txt")),
     #[cfg(feature = "view")]
     ("view", include_str!("help/view.txt")),

@@ -196,6 +196,34 @@ pub(crate) fn scene(arguments: &SceneInput, points: KeepPoints, run: &mut Comman
     Ok(scene)
 }
 
+/// The scene as it is, and as it will be; `None` where nothing is planned. Both have their points.
+pub(crate) fn present_and_planned(
+    arguments: &SceneInput,
+    run: &mut CommandContext,
+) -> Result<(LoadedScene, Option<LoadedScene>)> {
+    let mut present = present_scene(arguments, KeepPoints::Keep, run)?;
+    let plan = &arguments.plan;
+    let planned = match plan.add.is_empty() && plan.clear.is_empty() {
+        true => None,
+        false => {
+            let mut scene = LoadedScene {
+                model: present.model.clone(),
+                cloud: present.cloud.clone(),
+                left_out: ReadReport::default(),
+                profile: present.profile,
+                ground_store: present.ground_store.clone(),
+            };
+            if !plan.clear.is_empty() {
+                plan::clear(&mut scene, plan, run)?;
+            }
+            scene.model = with_device(planned(scene.model, plan, run)?);
+            Some(scene)
+        }
+    };
+    present.model = with_device(present.model);
+    Ok((present, planned))
+}
+
 /// Returns true if a path is a file, or the address of one.
 pub(crate) fn is_file(path: &Path) -> bool {
     path.is_file() || web_address(path).is_some()

@@ -91,11 +91,20 @@ pub enum MapLegend<'a> {
     Ramp(&'a str, [f64; 2], &'a [([u8; 3], &'a str)]),
 }
 
-/// The map as a picture, small ones enlarged by repeating pixels.
+/// The map as a picture with title, legend, scale bar and coordinates, small ones enlarged by repeating pixels.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] unless there is a colour, or none, for each height.
 pub fn map_picture(map: &MapPicture<'_>) -> Result<Picture> {
+    let factor = MIN_SIDE.div_ceil(map.relief.width().max(map.relief.height()).max(1)).clamp(1, MIN_SIDE);
+    Ok(framed(&map_image(map, factor)?, map, map.cell / factor as f64))
+}
+
+/// The map alone, each pixel repeated `factor` times in both directions.
+///
+/// # Errors
+/// Those of [`map_picture`].
+pub fn map_image(map: &MapPicture<'_>, factor: usize) -> Result<Picture> {
     let (width, height) = (map.relief.width(), map.relief.height());
     if map.colors.len() != width * height {
         return Err(Error::LengthMismatch {
@@ -123,8 +132,6 @@ pub fn map_picture(map: &MapPicture<'_>) -> Result<Picture> {
             *out = byte;
         }
     });
-    let longest = width.max(height).max(1);
-    let factor = MIN_SIDE.div_ceil(longest).clamp(1, MIN_SIDE);
     let mut picture = picture.enlarged(factor);
     let radius = picture.width.max(picture.height) as f64 / 130.0 + 2.0;
     // many observers are dots, not a cover over the map
@@ -139,7 +146,7 @@ pub fn map_picture(map: &MapPicture<'_>) -> Result<Picture> {
     for mark in map.marks {
         draw_label(&mut picture, at(mark), mark, radius);
     }
-    Ok(framed(&picture, map, map.cell / factor as f64))
+    Ok(picture)
 }
 
 /// Light on the relief, 0 to 1, from differences to the neighbours.

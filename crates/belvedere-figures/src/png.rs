@@ -1,12 +1,24 @@
 //! PNG files, still and animated.
 
-use std::fs::File;
-use std::io::BufWriter;
+use std::io::Write;
 use std::path::Path;
 
 use crate::picture::Picture;
 use belvedere_data::{Error, Parameter, Result};
 use belvedere_io::atomic;
+
+/// The contents of the PNG file of `picture`, with 8 bits per channel.
+///
+/// # Errors
+/// Those of [`write_png`], but [`Error::Io`].
+pub fn png_bytes(picture: &Picture) -> Result<Vec<u8>> {
+    let (width, height) = checked_size(picture)?;
+    let mut bytes = Vec::new();
+    let mut writer = encoder(&mut bytes, width, height).write_header().map_err(failed(Path::new("PNG")))?;
+    writer.write_image_data(&picture.rgb).map_err(failed(Path::new("PNG")))?;
+    writer.finish().map_err(failed(Path::new("PNG")))?;
+    Ok(bytes)
+}
 
 /// Writes `picture` with 8 bits per channel.
 ///
@@ -85,7 +97,7 @@ fn changed(before: &Picture, after: &Picture) -> [usize; 4] {
     [left, top, right - left + 1, bottom - top + 1]
 }
 
-fn encoder(output: &mut BufWriter<File>, width: u32, height: u32) -> png::Encoder<'static, &mut BufWriter<File>> {
+fn encoder<W: Write>(output: &mut W, width: u32, height: u32) -> png::Encoder<'static, &mut W> {
     let mut encoder = png::Encoder::new(output, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);

@@ -7,6 +7,7 @@ mod arrays;
 mod cameras;
 mod cloud;
 mod device;
+mod documents;
 mod energy;
 mod errors;
 mod heat;

@@ -206,7 +206,7 @@ impl TileQuestion {
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<Vec<Self>> {
-        ask::Ask::check(question)?;
+        question.check()?;
         if let Some(what) = Self::not_in_tiles(question) {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::Questions,

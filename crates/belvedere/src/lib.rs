@@ -32,6 +32,7 @@
 //! | which lines of sight are free | [`query`] |
 //! | shadow, sun hours, sky view, irradiance, viewsheds, landmarks, cameras, solar envelopes, comfort | `apps` |
 //! | results of applications as files | `results` |
+//! | sunlight of windows and gardens as a report | `sunlight_report` |
 //! | scenes that were built before | `cache` |
 //! | pictures and films | `figures` |
 //! | progress and cancellation of long work | [`control`] |
@@ -84,6 +85,8 @@ pub use belvedere_io as io;
 pub mod cache;
 #[cfg(all(feature = "apps", feature = "tiff"))]
 pub mod results;
+#[cfg(all(feature = "cache", feature = "figures"))]
+pub mod sunlight_report;
 
 /// Items that most programs need: `use belvedere::prelude::*`.
 pub mod prelude {

@@ -42,6 +42,7 @@ mod single_places;
 mod sky_view;
 pub mod sun;
 mod sun_and_sky;
+mod sun_calendar;
 mod sun_hours;
 mod sun_position;
 mod survey;
@@ -86,6 +87,7 @@ pub use single_places::{HeightFrom, PlaceSection, end_on_map, position_on_map, s
 pub use sky_view::{SkyParts, SkyViewQuestion};
 pub use sun::{Days, NamedSun, SunPlace, SunRange, Suns, check_sun, remark_on_sun};
 pub use sun_and_sky::OnTargets;
+pub use sun_calendar::{SunCalendarQuestion, SunCalendarResults};
 pub use sun_hours::{SunHoursQuestion, rules};
 pub use sun_position::{SunPositionQuestion, SunStands};
 pub use survey::remarks_on_survey;
@@ -122,6 +124,8 @@ pub enum Question {
     Shadow(ShadowQuestion),
     /// Hours of sun at places.
     SunHours(SunHoursQuestion),
+    /// Sun and shade at windows or places, from when to when.
+    SunCalendar(SunCalendarQuestion),
     /// Visible part of the sky.
     SkyView(SkyViewQuestion),
     /// Energy of sun and sky.
@@ -164,12 +168,25 @@ macro_rules! one_of_all {
                 Self::$name(question)
             }
         })*
+
+        impl Question {
+            /// Checks all that does not depend on a scene.
+            ///
+            /// # Errors
+            /// Those of the question.
+            pub fn check(&self) -> Result<()> {
+                match self {
+                    $(Self::$name(question) => question.check(),)*
+                }
+            }
+        }
     };
 }
 
 one_of_all! {
     Shadow: ShadowQuestion,
     SunHours: SunHoursQuestion,
+    SunCalendar: SunCalendarQuestion,
     SkyView: SkyViewQuestion,
     Irradiance: IrradianceQuestion,
     Heat: HeatQuestion,
@@ -188,46 +205,9 @@ one_of_all! {
     Envelope: EnvelopeQuestion,
 }
 
-/// Results of any question.
-#[non_exhaustive]
-pub enum QuestionResults {
-    /// Results of [`Question::Shadow`].
-    Shadow(ShadowResults),
-    /// Results of [`Question::SunHours`], [`Question::SkyView`] and [`Question::Heat`].
-    OnTargets(OnTargets),
-    /// Results of [`Question::Irradiance`].
-    Irradiance(IrradianceResults),
-    /// Results of [`Question::SunPosition`].
-    SunPosition(Vec<SunStands>),
-    /// Results of [`Question::LineOfSight`].
-    LineOfSight(SightsResults),
-    /// Results of [`Question::Horizon`].
-    Horizon(HorizonResults),
-    /// Results of [`Question::Isovist`].
-    Isovist(IsovistsResults),
-    /// Results of [`Question::Viewshed`].
-    Viewshed(Box<ViewshedResults>),
-    /// Results of [`Question::Landmark`].
-    Landmark(LandmarkResults),
-    /// Results of [`Question::WindowViews`].
-    WindowViews(WindowViewsResults),
-    /// Results of [`Question::ProtectedView`].
-    ProtectedView(ProtectedViewResults),
-    /// Results of [`Question::Cameras`].
-    Cameras(CamerasResults),
-    /// Results of [`Question::SurveyPlan`].
-    SurveyPlan(SurveyPlanResults),
-    /// Results of [`Question::DepthMap`].
-    DepthMap(DepthMapResults),
-    /// Results of [`Question::Comfort`].
-    Comfort(Box<ComfortResults>),
-    /// Results of [`Question::Envelope`].
-    Envelope(EnvelopeResults),
-}
-
 /// The answers to a question.
 #[derive(Clone, Debug)]
-pub struct Answers<F = QuestionResults> {
+pub struct Answers<F> {
     /// Results beside measures.
     pub found: F,
     /// A value for each target, of each thing that was measured.
@@ -315,11 +295,6 @@ impl<F> Answers<F> {
         let Context { report, headline, remarks } = context;
         Self { report, headline, remarks, ..self }
     }
-
-    fn map<G>(self, map: impl FnOnce(F) -> G) -> Answers<G> {
-        let Self { found, measures, headline, remarks, report } = self;
-        Answers { found: map(found), measures, headline, remarks, report }
-    }
 }
 
 impl Context {
@@ -383,82 +358,6 @@ fn remark_on_shift(shift: &GroundShift, frame: &Frame) -> Remark {
     remark.with("west", west).with("south", south).with("east", east).with("north", north)
 }
 
-impl Ask for Question {
-    type Found = QuestionResults;
-
-    fn check(&self) -> Result<()> {
-        match self {
-            Self::Shadow(question) => question.check(),
-            Self::SunHours(question) => question.check(),
-            Self::SkyView(question) => question.check(),
-            Self::Irradiance(question) => question.check(),
-            Self::Heat(question) => question.check(),
-            Self::SunPosition(question) => question.check(),
-            Self::LineOfSight(question) => question.check(),
-            Self::Horizon(question) => question.check(),
-            Self::Isovist(question) => question.check(),
-            Self::Viewshed(question) => question.check(),
-            Self::Landmark(question) => question.check(),
-            Self::WindowViews(question) => question.check(),
-            Self::ProtectedView(question) => question.check(),
-            Self::Cameras(question) => question.check(),
-            Self::SurveyPlan(question) => question.check(),
-            Self::DepthMap(question) => question.check(),
-            Self::Comfort(question) => question.check(),
-            Self::Envelope(question) => question.check(),
-        }
-    }
-
-    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Result<Answers> {
-        Ok(match self {
-            Self::Shadow(question) => question.answer(scene, places, context, control)?.map(QuestionResults::Shadow),
-            Self::SunHours(question) => {
-                question.answer(scene, places, context, control)?.map(QuestionResults::OnTargets)
-            }
-            Self::SkyView(question) => {
-                question.answer(scene, places, context, control)?.map(QuestionResults::OnTargets)
-            }
-            Self::Heat(question) => question.answer(scene, places, context, control)?.map(QuestionResults::OnTargets),
-            Self::Irradiance(question) => {
-                question.answer(scene, places, context, control)?.map(QuestionResults::Irradiance)
-            }
-            Self::SunPosition(question) => {
-                question.answer(scene, places, context, control)?.map(QuestionResults::SunPosition)
-            }
-            Self::LineOfSight(question) => {
-                question.answer(scene, places, context, control)?.map(QuestionResults::LineOfSight)
-            }
-            Self::Horizon(question) => question.answer(scene, places, context, control)?.map(QuestionResults::Horizon),
-            Self::Isovist(question) => question.answer(scene, places, context, control)?.map(QuestionResults::Isovist),
-            Self::Viewshed(question) => question
-                .answer(scene, places, context, control)?
-                .map(|found| QuestionResults::Viewshed(Box::new(found))),
-            Self::Landmark(question) => {
-                question.answer(scene, places, context, control)?.map(QuestionResults::Landmark)
-            }
-            Self::WindowViews(question) => {
-                question.answer(scene, places, context, control)?.map(QuestionResults::WindowViews)
-            }
-            Self::ProtectedView(question) => {
-                question.answer(scene, places, context, control)?.map(QuestionResults::ProtectedView)
-            }
-            Self::Cameras(question) => question.answer(scene, places, context, control)?.map(QuestionResults::Cameras),
-            Self::SurveyPlan(question) => {
-                question.answer(scene, places, context, control)?.map(QuestionResults::SurveyPlan)
-            }
-            Self::DepthMap(question) => {
-                question.answer(scene, places, context, control)?.map(QuestionResults::DepthMap)
-            }
-            Self::Comfort(question) => {
-                question.answer(scene, places, context, control)?.map(|found| QuestionResults::Comfort(Box::new(found)))
-            }
-            Self::Envelope(question) => {
-                question.answer(scene, places, context, control)?.map(QuestionResults::Envelope)
-            }
-        })
-    }
-}
-
 /// Describes the statistics of values, such as "mean 5.3 hours (0 to 11.2)"; values that are not finite do not count.
 fn spread(values: &[f32], digits: i32, unit: &str) -> String {
     let known = || values.iter().filter(|value| value.is_finite()).map(|&value| f64::from(value));
@@ -482,30 +381,6 @@ fn spread(values: &[f32], digits: i32, unit: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use belvedere_core::model::{ModelParts, SceneModel};
-    use belvedere_data::{Bounds, Frame, PointCloud};
-    use std::sync::Arc;
-
-    /// A scene of 10 m without balls, which says nothing of where it lies.
-    fn scene() -> Scene {
-        let bounds = Bounds { low: [0.0; 3], high: [10.0; 3] };
-        let parts = ModelParts { frame: Frame::default(), bounds, ..ModelParts::default() };
-        Scene::new(SceneModel::from_parts(parts).unwrap(), Arc::new(PointCloud::default()))
-    }
-
-    #[test]
-    fn a_question_that_is_read_from_text_has_the_answer_of_its_type() {
-        let text = r#"{"sun-position": {"times": ["2026-06-21T11:44Z"], "place": {"location": [52.0, 4.4]}}}"#;
-        let question: Question = serde_json::from_str(text).unwrap();
-        let Question::SunPosition(own) = &question else { panic!("{question:?}") };
-        let (scene, control) = (scene(), Control::none());
-        let answers = ask(&scene, &question, &Places::Scene, &control).unwrap();
-        let of_type = ask(&scene, own, &Places::Scene, &control).unwrap();
-        let QuestionResults::SunPosition(found) = &answers.found else { panic!("another question was answered") };
-        assert_eq!((found, &answers.headline), (&of_type.found, &of_type.headline));
-        // on the longest day the sun at noon is 90 - latitude + 23.44 degrees high
-        assert!((found[0].elevation_deg - (90.0 - 52.0 + 23.44)).abs() < 0.05, "{found:?}");
-    }
 
     #[test]
     fn questions_come_back_from_text_as_they_were() {
@@ -529,13 +404,6 @@ mod tests {
             let text = serde_json::to_string(&question).unwrap();
             assert_eq!(serde_json::from_str::<Question>(&text).unwrap(), question, "{text}");
         }
-    }
-
-    #[test]
-    fn what_cannot_be_is_refused_through_the_enum_too() {
-        let cannot =
-            Question::Viewshed(ViewshedQuestion { observer_height: Some(-1.0), ..ViewshedQuestion::default() });
-        assert!(ask(&scene(), &cannot, &Places::Scene, &Control::none()).is_err() && cannot.check().is_err());
     }
 
     #[test]

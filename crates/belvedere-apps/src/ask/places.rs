@@ -65,6 +65,8 @@ pub struct GridCells {
     pub height: Option<f64>,
     /// Source of ground points.
     pub ground: GroundPoints,
+    /// South-west and north-east corner of the grid on the map, local metres; `None` for those of the scene.
+    pub bounds: Option<([f64; 2], [f64; 2])>,
     /// Rings of an area on the map, local metres: cells whose middle lies beside it are no targets. Empty for all
     /// cells.
     pub within: Vec<Vec<[f64; 2]>>,
@@ -202,12 +204,12 @@ pub(super) fn cells_of(
 }
 
 impl GridCells {
-    /// The grid of these cells over all of a scene.
+    /// The grid of these cells, over all of a scene unless they have bounds.
     ///
     /// # Errors
     /// Those of [`MapGrid::covering`].
     pub fn grid(&self, scene: &Scene) -> Result<MapGrid> {
-        self.grid_over(scene, scene.model().bounds().on_map())
+        self.grid_over(scene, self.bounds.unwrap_or_else(|| scene.model().bounds().on_map()))
     }
 
     /// The grid of these cells over the box from `low` to `high`, local metres.

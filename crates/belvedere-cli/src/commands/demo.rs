@@ -21,7 +21,7 @@ use belvedere::medial::{CarvedParams, MedialBalls};
 use belvedere::model::{BallParams, ModelParams, OrientBy};
 use belvedere::query::{Answer, MedialScene, UnprovenAs, Viewer, Visibility};
 use belvedere::raster::Raster;
-use belvedere::vector::to_f32;
+use belvedere::vector::{cross, length, sub, to_f32, unit};
 use belvedere::view::{View, default_pixel_size, to_sun};
 use belvedere_scenes::{
     AirborneParams, PlanPlacement, Scan, TownParams, TriangleScene, Truth, extruded, scan_airborne, town,
@@ -35,6 +35,8 @@ use std::path::Path;
 const SUN_DEG: [f64; 2] = [235.0, 30.0];
 /// Length, width and height of the planned building.
 const PLANNED_M: [f64; 3] = [14.0, 10.0, 25.0];
+/// Number of windows.
+const WINDOWS: usize = 4;
 /// Cells of the raster of the terrain around the town, metres, and their number a side.
 const TERRAIN_CELL_M: f64 = 25.0;
 const TERRAIN_CELLS: usize = 480;
@@ -150,7 +152,12 @@ fn write_town(folder: &Path, scene: &TriangleScene, scan: &Scan) -> Result<()> {
     write_cloud(&folder.join("town.laz"), &cloud, &[])?;
     write_terrain(&folder.join("terrain.tif"), scene, &cloud.frame)?;
     let planned = planned_building(scene).to_obj();
-    let texts = [("trajectory.csv", scan.sensor_path.to_csv()), ("town.obj", scene.to_obj()), ("planned.obj", planned)];
+    let texts = [
+        ("trajectory.csv", scan.sensor_path.to_csv()),
+        ("town.obj", scene.to_obj()),
+        ("planned.obj", planned),
+        ("windows.csv", windows_that_face(scene)),
+    ];
     for (name, text) in texts {
         write_text(&folder.join(name), &text)?;
     }
@@ -215,6 +222,37 @@ fn planned_building(town: &TriangleScene) -> TriangleScene {
     let ground = town.mean_ground_height();
     planned.add_object("planned", &[extruded(&footprint, ground - 1.0, ground + PLANNED_M[2])]);
     planned
+}
+
+/// A table of windows, one in each of the buildings nearest to the planned one, in a wall that faces it and gets sun.
+fn windows_that_face(town: &TriangleScene) -> String {
+    let mut found: Vec<(f64, u32, String)> = Vec::new();
+    let Some((low, high)) = town.bounds() else { return String::new() };
+    for (corners, &object) in town.triangles.iter().zip(&town.objects) {
+        let [a, b, c] = corners.map(|corner| town.vertices[corner as usize]);
+        let turned = cross(sub(b, a), sub(c, a));
+        let (twice_area, Some(normal)) = (length(turned), unit(turned)) else { continue };
+        let middle: [f64; 3] = std::array::from_fn(|axis| (a[axis] + b[axis] + c[axis]) / 3.0);
+        let [east, north] = [0, 1].map(|axis| f64::midpoint(low[axis], high[axis]) - middle[axis]);
+        let distance = east.hypot(north);
+        let is_wall = twice_area > 16.0 && normal[2].abs() < 0.05 && normal[1] < 0.2;
+        if is_wall && normal[0] * east + normal[1] * north > 0.3 * distance {
+            let azimuth = normal[0].atan2(normal[1]).to_degrees().rem_euclid(360.0);
+            let [x, y, z] = std::array::from_fn(|axis| middle[axis] + 0.05 * normal[axis]);
+            let name = town.object_names.get(object as usize).map_or("", String::as_str);
+            found.push((distance, object, format!("{x:.2},{y:.2},{z:.2},{azimuth:.1},{name}\n")));
+        }
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut objects = Vec::new();
+    found.retain(|(_, object, _)| {
+        !objects.contains(object) && {
+            objects.push(*object);
+            true
+        }
+    });
+    let rows = found.into_iter().take(WINDOWS).map(|(.., row)| row);
+    std::iter::once("x,y,z,azimuth,name\n".to_owned()).chain(rows).collect()
 }
 
 /// Counts the answers that the exact mesh contradicts, for each kind of error.

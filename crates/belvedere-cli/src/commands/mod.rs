@@ -31,10 +31,12 @@ mod north;
 mod outputs;
 mod protected_view;
 mod query;
+mod report;
 mod shadow;
 mod simulate;
 mod sky_view;
 mod sun;
+mod sun_calendar;
 mod sun_hours;
 mod sun_position;
 mod surfaces;
@@ -98,6 +100,8 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         Command::Heat(arguments) => heat::run(arguments, global),
         Command::Irradiance(arguments) => irradiance::run(arguments, global),
         Command::SunHours(arguments) => sun_hours::run(arguments, global),
+        Command::SunCalendar(arguments) => sun_calendar::run(arguments, global),
+        Command::Report(arguments) => report::run(arguments, global),
         Command::SunPosition(arguments) => sun_position::run(arguments, global),
         Command::Envelope(arguments) => envelope::run(arguments, global),
         Command::Comfort(arguments) => comfort::run(arguments, global),

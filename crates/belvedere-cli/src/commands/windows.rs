@@ -15,6 +15,7 @@ use std::path::Path;
 pub(crate) type WindowColumn = (&'static str, Vec<f64>, usize);
 
 /// Choice of the faces of a mesh that are windows, and their division.
+#[derive(Default)]
 pub(crate) struct FaceChoice<'a> {
     /// Longest side of a piece, metres.
     pub(crate) spacing: Option<f64>,

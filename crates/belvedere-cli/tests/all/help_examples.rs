@@ -4,7 +4,7 @@ use crate::common::{Workplace, house};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-const COMMANDS: [&str; 33] = [
+const COMMANDS: [&str; 35] = [
     "demo",
     "simulate",
     "info",
@@ -26,6 +26,8 @@ const COMMANDS: [&str; 33] = [
     "horizon",
     "envelope",
     "comfort",
+    "report",
+    "sun-calendar",
     "window-views",
     "irradiance",
     "shadow",

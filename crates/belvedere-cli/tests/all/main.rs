@@ -45,6 +45,7 @@ mod secrets;
 mod shadow;
 mod simulate;
 mod sky_view;
+mod sun_calendars;
 mod sun_hours;
 mod surface_patches;
 mod surfaces;

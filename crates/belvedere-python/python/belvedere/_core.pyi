@@ -287,6 +287,23 @@ class Scene:
     def comfort(
         self, walks: dict[str, Any], days: dict[str, Any], place: dict[str, Any], progress: _Progress
     ) -> tuple[dict[str, npt.NDArray[Any]], list[dict[str, Any]]]: ...
+    def sun_calendar(
+        self,
+        windows: list[list[float]],
+        targets: dict[str, Any],
+        days: dict[str, Any],
+        rule: str | None,
+        place: dict[str, Any],
+        progress: _Progress,
+    ) -> tuple[dict[str, Any], list[dict[str, Any]]]: ...
+    def sunlight_report(
+        self,
+        path: str,
+        keywords: dict[str, Any],
+        days: dict[str, Any],
+        place: dict[str, Any],
+        progress: _Progress,
+    ) -> tuple[list[str], list[dict[str, Any]]]: ...
     def envelope(
         self, build: dict[str, Any], days: dict[str, Any], place: dict[str, Any], progress: _Progress
     ) -> tuple[tuple[str, str, npt.NDArray[np.float32]], _Grid, list[dict[str, Any]]]: ...

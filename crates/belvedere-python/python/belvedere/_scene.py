@@ -15,6 +15,7 @@ from . import _core
 from ._cameras import Cameras
 from ._cloud import Cloud, read
 from ._core import Scene as NativeScene
+from ._documents import Documents
 from ._energy import Energy
 from ._errors import BelvedereWarning, wrong
 from ._heat import Heat
@@ -28,7 +29,7 @@ from ._sights import Sights
 from ._sunlight import Sunlight
 
 
-class Scene(Sights, Outlook, Sunlight, Energy, Heat, Planning, Cameras):
+class Scene(Sights, Outlook, Sunlight, Energy, Heat, Planning, Documents, Cameras):
     """A scene that answers what can be seen: medial balls, cut with the space that laser pulses prove empty.
 
     Parameters

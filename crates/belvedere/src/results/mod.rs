@@ -6,6 +6,7 @@
 //! | points | | the points with their attributes, all measures as columns; `.csv` of a table: its rows |
 //! | faces of a mesh | | `.csv`: a row for each object and face; `.ply`: the mesh coloured by the first measure |
 
+mod calendar;
 #[cfg(feature = "figures")]
 mod difference;
 mod faces;
@@ -14,6 +15,7 @@ mod map;
 mod question;
 mod raster;
 
+pub use calendar::{clock_time, write_calendar};
 #[cfg(feature = "figures")]
 pub use difference::{difference_map, relief_of};
 pub use faces::FaceRows;

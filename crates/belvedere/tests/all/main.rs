@@ -70,6 +70,7 @@ mod sky;
 mod slender;
 mod solar_envelope;
 mod sun;
+mod sun_calendars;
 mod sun_hours;
 mod surface_patches;
 mod survey_kinds;

@@ -37,7 +37,7 @@ pub(super) fn check(arguments: &CityPlan) -> Result<()> {
     if arguments.irradiance && !has_radiation {
         return usage("--irradiance needs --weather FILE or --clear-sky MODEL");
     }
-    of_sun_and_sky(arguments)?.iter().try_for_each(ask::Ask::check)?;
+    of_sun_and_sky(arguments)?.iter().try_for_each(ask::Question::check)?;
     ask::check_interval(arguments.interval, &arguments.trees.choice()?)?;
     MapPosition::refuse_twice("--observer", &arguments.observers)?;
     for mesh in &arguments.add {

@@ -1,0 +1,96 @@
+//! `belvedere sun-calendar` and `belvedere report`.
+
+use crate::common::{EAST, NORTH, Workplace, house};
+
+const HOUSE: &str = "house.laz --scene-config ../tau.json --orient given --location 52,5 --zone +01:00";
+
+fn corners(places: &[[f64; 2]]) -> String {
+    places.iter().map(|[x, y]| format!("{},{}", EAST + x, NORTH + y)).collect::<Vec<_>>().join(" ")
+}
+
+/// A house of 10 by 8 m, a window north of it and one high above it, and a planned wall south of both.
+fn place() -> Workplace {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    let row =
+        |x: f64, y: f64, z: f64, azimuth: u16, name: &str| format!("{},{},{z},{azimuth},{name}\n", EAST + x, NORTH + y);
+    let rows = [row(0.0, 9.0, 1.5, 180, "garden room"), row(0.0, 9.0, 50.0, 180, "")].concat();
+    place.write("windows.csv", format!("x,y,z,azimuth,name\n{rows}"));
+    let corner = |x: f64, z: f64| format!("v {} {} {z}\n", EAST + x, NORTH + 6.0);
+    let wall = [corner(-30.0, 0.0), corner(30.0, 0.0), corner(30.0, 12.0), corner(-30.0, 12.0)].concat();
+    place.write("wall.obj", format!("o wall\n{wall}f 1 2 3\nf 1 3 4\n"));
+    place
+}
+
+#[test]
+fn calendars_list_sun_and_shade_with_their_cause() {
+    let place = place();
+    let command = format!("sun-calendar {HOUSE} --windows windows.csv --add wall.obj --date 2026-12-21");
+    let run = place.run(&format!("{command} -o c.csv -o c.ics"));
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert!(run.stdout.contains("Sun calendar of 2 windows, 2026-12-21 (+01:00)"), "{}", run.stdout);
+    assert!(run.stdout.contains("in the shade of added meshes"), "{}", run.stdout);
+    let rows = place.text("c.csv");
+    let of_window = |number: &str| -> Vec<Vec<String>> {
+        let cells = rows.lines().skip(1).map(|row| row.split(',').map(str::to_owned).collect::<Vec<_>>());
+        cells.filter(|cells| cells[0] == number).collect()
+    };
+    // a wall of 12 m three metres before a window shades it all day in December, and nothing stands before 50 m
+    let (low, high) = (of_window("1"), of_window("2"));
+    assert!(
+        low.iter().all(|cells| cells[1] == "garden room" && cells[6] == "plan" && cells[7] == "wall.obj"),
+        "{rows}"
+    );
+    assert_eq!(high.len(), 1, "{rows}");
+    assert_eq!([high[0][1].as_str(), high[0][6].as_str()], ["window 2", "sun"]);
+    // the shortest day of 52 degrees: 7.7 h
+    let hours: f64 = high[0][5].parse().unwrap();
+    assert!((7.4..8.0).contains(&hours), "{hours}");
+    let appointments = place.text("c.ics");
+    assert!(appointments.contains("SUMMARY:Shade of wall.obj: garden room\r\n"), "{appointments}");
+    assert!(appointments.contains("SUMMARY:Sun: window 2\r\n"));
+    let summary = place.summary_with(
+        &format!("sun-calendar {HOUSE} --date 2026-06-21 -o at.csv"),
+        &["--at", &format!("{EAST},{}", NORTH + 15.0)],
+    );
+    assert!(summary["measures"]["sun_hours"]["mean"].as_f64().unwrap() > 8.0, "{summary}");
+}
+
+#[test]
+fn reports_compare_a_plan_with_what_is() {
+    let place = place();
+    let garden = corners(&[[-6.0, 8.0], [6.0, 8.0], [6.0, 14.0], [-6.0, 14.0]]);
+    let command = format!("report {HOUSE} --windows windows.csv --add wall.obj --rule 2@03-21 -o r.html");
+    let run = place.run_with(&command, &["--area", &garden, "--title", "A <wall>"]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert!(run.stdout.contains("1 of 2 windows meet the rule with the plan, 2 without it"), "{}", run.stdout);
+    // only low suns in the east and in the west reach it beside the wall
+    assert!(run.stdout.contains("garden room: 56 min of possible sun on 21 March 2026"), "{}", run.stdout);
+    let page = place.text("r.html");
+    assert!(page.contains("<h1>A &lt;wall&gt;</h1>") && page.contains("Sunlight before and after a plan"));
+    assert!(page.contains("belvedere report house.laz --windows windows.csv"), "the command is in the report");
+    for file in ["house.laz", "windows.csv", "wall.obj"] {
+        assert!(page.contains(&format!("{file} (")), "{file}");
+    }
+    assert_eq!(page.matches("SHA-256 ").count(), 3);
+    // without a plan there is neither a change nor its words
+    let command = format!("report {HOUSE} --windows windows.csv --date 2026-06-21 --language de -o now.html");
+    assert_eq!(place.run(&command).status, 0);
+    let page = place.text("now.html");
+    assert!(page.contains("<h1>Besonnungsbericht</h1>") && !page.contains("nachher") && page.contains("21. Juni 2026"));
+}
+
+#[test]
+fn reports_and_calendars_refuse_what_they_cannot_do() {
+    let place = place();
+    place.refusal(2, &format!("report {HOUSE} -o r.html"), &["--windows"]);
+    place.refusal(2, &format!("report {HOUSE} --windows windows.csv -o r.pdf"), &["extension", "html"]);
+    place.refusal(2, &format!("report {HOUSE} --windows windows.csv --rule 99@x -o r.html"), &["99@x", "nl-light"]);
+    place.refusal(2, &format!("report {HOUSE} --windows wall.obj -o r.html"), &["--windows", "table"]);
+    place.refusal(2, &format!("sun-calendar {HOUSE} --windows windows.csv -o c.csv"), &["--date"]);
+    place.refusal(2, &format!("sun-calendar {HOUSE} --date 2026-03-21 -o c.csv"), &["--windows"]);
+    place.refusal(2, &format!("sun-calendar {HOUSE} --windows windows.csv --date 2026-03-21 -o c.txt"), &["extension"]);
+    let line = corners(&[[-6.0, 8.0], [6.0, 8.0]]);
+    place.refusal_with(1, &format!("report {HOUSE} -o r.html"), &["--area", &line], &["area"]);
+    assert!(!place.path("r.html").exists() && !place.path("c.csv").exists());
+}

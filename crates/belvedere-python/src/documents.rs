@@ -1,0 +1,141 @@
+//! Sun calendars and sunlight reports.
+
+use crate::arrays::to_1d;
+use crate::errors::{exception, wrong};
+use crate::remarks::remarks_of;
+use crate::scene::{PyScene, local_ring};
+use crate::sky::DaysKeywords;
+use crate::sun::SiteKeywords;
+use crate::targets::RequestedTargets;
+use crate::windows::{WindowRow, given};
+use crate::work::run;
+use belvedere::apps::ask::{self, GivenWindows};
+use belvedere::apps::sun_calendar::SunObstacle;
+use belvedere::io::atomic;
+use belvedere::sunlight_report::{Language, ReportArea, ReportParams, sunlight_report};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Content of a report.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct ReportKeywords {
+    windows: Vec<WindowRow>,
+    names: Vec<String>,
+    /// Names of areas, and their corners in the coordinates of the file.
+    areas: Vec<(String, Vec<[f64; 2]>)>,
+    planned: Option<Py<PyScene>>,
+    rule: Option<String>,
+    area_rule: Option<String>,
+    title: String,
+    language: String,
+    today: String,
+}
+
+impl ReportKeywords {
+    fn params(&self, scene: &ask::Scene, days: &DaysKeywords, place: &SiteKeywords) -> PyResult<ReportParams> {
+        let language = Language::ALL.iter().find(|(code, _)| *code == self.language);
+        let Some(&(_, language)) = language else {
+            return Err(wrong("language", &format!("'{}'", self.language), "use 'en', 'nl', 'de' or 'fr'"));
+        };
+        let GivenWindows::Each(windows) = given(&self.windows, scene.frame()) else {
+            return Ok(ReportParams::default());
+        };
+        let area = |(name, ring): &(String, Vec<[f64; 2]>)| ReportArea {
+            name: name.clone(),
+            rings: vec![local_ring(scene, ring)],
+        };
+        Ok(ReportParams {
+            title: self.title.clone(),
+            language,
+            windows,
+            names: self.names.clone(),
+            areas: self.areas.iter().map(area).collect(),
+            rule: self.rule.clone(),
+            area_rule: self.area_rule.clone(),
+            days: days.chosen(),
+            place: place.chosen()?,
+            date: self.today.clone(),
+            ..ReportParams::default()
+        })
+    }
+}
+
+/// Columns by name, and remarks.
+type CalendarReply<'py> = (Bound<'py, PyDict>, Vec<Bound<'py, PyDict>>);
+
+#[pymethods]
+impl PyScene {
+    /// Stretches of sun and shade, one in each row.
+    #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
+    fn sun_calendar<'py>(
+        &self,
+        py: Python<'py>,
+        windows: Vec<WindowRow>,
+        targets: RequestedTargets<'py>,
+        days: DaysKeywords,
+        rule: Option<String>,
+        place: SiteKeywords,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<CalendarReply<'py>> {
+        let scene = Arc::clone(&self.0);
+        let places = match &windows[..] {
+            [] => targets.chosen(py, &scene)?.places,
+            _ => ask::Places::Scene,
+        };
+        let question = ask::SunCalendarQuestion {
+            windows: given(&windows, scene.frame()),
+            days: days.chosen(),
+            rule,
+            place: place.chosen()?,
+            ..ask::SunCalendarQuestion::default()
+        };
+        let answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
+        let found = &answers.found;
+        let rows = || {
+            found.days.iter().zip(0_u32..).flat_map(|(days, place)| {
+                let dated = found.schedule.days.iter().zip(days);
+                dated.flat_map(move |(of_day, day)| day.0.iter().map(move |stretch| (place, of_day.date, stretch)))
+            })
+        };
+        let object = |obstacle: SunObstacle| match obstacle {
+            SunObstacle::Mesh(_) => found.name_of(obstacle),
+            _ => "",
+        };
+        let dict = PyDict::new(py);
+        dict.set_item("place", to_1d(py, rows().map(|(place, ..)| place).collect()))?;
+        dict.set_item("date", rows().map(|(_, date, _)| date.to_string()).collect::<Vec<_>>())?;
+        dict.set_item("start", to_1d(py, rows().map(|(.., stretch)| f64::from(stretch.start)).collect()))?;
+        dict.set_item("end", to_1d(py, rows().map(|(.., stretch)| f64::from(stretch.end)).collect()))?;
+        dict.set_item("hours", to_1d(py, rows().map(|(.., stretch)| stretch.hours()).collect()))?;
+        dict.set_item("state", rows().map(|(.., stretch)| stretch.obstacle.name()).collect::<Vec<_>>())?;
+        dict.set_item("object", rows().map(|(.., stretch)| object(stretch.obstacle)).collect::<Vec<_>>())?;
+        dict.set_item("unproven_hours", to_1d(py, rows().map(|(.., stretch)| stretch.unproven).collect()))?;
+        Ok((dict, remarks_of(py, &answers.remarks)?))
+    }
+
+    /// Writes a report; returns its sentences and remarks.
+    fn sunlight_report<'py>(
+        &self,
+        py: Python<'py>,
+        path: PathBuf,
+        keywords: ReportKeywords,
+        days: DaysKeywords,
+        place: SiteKeywords,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<(Vec<String>, Vec<Bound<'py, PyDict>>)> {
+        let scene = Arc::clone(&self.0);
+        let planned = keywords.planned.as_ref().map(|planned| Arc::clone(&planned.get().0));
+        let params = keywords.params(&scene, &days, &place)?;
+        let report = run(py, progress, move |control| sunlight_report(&scene, planned.as_deref(), &params, control))?;
+        write(&path, &report.to_html().map_err(exception)?).map_err(exception)?;
+        Ok((report.headlines(), remarks_of(py, &report.remarks)?))
+    }
+}
+
+fn write(path: &Path, page: &str) -> belvedere::Result<()> {
+    atomic::write(path, |file| file.write_all(page.as_bytes()).map_err(belvedere::Error::io(path)))
+}

@@ -1,0 +1,171 @@
+//! Sun calendars as tables and as appointments.
+
+use crate::apps::ask::SunCalendarResults;
+use crate::apps::sun::Date;
+use crate::apps::sun_calendar::{SunObstacle, SunStretch};
+use crate::io::{TableCells, atomic, write_table};
+use crate::{Error, Result};
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::Path;
+
+/// Minimum duration of an appointment, hours.
+const MIN_APPOINTMENT: f32 = 5.0 / 60.0;
+/// Maximum length of a line of iCalendar, bytes (RFC 5545, section 3.1).
+const MAX_LINE: usize = 75;
+
+/// Hours on the clock as HH:MM, rounded to the minute.
+#[must_use]
+pub fn clock_time(hours: f64) -> String {
+    #[expect(clippy::cast_possible_truncation, reason = "a few days of minutes")]
+    let minutes = (hours * 60.0).round() as i64;
+    format!("{:02}:{:02}", minutes.div_euclid(60).rem_euclid(24), minutes.rem_euclid(60))
+}
+
+/// A stretch of a calendar with its place and date.
+struct Row<'a> {
+    place: usize,
+    date: Date,
+    stretch: &'a SunStretch,
+}
+
+fn rows(found: &SunCalendarResults) -> impl Iterator<Item = Row<'_>> {
+    found.days.iter().enumerate().flat_map(|(place, days)| {
+        let dated = found.schedule.days.iter().zip(days);
+        dated.flat_map(move |(of_day, day)| day.0.iter().map(move |stretch| Row { place, date: of_day.date, stretch }))
+    })
+}
+
+/// Writes sun calendars in the format of the extension: a table with a row for each stretch (.csv), or appointments of
+/// sun and shade (.ics, iCalendar, RFC 5545). `names` are those of the places; the others have their number.
+///
+/// # Errors
+/// [`Error::Io`], and those of instants for dates that clocks do not have.
+pub fn write_calendar(path: &Path, found: &SunCalendarResults, names: &[String]) -> Result<()> {
+    match path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ics")) {
+        true => write_appointments(path, found, names),
+        false => write_rows(path, found, names),
+    }
+}
+
+fn name_of(place: usize, found: &SunCalendarResults, names: &[String]) -> String {
+    let kind = if found.windows.is_empty() { "place" } else { "window" };
+    let own = names.get(place).filter(|name| !name.is_empty()).cloned();
+    own.unwrap_or_else(|| format!("{kind} {}", place + 1))
+}
+
+fn write_rows(path: &Path, found: &SunCalendarResults, names: &[String]) -> Result<()> {
+    let rows: Vec<Row<'_>> = rows(found).collect();
+    let numbers: Vec<Option<u64>> = rows.iter().map(|row| u64::try_from(row.place + 1).ok()).collect();
+    let words = |of: &dyn Fn(&Row<'_>) -> String| -> Vec<String> { rows.iter().map(of).collect() };
+    let names = words(&|row| name_of(row.place, found, names));
+    let dates = words(&|row| row.date.to_string());
+    let starts = words(&|row| clock_time(row.stretch.start.into()));
+    let ends = words(&|row| clock_time(row.stretch.end.into()));
+    let objects = words(&|row| match row.stretch.obstacle {
+        SunObstacle::Mesh(_) => found.name_of(row.stretch.obstacle).to_owned(),
+        _ => String::new(),
+    });
+    let [names, dates, starts, ends, objects] = [&names[..], &dates, &starts, &ends, &objects].map(refer);
+    let states: Vec<&str> = rows.iter().map(|row| row.stretch.obstacle.name()).collect();
+    let hours: Vec<f64> = rows.iter().map(|row| row.stretch.hours().into()).collect();
+    let unproven: Vec<f64> = rows.iter().map(|row| row.stretch.unproven.into()).collect();
+    let place = if found.windows.is_empty() { "place" } else { "window" };
+    write_table(
+        path,
+        &[
+            (place, TableCells::Whole(&numbers)),
+            ("name", TableCells::Words(&names)),
+            ("date", TableCells::Words(&dates)),
+            ("from", TableCells::Words(&starts)),
+            ("to", TableCells::Words(&ends)),
+            ("hours", TableCells::Real(&hours, 3)),
+            ("state", TableCells::Words(&states)),
+            ("object", TableCells::Words(&objects)),
+            ("unproven_hours", TableCells::Real(&unproven, 3)),
+        ],
+    )
+}
+
+fn refer(texts: &[String]) -> Vec<&str> {
+    texts.iter().map(String::as_str).collect()
+}
+
+fn write_appointments(path: &Path, found: &SunCalendarResults, names: &[String]) -> Result<()> {
+    let mut text = String::new();
+    let mut line = |content: &str| fold(&mut text, content);
+    line("BEGIN:VCALENDAR");
+    line("VERSION:2.0");
+    line("PRODID:-//Belvedere//sun calendar//EN");
+    let kept = rows(found)
+        .filter(|row| row.stretch.hours() >= MIN_APPOINTMENT && row.stretch.obstacle != SunObstacle::OwnWall);
+    for (number, row) in kept.enumerate() {
+        let instant = |hours: f32| found.zone.instant_of(row.date, hours.into()).map(utc);
+        let (start, end) = (instant(row.stretch.start)?, instant(row.stretch.end)?);
+        let name = name_of(row.place, found, names);
+        let what = match row.stretch.obstacle {
+            SunObstacle::None => format!("Sun: {name}"),
+            obstacle => format!("Shade of {}: {name}", found.name_of(obstacle)),
+        };
+        line("BEGIN:VEVENT");
+        line(&format!("UID:{start}-{}-{number}@belvedere", row.place + 1));
+        // the same file for the same question
+        line(&format!("DTSTAMP:{start}"));
+        line(&format!("DTSTART:{start}"));
+        line(&format!("DTEND:{end}"));
+        line(&format!("SUMMARY:{}", escaped(&what)));
+        line("TRANSP:TRANSPARENT");
+        line("END:VEVENT");
+    }
+    line("END:VCALENDAR");
+    atomic::write(path, |output| output.write_all(text.as_bytes()).map_err(Error::io(path)))
+}
+
+/// An instant as iCalendar has it: 20260321T083000Z, to the minute.
+fn utc(unix_s: f64) -> String {
+    let to_minute = (unix_s / 60.0).round() * 60.0;
+    let text: String = crate::apps::sun::Zone::utc().display(to_minute).chars().filter(char::is_ascii_digit).collect();
+    let (date, time) = text.split_at(text.len().min(8));
+    format!("{date}T{:0<6}Z", time.chars().take(6).collect::<String>())
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('\\', "\\\\").replace(';', "\\;").replace(',', "\\,").replace(['\n', '\r'], " ")
+}
+
+/// Adds a line, cut into pieces of [`MAX_LINE`] bytes that go on after a blank.
+fn fold(text: &mut String, content: &str) {
+    let mut length = 0;
+    for character in content.chars() {
+        if length + character.len_utf8() > MAX_LINE {
+            text.push_str("\r\n ");
+            length = 1;
+        }
+        text.push(character);
+        length += character.len_utf8();
+    }
+    let _ = write!(text, "\r\n");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hours_are_minutes_of_the_clock() {
+        assert_eq!(clock_time(9.5), "09:30");
+        assert_eq!(clock_time(7.999), "08:00");
+        assert_eq!(clock_time(24.2), "00:12");
+        assert_eq!(clock_time(-0.25), "23:45");
+        assert_eq!(utc(1_774_081_800.0), "20260321T083000Z");
+    }
+
+    #[test]
+    fn long_lines_are_folded() {
+        let mut text = String::new();
+        fold(&mut text, &"ü".repeat(60));
+        let lines: Vec<&str> = text.split("\r\n").collect();
+        assert!(lines.iter().all(|line| line.len() <= MAX_LINE), "{lines:?}");
+        assert_eq!(text.replace("\r\n ", "").trim_end(), "ü".repeat(60));
+    }
+}

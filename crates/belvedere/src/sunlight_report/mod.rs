@@ -1,0 +1,424 @@
+//! Sunlight reports: what a plan changes for windows and areas, as one HTML file that prints well.
+//!
+//! | step | file |
+//! |---|---|
+//! | questions to the scene as it is and as planned | here |
+//! | verdicts on rules | `verdict.rs` |
+//! | maps of shadow | `maps.rs` |
+//! | strips of days and diagrams of the sky | `charts.rs` |
+//! | the page | `page.rs`, `report.css` |
+//! | its texts in four languages | `words.rs`, `words.csv` |
+
+mod charts;
+mod maps;
+mod page;
+mod sources;
+mod verdict;
+mod words;
+
+pub use sources::ReportSource;
+pub use verdict::{RuleFinding, Verdict};
+pub use words::Language;
+
+use crate::apps::ask::{
+    self, Answers, Days, GivenWindow, GivenWindows, GridCells, Places, Remark, Scene, SunCalendarQuestion,
+    SunCalendarResults, SunHoursQuestion, SunPlace, knows_intervals,
+};
+use crate::apps::sun::{Date, Zone};
+use crate::apps::sun_calendar::{SunObstacle, sun_lines};
+use crate::apps::sun_hours::SunRule;
+use crate::apps::targets::{CellLevel, Measure, Targets};
+use crate::cloud::ADJUSTED_GPS_EPOCH;
+use crate::control::Control;
+use crate::query::UnprovenAs;
+use crate::{Error, GpsTimeKind, Parameter, Result};
+use charts::SkyView;
+use maps::ShadowMap;
+use std::sync::Arc;
+
+/// Days that are shown in detail unless others are given.
+const DAYS: [&str; 3] = ["equinox", "longest-day", "shortest-day"];
+/// Rule of areas unless another is given.
+pub const AREA_RULE: &str = "bre-equinox";
+/// Minutes between two suns in areas, which have many places.
+const AREA_STEP_MIN: f64 = 10.0;
+/// Side of the cells of areas, metres.
+const AREA_CELL: f64 = 0.5;
+
+/// An area that keeps its sun: a garden, a square.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReportArea {
+    /// Its name; empty for its number.
+    pub name: String,
+    /// Its rings on the map, local metres.
+    pub rings: Vec<Vec<[f64; 2]>>,
+}
+
+/// Content of a sunlight report.
+#[derive(Clone, Debug, Default)]
+pub struct ReportParams {
+    /// Title; empty for the usual one.
+    pub title: String,
+    /// Language of the texts.
+    pub language: Language,
+    /// The windows, of which the middle counts.
+    pub windows: Vec<GivenWindow>,
+    /// Name of each window; empty or missing for its number.
+    pub names: Vec<String>,
+    /// The areas.
+    pub areas: Vec<ReportArea>,
+    /// Daylight rule of the windows; `None` for hours without a verdict.
+    pub rule: Option<String>,
+    /// Daylight rule of the areas; `None` for [`AREA_RULE`].
+    pub area_rule: Option<String>,
+    /// Days in detail: the equinox, the longest and the shortest day unless others are given.
+    pub days: Days,
+    /// Location on earth, clock, and the north of azimuths of windows.
+    pub place: SunPlace,
+    /// Files that the report rests on.
+    pub sources: Vec<ReportSource>,
+    /// Command or code that makes the report again.
+    pub command: String,
+    /// Day of the report.
+    pub date: String,
+}
+
+/// Sun of a window in one state of the scene.
+struct WindowState {
+    /// Interval of the hours of each day in detail that holds the truth in nine of ten cases; empty if not known.
+    intervals: Vec<[f64; 2]>,
+    rule: Option<RuleFinding>,
+}
+
+/// Sun of an area in one state of the scene.
+struct AreaState {
+    /// Share of the area that meets the rule, 0 to 1.
+    share: f64,
+    /// Mean hours of sun a day on the days of the rule.
+    hours: f64,
+    /// Number of cells on the ground.
+    cells: usize,
+}
+
+/// Findings on the scene as it is, or as it is planned.
+struct State {
+    calendar: SunCalendarResults,
+    windows: Vec<WindowState>,
+    areas: Vec<AreaState>,
+    maps: Vec<ShadowMap>,
+    skies: Vec<SkyView>,
+}
+
+/// A sunlight report.
+pub struct SunlightReport {
+    params: ReportParams,
+    rule: Option<SunRule>,
+    area_rule: SunRule,
+    before: State,
+    after: Option<State>,
+    /// Number of points of the cloud, and points per m² of its bounds.
+    points: [f64; 2],
+    /// First and last day of the survey in UTC, where its pulses have such times.
+    flown: Option<[Date; 2]>,
+    reference_system: String,
+    /// Warnings and notes on the scene and its windows.
+    pub remarks: Vec<Remark>,
+}
+
+impl ReportParams {
+    /// Checks all that does not depend on a scene.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for rules, days and places that cannot be, and without windows and areas.
+    pub fn check(&self) -> Result<()> {
+        self.check_rules()?;
+        if self.windows.is_empty() && self.areas.is_empty() {
+            let (value, expected) = ("missing".to_owned(), "windows or areas that keep their sun");
+            return Err(Error::InvalidParameter { parameter: Parameter::Targets, value, expected });
+        }
+        GivenWindows::Each(self.windows.clone()).check()
+    }
+
+    /// Checks rules, days and place, which do not need windows or areas.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`].
+    pub fn check_rules(&self) -> Result<()> {
+        self.rule.as_deref().map(SunRule::parse).transpose()?;
+        SunRule::parse(self.area_rule())?;
+        self.detailed_days().check(&self.place)
+    }
+
+    fn area_rule(&self) -> &str {
+        self.area_rule.as_deref().unwrap_or(AREA_RULE)
+    }
+
+    fn detailed_days(&self) -> Days {
+        let mut days = self.days.clone();
+        if days.is_empty() {
+            days.dates = DAYS.map(str::to_owned).to_vec();
+        }
+        days
+    }
+
+    fn calendar_question(&self, rule: Option<String>) -> SunCalendarQuestion {
+        SunCalendarQuestion {
+            windows: GivenWindows::Each(self.windows.clone()),
+            days: self.detailed_days(),
+            rule,
+            place: self.place.clone(),
+            without_trees: true,
+            ..SunCalendarQuestion::default()
+        }
+    }
+
+    /// Name of a window.
+    fn window_name(&self, number: usize, words: &words::Words) -> String {
+        let own = self.names.get(number).filter(|name| !name.trim().is_empty()).cloned();
+        own.unwrap_or_else(|| format!("{} {}", words.get("window"), number + 1))
+    }
+
+    /// Name of an area.
+    fn area_name(&self, number: usize, words: &words::Words) -> String {
+        let own = self.areas.get(number).map(|area| area.name.clone()).filter(|name| !name.trim().is_empty());
+        own.unwrap_or_else(|| format!("{} {}", words.get("area"), number + 1))
+    }
+}
+
+/// Computes a report on the scene as it is, and as it is `planned` if a plan is given. The grids and the cloud of both
+/// scenes must be the same.
+///
+/// # Errors
+/// Those of [`ReportParams::check`], and of the questions that it asks: sun calendars, sun hours and shadow.
+pub fn sunlight_report(
+    present: &Scene,
+    planned: Option<&Scene>,
+    params: &ReportParams,
+    control: &Control<'_>,
+) -> Result<SunlightReport> {
+    params.check()?;
+    let mut remarks = Vec::new();
+    let box_of_maps = maps::extent(present, planned, params);
+    let before = State::of(present, params, box_of_maps, &mut remarks, control)?;
+    if let Some(number) = before.areas.iter().position(|area| area.cells == 0) {
+        let name = params.area_name(number, &words::Words::of(Language::English));
+        return Err(Error::NoPoints { what: format!("{name}: no ground of the scene is in this area") });
+    }
+    let mut after = planned.map(|scene| State::of(scene, params, box_of_maps, &mut remarks, control)).transpose()?;
+    for (area, was) in after.iter_mut().flat_map(|state| &mut state.areas).zip(&before.areas) {
+        area.cover(was.cells);
+    }
+    let (low, high) = present.model().bounds().on_map();
+    let count = present.cloud().len() as f64;
+    Ok(SunlightReport {
+        rule: params.rule.as_deref().map(SunRule::parse).transpose()?,
+        area_rule: SunRule::parse(params.area_rule())?,
+        before,
+        after,
+        points: [count, count / ((high[0] - low[0]) * (high[1] - low[1]))],
+        flown: flown(present),
+        reference_system: present.frame().crs.describe(),
+        remarks,
+        params: params.clone(),
+    })
+}
+
+/// First and last day of the pulses of a scene.
+fn flown(scene: &Scene) -> Option<[Date; 2]> {
+    let attributes = &scene.cloud().attributes;
+    let times = attributes.gps_time.as_ref().filter(|_| attributes.gps_time_kind == GpsTimeKind::AdjustedStandard)?;
+    let known = || times.iter().copied().filter(|time| time.is_finite());
+    let day = |time: f64| Zone::utc().date_at(ADJUSTED_GPS_EPOCH + time).ok();
+    Some([day(known().reduce(f64::min)?)?, day(known().reduce(f64::max)?)?])
+}
+
+/// Adds remarks that are new.
+fn add_remarks<F>(remarks: &mut Vec<Remark>, answers: &Answers<F>) {
+    for remark in &answers.remarks {
+        if !remarks.contains(remark) {
+            remarks.push(remark.clone());
+        }
+    }
+}
+
+impl State {
+    fn of(
+        scene: &Scene,
+        params: &ReportParams,
+        box_of_maps: ([f64; 2], [f64; 2]),
+        remarks: &mut Vec<Remark>,
+        control: &Control<'_>,
+    ) -> Result<Self> {
+        let has_windows = !params.windows.is_empty();
+        // areas alone still need suns and clock
+        let places = if has_windows { Places::Scene } else { Places::Points(Vec::new(), None) };
+        let answers = ask::ask(scene, &params.calendar_question(None), &places, control)?;
+        add_remarks(remarks, &answers);
+        let calendar = answers.found;
+        let of_rule = match (&params.rule, has_windows) {
+            (Some(rule), true) => {
+                let answers = ask::ask(scene, &params.calendar_question(Some(rule.clone())), &places, control)?;
+                add_remarks(remarks, &answers);
+                Some(answers.found)
+            }
+            _ => None,
+        };
+        let intervals = Intervals::new(scene, params, &calendar, control)?;
+        let mut windows = Vec::with_capacity(params.windows.len());
+        for number in 0..params.windows.len() {
+            let dates = calendar.schedule.days.iter().map(|day| day.date);
+            let of_days = dates.map(|date| intervals.of(date, number, control)).collect::<Result<Option<Vec<_>>>>()?;
+            let mut rule = of_rule.as_ref().and_then(|found| RuleFinding::of(found, number));
+            if let Some(rule) = &mut rule {
+                rule.widen(intervals.of(rule.date, number, control)?);
+            }
+            windows.push(WindowState { intervals: of_days.unwrap_or_default(), rule });
+        }
+        let areas = params.areas.iter().map(|area| AreaState::of(scene, area, params, control));
+        let areas = areas.collect::<Result<Vec<_>>>()?;
+        let maps = maps::shadow_maps(scene, params, &calendar, box_of_maps, control)?;
+        let blockers = scene.blockers(UnprovenAs::Reported, control)?;
+        let sky = |window: usize| {
+            let place = calendar.targets.positions[window].map(f64::from);
+            let azimuth = calendar.windows[window].azimuth;
+            SkyView::new(azimuth, |directions| sun_lines(&blockers, place, None, &calendar.kinds, directions))
+        };
+        let skies = (0..calendar.windows.len()).map(sky).collect();
+        Ok(Self { calendar, windows, areas, maps, skies })
+    }
+}
+
+/// Finds intervals of hours of sun of windows, day by day.
+struct Intervals<'a> {
+    scene: &'a Scene,
+    question: SunHoursQuestion,
+    targets: Arc<Targets>,
+    /// Those of days that were needed.
+    kept: std::sync::Mutex<Vec<(Date, Vec<[f64; 3]>)>>,
+    are_known: bool,
+}
+
+impl<'a> Intervals<'a> {
+    fn new(
+        scene: &'a Scene,
+        params: &ReportParams,
+        calendar: &SunCalendarResults,
+        control: &Control<'_>,
+    ) -> Result<Self> {
+        Ok(Self {
+            scene,
+            question: SunHoursQuestion { place: params.place.clone(), interval: true, ..SunHoursQuestion::default() },
+            targets: Arc::clone(&calendar.targets),
+            kept: std::sync::Mutex::default(),
+            are_known: !params.windows.is_empty() && knows_intervals(scene, control)?,
+        })
+    }
+
+    /// Returns the interval of the hours of sun of a window on a day, less those hours; `None` where it is not known.
+    fn of(&self, date: Date, window: usize, control: &Control<'_>) -> Result<Option<[f64; 2]>> {
+        if !self.are_known {
+            return Ok(None);
+        }
+        let mut kept = self.kept.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if !kept.iter().any(|(day, _)| *day == date) {
+            let days = Days { dates: vec![date.to_string()], ..Days::default() };
+            let question = SunHoursQuestion { days, ..self.question.clone() };
+            let answers = ask::ask(self.scene, &question, &Places::Targets(Arc::clone(&self.targets)), control)?;
+            let column = |name: &str| -> Vec<f64> {
+                let found = answers.measures.iter().find(|measure: &&Measure| measure.name == name);
+                found.map(|measure| measure.values.iter().map(|&v| v.into()).collect()).unwrap_or_default()
+            };
+            let (hours, low, high) = (column("sun_hours"), column("hours_low"), column("hours_high"));
+            let rows = hours.iter().zip(&low).zip(&high).map(|((hours, low), high)| [*hours, *low, *high]);
+            kept.push((date, rows.collect()));
+        }
+        let rows = kept.iter().find(|(day, _)| *day == date).map(|(_, rows)| rows);
+        let row = rows.and_then(|rows| rows.get(window)).filter(|row| row.iter().all(|v| v.is_finite()));
+        Ok(row.map(|[hours, low, high]| [(low - hours).min(0.0), (high - hours).max(0.0)]))
+    }
+}
+
+impl AreaState {
+    /// Counts the ground that a plan covers, of so many cells in all, as ground without sun.
+    fn cover(&mut self, cells: usize) {
+        let left = self.cells as f64 / cells as f64;
+        let scaled = |value: f64| if self.cells == 0 { 0.0 } else { value * left };
+        [self.share, self.hours] = [self.share, self.hours].map(scaled);
+    }
+
+    fn of(scene: &Scene, area: &ReportArea, params: &ReportParams, control: &Control<'_>) -> Result<Self> {
+        let corners = || area.rings.iter().flatten();
+        let end = |pick: fn(f64, f64) -> f64, start| [0, 1].map(|axis| corners().map(|c| c[axis]).fold(start, pick));
+        let cells = GridCells {
+            cell: Some(AREA_CELL),
+            level: CellLevel::Ground,
+            bounds: Some((end(f64::min, f64::INFINITY), end(f64::max, f64::NEG_INFINITY))),
+            within: area.rings.clone(),
+            ..GridCells::default()
+        };
+        let step = params.days.time_step_min.or(Some(AREA_STEP_MIN));
+        let question = SunHoursQuestion {
+            days: Days { year: params.days.year, time_step_min: step, ..Days::default() },
+            rules: vec![params.area_rule().to_owned()],
+            place: params.place.clone(),
+            ..SunHoursQuestion::default()
+        };
+        let answers = ask::ask(scene, &question, &Places::Cells(cells), control)?;
+        let mean = |measure: Option<&Measure>| {
+            let known = measure.into_iter().flat_map(|measure| &measure.values).filter(|value| value.is_finite());
+            let values: Vec<f64> = known.map(|&value| value.into()).collect();
+            values.iter().sum::<f64>() / values.len() as f64
+        };
+        let cells = answers.found.targets.target_count();
+        Ok(Self { share: mean(answers.measures.last()), hours: mean(answers.measures.first()), cells })
+    }
+}
+
+impl SunlightReport {
+    /// The answer in a few lines, one for each window and area.
+    #[must_use]
+    pub fn headlines(&self) -> Vec<String> {
+        page::sentences(self, &words::Words::of(Language::English))
+    }
+
+    /// The report as one HTML file that needs no other file and no network.
+    ///
+    /// # Errors
+    /// Those of drawing maps.
+    pub fn to_html(&self) -> Result<String> {
+        page::html(self)
+    }
+
+    /// The states of the scene, each with the key of its name.
+    fn states(&self) -> impl Iterator<Item = (&'static str, &State)> {
+        let first = if self.after.is_some() { "before" } else { "now" };
+        std::iter::once((first, &self.before)).chain(self.after.iter().map(|state| ("after", state)))
+    }
+
+    /// The state that the report is about: as planned, else as it is.
+    fn last(&self) -> &State {
+        self.after.as_ref().unwrap_or(&self.before)
+    }
+}
+
+/// Shortest loss that is listed, hours: half a minute. Shorter ones are the rounding of stretches.
+const SHORTEST_LOSS: f32 = 0.5 / 60.0;
+
+/// Stretches of sun that a plan takes away: date, start and end on the clock, and the obstacle.
+fn lost_sun(report: &SunlightReport, window: usize) -> Vec<(Date, f32, f32, SunObstacle)> {
+    let Some(after) = &report.after else { return Vec::new() };
+    let (before, planned) = (&report.before.calendar, &after.calendar);
+    let days = before.schedule.days.iter().zip(before.days[window].iter().zip(&planned.days[window]));
+    let mut lost = Vec::new();
+    for (day, (was, will)) in days {
+        for sun in was.sun() {
+            for shade in will.0.iter().filter(|stretch| stretch.obstacle != SunObstacle::None) {
+                let (start, end) = (sun.start.max(shade.start), sun.end.min(shade.end));
+                if end - start > SHORTEST_LOSS {
+                    lost.push((day.date, start, end, shade.obstacle));
+                }
+            }
+        }
+    }
+    lost
+}

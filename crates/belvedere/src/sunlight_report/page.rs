@@ -1,0 +1,643 @@
+//! The page of a report: HTML that needs no other file and prints on A4.
+
+use super::charts::{LEGEND, color, name_of, sky, strips};
+use super::maps::ShadowMap;
+use super::verdict::{RuleFinding, Verdict};
+use super::words::Words;
+use super::{State, SunlightReport, lost_sun};
+use crate::Result;
+use crate::apps::sun_calendar::{CalendarDay, SunObstacle};
+use crate::apps::sun_hours::{Counted, NeededDays, RuleDays, SunRule, WindowClock};
+use crate::figures::{MapLegend, MapMark, MapPicture, map_image, png_bytes};
+use crate::results::clock_time;
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use std::fmt::Write as _;
+
+const STYLE: &str = include_str!("report.css");
+/// Colours of maps: sun, shade, shade of the plan, freed sun, the plan.
+const MAP_COLORS: [[u8; 3]; 5] = [[250, 240, 205], [118, 128, 150], [203, 62, 50], [104, 176, 120], [146, 98, 160]];
+
+/// A number of things that is small and not negative.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
+pub(super) fn whole(value: f64) -> usize {
+    value as usize
+}
+
+/// Text of HTML.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// Hours as hours and minutes: 3:12.
+fn hm(hours: f64) -> String {
+    if !hours.is_finite() {
+        return "–".to_owned();
+    }
+    let minutes = (hours.abs() * 60.0).round();
+    let sign = if hours < 0.0 && minutes > 0.0 { "−" } else { "" };
+    format!("{sign}{}:{:02}", whole(minutes) / 60, whole(minutes) % 60)
+}
+
+/// Hours in a sentence: 3 h 12 min.
+fn hours_in_words(hours: f64) -> String {
+    let minutes = whole((hours * 60.0).round());
+    match (minutes / 60, minutes % 60) {
+        (0, minutes) => format!("{minutes} min"),
+        (hours, 0) => format!("{hours} h"),
+        (hours, minutes) => format!("{hours} h {minutes} min"),
+    }
+}
+
+/// A change of hours in minutes, with its sign.
+fn change(before: f64, after: f64) -> String {
+    let minutes = ((after - before) * 60.0).round();
+    match minutes {
+        _ if !minutes.is_finite() => "–".to_owned(),
+        minutes if minutes < 0.0 => format!("−{:.0} min", -minutes),
+        minutes if minutes > 0.0 => format!("+{minutes:.0} min"),
+        _ => "0".to_owned(),
+    }
+}
+
+fn percent(share: f64) -> String {
+    if share.is_finite() { format!("{:.0}", 100.0 * share) } else { "–".to_owned() }
+}
+
+fn verdict_words(verdict: Verdict, words: &Words) -> &'static str {
+    match verdict {
+        Verdict::Met => words.get("met"),
+        Verdict::NotMet => words.get("not-met"),
+        Verdict::MetUncertain => words.get("met-uncertain"),
+        Verdict::NotMetUncertain => words.get("not-met-uncertain"),
+    }
+}
+
+/// A rule in the language of the words, with its name.
+fn rule_in_words(rule: &SunRule, report: &SunlightReport, words: &Words) -> String {
+    let calendar = &report.before.calendar;
+    let of_days = calendar.schedule.days.first().map(|day| day.date.year());
+    let year = report.params.days.year.or(of_days).unwrap_or_default();
+    let dates = rule.days.dates(year, &calendar.site, &calendar.zone).unwrap_or_default();
+    let [Some(first), Some(last)] = [dates.first(), dates.last()] else { return rule.description.clone() };
+    let hours = hours_in_words(rule.hours);
+    let ends = [("hours", hours.as_str()), ("from", &words.short_date(*first)), ("to", &words.short_date(*last))];
+    let mut text = match (rule.days, rule.needed) {
+        _ if dates.len() == 1 => words.with("rule-on", &[("hours", &hours), ("day", &words.short_date(*first))]),
+        (RuleDays::Equinoxes, _) => words.with("rule-two", &ends),
+        (_, NeededDays::All) => words.with("rule-each", &ends),
+        (_, NeededDays::Any) => words.with("rule-any", &ends),
+    };
+    if rule.counted == Counted::LongestPiece {
+        text += &format!(" {}", words.get("rule-piece"));
+    }
+    if let Some(window) = rule.window {
+        let [from, to] = window.hours.map(clock_time);
+        text += &format!(" {}", words.with("rule-hours", &[("from", &from), ("to", &to)]));
+        if window.clock == WindowClock::Sun {
+            text += &format!(" {}", words.get("rule-solar"));
+        }
+    }
+    if rule.min_elevation > 0.0 {
+        let degrees = format!("{:.0}", rule.min_elevation.to_degrees());
+        text += &format!(" {}", words.with("rule-above", &[("degrees", &degrees)]));
+    }
+    match SunRule::columns().any(|(name, _)| name == rule.name) {
+        true => format!("{text} ({})", rule.name),
+        false => text,
+    }
+}
+
+/// The answer: a sentence for all windows, and one for each window and area.
+pub(super) fn sentences(report: &SunlightReport, words: &Words) -> Vec<String> {
+    let (before, last) = (&report.before, report.last());
+    let is_planned = report.after.is_some();
+    let mut all = Vec::new();
+    if report.rule.is_some() && last.windows.len() > 1 {
+        let met = |state: &State| {
+            let rules = state.windows.iter().filter_map(|window| window.rule);
+            rules.filter(|rule| rule.verdict().is_met()).count().to_string()
+        };
+        let count = last.windows.len().to_string();
+        let key = if is_planned { "all-met-change" } else { "all-met" };
+        all.push(words.with(key, &[("met", &met(last)), ("before", &met(before)), ("count", &count)]));
+    }
+    for number in 0..last.windows.len() {
+        let name = report.params.window_name(number, words);
+        if !last.calendar.targets.is_target(number) {
+            all.push(words.with("no-position", &[("name", &name)]));
+            continue;
+        }
+        let (was, will) = (before.windows[number].rule, last.windows[number].rule);
+        let (day, hours, was_hours, verdict, required) = match (was, will) {
+            (Some(was), Some(will)) => {
+                let verdict = match (was.verdict(), will.verdict()) {
+                    (was, will) if is_planned && was.is_met() != will.is_met() => {
+                        let [was, will] = [was, will].map(|verdict| verdict_words(verdict, words));
+                        format!("{will} ({} {was})", words.get("before"))
+                    }
+                    (_, will) => verdict_words(will, words).to_owned(),
+                };
+                (will.date, will.hours, was.hours, verdict, hours_in_words(will.required))
+            }
+            _ => {
+                let Some(day) = last.calendar.schedule.days.first() else { continue };
+                let of = |state: &State| state.calendar.days[number][0].sun_hours();
+                (day.date, of(last), of(before), String::new(), String::new())
+            }
+        };
+        let is_same = change(was_hours, hours) == "0";
+        let key = match (will.is_some(), is_planned) {
+            (true, true) if is_same => "window-rule-same",
+            (true, true) => "window-rule-change",
+            (true, false) => "window-rule",
+            (false, true) if is_same => "window-day-same",
+            (false, true) => "window-day-change",
+            (false, false) => "window-day",
+        };
+        let values = [
+            ("name", name.as_str()),
+            ("hours", &hours_in_words(hours)),
+            ("before", &hours_in_words(was_hours)),
+            ("day", &words.date(day)),
+            ("required", &required),
+            ("verdict", &verdict),
+        ];
+        all.push(words.with(key, &values));
+    }
+    for (number, (was, will)) in before.areas.iter().zip(&last.areas).enumerate() {
+        let name = report.params.area_name(number, words);
+        let key = if is_planned { "area-rule-change" } else { "area-rule" };
+        let values = [
+            ("name", name.as_str()),
+            ("share", &percent(will.share)),
+            ("before", &percent(was.share)),
+            ("rule", &rule_in_words(&report.area_rule, report, words)),
+        ];
+        all.push(words.with(key, &values));
+    }
+    all
+}
+
+/// The whole page.
+pub(super) fn html(report: &SunlightReport) -> Result<String> {
+    let words = Words::of(report.params.language);
+    let usual = words.get(if report.after.is_some() { "title-plan" } else { "title" });
+    let title = if report.params.title.is_empty() { usual } else { &report.params.title };
+    let mut body = format!("<h1>{}</h1>", escaped(title));
+    if !report.params.title.is_empty() {
+        let _ = write!(body, "<p class='subtitle'>{usual}</p>");
+    }
+    let answers: String = sentences(report, &words).iter().map(|line| format!("<li>{}</li>", escaped(line))).collect();
+    let _ = write!(body, "<h2>{}</h2><ul class='answer'>{answers}</ul>", words.get("answer"));
+    if let Some(rule) = report.rule.as_ref().filter(|_| !report.params.windows.is_empty()) {
+        let _ = write!(body, "<p>{}: {}</p>", words.get("rule"), escaped(&rule_in_words(rule, report, &words)));
+    }
+    if !report.params.windows.is_empty() {
+        body += &window_table(report, &words);
+    }
+    if !report.params.areas.is_empty() {
+        body += &area_table(report, &words);
+    }
+    body += &maps(report, &words)?;
+    if !report.params.windows.is_empty() {
+        body += &each_window(report, &words);
+    }
+    body += &details(report, &words);
+    body += &limits(report, &words);
+    if !report.params.windows.is_empty() {
+        body += &all_rows(report, &words);
+    }
+    let (code, title) = (report.params.language.code(), escaped(title));
+    Ok(format!(
+        "<!DOCTYPE html>\n<html lang='{code}'><head><meta charset='utf-8'>\
+         <meta name='viewport' content='width=device-width, initial-scale=1'>\
+         <title>{title}</title><style>{STYLE}</style></head><body><main>{body}</main></body></html>\n"
+    ))
+}
+
+fn window_table(report: &SunlightReport, words: &Words) -> String {
+    let days = &report.before.calendar.schedule.days;
+    let is_planned = report.after.is_some();
+    let mut head = format!("<th>{}</th><th>{}</th><th>{}</th>", "", words.get("faces"), words.get("height"));
+    for day in days {
+        let _ = write!(head, "<th colspan='{}'>{}</th>", if is_planned { 3 } else { 1 }, words.date(day.date));
+    }
+    let mut second = "<th></th><th></th><th></th>".to_owned();
+    for _ in days {
+        match is_planned {
+            true => {
+                let names = ["before", "after", "change"].map(|key| {
+                    format!(
+                        "<th>{}</th>",
+                        match key {
+                            "before" => words.get("before"),
+                            "after" => words.get("after"),
+                            _ => words.get("change"),
+                        }
+                    )
+                });
+                second += &names.concat();
+            }
+            false => second += &format!("<th>{}</th>", words.get("sun")),
+        }
+    }
+    let mut rows = String::new();
+    for number in 0..report.params.windows.len() {
+        let calendar = &report.before.calendar;
+        let window = &calendar.windows[number];
+        let azimuth = (window.azimuth + calendar.grid_north).to_degrees().rem_euclid(360.0);
+        let height = calendar.targets.frame.file_from_local(window.center)[2];
+        let name = escaped(&report.params.window_name(number, words));
+        let _ =
+            write!(rows, "<tr><th>{}. {name}</th><td>{}</td><td>{height:.1}</td>", number + 1, compass(azimuth, words));
+        for day in 0..days.len() {
+            let hours = |state: &State| state.calendar.days[number][day].sun_hours();
+            let cell = |state: &State| {
+                let hours = hours(state);
+                let ends = state.windows[number].intervals.get(day);
+                let interval = ends.map(|[low, high]| {
+                    let possible = state.calendar.schedule.days[day].possible_hours;
+                    format!("<br><small>{}–{}</small>", hm((hours + low).max(0.0)), hm((hours + high).min(possible)))
+                });
+                format!("<td>{}{}</td>", hm(hours), interval.unwrap_or_default())
+            };
+            rows += &cell(&report.before);
+            if let Some(after) = &report.after {
+                let difference = change(hours(&report.before), hours(after));
+                let _ = write!(rows, "{}<td class='change'>{difference}</td>", cell(after));
+            }
+        }
+        rows += "</tr>";
+    }
+    let title = words.get("windows");
+    let mut text = format!(
+        "<h2>{title}</h2><p class='note'>{}. {}: {}.</p><table><thead><tr>{head}</tr><tr>{second}</tr></thead><tbody>{rows}</tbody></table>",
+        words.get("hours-of"),
+        "<small>0:00–0:00</small>",
+        words.get("interval")
+    );
+    if report.rule.is_some() {
+        text += &rule_table(report, words);
+    }
+    text
+}
+
+/// Name of a direction and its azimuth, degrees.
+fn compass(azimuth: f64, words: &Words) -> String {
+    if !azimuth.is_finite() {
+        return "–".to_owned();
+    }
+    let eighth = whole((azimuth / 45.0).round()) % 8;
+    format!("{} ({azimuth:.0}°)", words.get("compass").split('|').nth(eighth).unwrap_or_default())
+}
+
+fn rule_table(report: &SunlightReport, words: &Words) -> String {
+    let mut rows = String::new();
+    for number in 0..report.params.windows.len() {
+        let name = escaped(&report.params.window_name(number, words));
+        let count = report.states().count();
+        for (row, (state_name, state)) in report.states().enumerate() {
+            let Some(rule) = state.windows[number].rule else { continue };
+            let start =
+                if row == 0 { format!("<th rowspan='{count}'>{}. {name}</th>", number + 1) } else { String::new() };
+            let RuleFinding { date, hours, without_trees, interval, days: [enough, all], .. } = rule;
+            let verdict = rule.verdict();
+            let class = if verdict.is_met() { "met" } else { "not-met" };
+            let interval = interval.map_or("–".to_owned(), |[low, high]| format!("{}–{}", hm(low), hm(high)));
+            let _ = write!(
+                rows,
+                "<tr>{start}<td>{}</td><td class='{class}'>{}</td><td class='day'>{}</td><td>{}</td><td>{interval}</td><td>{}</td><td>{enough} / {all}</td></tr>",
+                words.get(state_name),
+                verdict_words(verdict, words),
+                words.short_date(date),
+                hm(hours),
+                without_trees.map_or("–".to_owned(), hm),
+            );
+        }
+    }
+    let keys = ["rule", "verdict", "deciding-day", "sun", "interval", "without-trees", "rule-days"];
+    let names = keys.map(|key| words.get(key));
+    let head: String = names[1..].iter().map(|name| format!("<th>{name}</th>")).collect();
+    format!("<h3>{}</h3><table><thead><tr><th></th><th></th>{head}</tr></thead><tbody>{rows}</tbody></table>", names[0])
+}
+
+fn area_table(report: &SunlightReport, words: &Words) -> String {
+    let mut rows = String::new();
+    for number in 0..report.params.areas.len() {
+        let name = escaped(&report.params.area_name(number, words));
+        let count = report.states().count();
+        for (row, (state_name, state)) in report.states().enumerate() {
+            let found = &state.areas[number];
+            let start = if row == 0 { format!("<th rowspan='{count}'>{name}</th>") } else { String::new() };
+            let kept = match state_name {
+                "after" => format!("{} %", percent(found.share / report.before.areas[number].share)),
+                _ => String::new(),
+            };
+            let _ = write!(
+                rows,
+                "<tr>{start}<td>{}</td><td>{} %</td><td>{kept}</td><td>{}</td><td>{}</td></tr>",
+                words.get(state_name),
+                percent(found.share),
+                hm(found.hours),
+                found.cells
+            );
+        }
+    }
+    let half = match report.area_rule.name.starts_with("bre-") {
+        true => format!(" {}", words.get("bre-half")),
+        false => String::new(),
+    };
+    let names = ["areas", "share", "kept", "mean-hours", "cells"].map(|key| words.get(key));
+    let head: String = names[1..].iter().map(|name| format!("<th>{name}</th>")).collect();
+    format!(
+        "<section class='areas'><h2>{}</h2><p>{}: {}.{half}</p><table><thead><tr><th>{}</th><th></th>{head}</tr></thead><tbody>{rows}</tbody></table></section>",
+        names[0],
+        words.get("rule"),
+        escaped(&rule_in_words(&report.area_rule, report, words)),
+        words.get("area")
+    )
+}
+
+/// Colours of the cells of a map: what the plan adds and frees where there is one.
+fn map_colors(before: &ShadowMap, after: Option<&ShadowMap>) -> Vec<Option<[u8; 3]>> {
+    let [sun, shade, added, freed, plan] = MAP_COLORS;
+    let of_cell = |(cell, &was): (usize, &Option<bool>)| {
+        let Some(after) = after else { return was.map(|lit| if lit { sun } else { shade }) };
+        if after.is_plan[cell] {
+            return Some(plan);
+        }
+        Some(match (was, after.lit[cell]?) {
+            (Some(true), false) => added,
+            (Some(false), true) => freed,
+            (_, true) => sun,
+            (_, false) => shade,
+        })
+    };
+    before.lit.iter().enumerate().map(of_cell).collect()
+}
+
+fn maps(report: &SunlightReport, words: &Words) -> Result<String> {
+    let mut pictures = String::new();
+    for (number, map) in report.before.maps.iter().enumerate() {
+        let after = report.after.as_ref().and_then(|after| after.maps.get(number));
+        let colors = map_colors(map, after);
+        let grid = map.grid;
+        let mark = |(number, window): (usize, &crate::apps::targets::Window)| {
+            let north = grid.corner[1] - window.center[1];
+            let place = [(window.center[0] - grid.corner[0]) / grid.cell, north / grid.cell];
+            MapMark { place, view: None, label: (number + 1).to_string() }
+        };
+        let marks: Vec<MapMark> = report.before.calendar.windows.iter().enumerate().map(mark).collect();
+        let picture = map_image(
+            &MapPicture {
+                relief: &map.relief,
+                cell: grid.cell,
+                place: None,
+                colors: &colors,
+                marks: &marks,
+                mark_name: "",
+                title: "",
+                legend: MapLegend::Colors(&[]),
+            },
+            whole(640.0 / map.relief.width().max(map.relief.height()).max(1) as f64).clamp(1, 8),
+        )?;
+        let data = BASE64_STANDARD.encode(png_bytes(&picture)?);
+        let caption = format!("{}, {}", words.short_date(map.date), clock_time(map.hour));
+        let _ = write!(
+            pictures,
+            "<figure><img alt='{caption}' src='data:image/png;base64,{data}'>{}<figcaption>{caption}</figcaption></figure>",
+            scale_bar(map.relief.width() as f64 * grid.cell)
+        );
+    }
+    if pictures.is_empty() {
+        return Ok(String::new());
+    }
+    let keys = ["map-sun", "map-shade", "map-added", "map-freed", "map-plan"];
+    let count = if report.after.is_some() { 5 } else { 2 };
+    let swatch = |(color, key): (&[u8; 3], &&'static str)| {
+        let [r, g, b] = color;
+        format!("<span><i style='background:rgb({r},{g},{b})'></i>{}</span>", words.get(key))
+    };
+    let legend: String = MAP_COLORS.iter().zip(&keys).take(count).map(swatch).collect();
+    Ok(format!(
+        "<section class='maps'><h2>{}</h2><p>{}</p><p class='legend'>{legend}</p><div class='grid'>{pictures}</div></section>",
+        words.get("maps"),
+        words.get("maps-text")
+    ))
+}
+
+/// A bar of a round length below a map of `width` metres.
+fn scale_bar(width: f64) -> String {
+    let exponent = 10f64.powf((width / 4.0).log10().floor());
+    let length = [5.0, 2.0, 1.0].map(|digit| digit * exponent).into_iter().find(|length| *length <= width / 4.0);
+    let length = length.unwrap_or(exponent);
+    format!("<span class='bar'><b style='width:{:.2}%'></b>{length:.0} m</span>", 100.0 * length / width)
+}
+
+fn each_window(report: &SunlightReport, words: &Words) -> String {
+    let legend = LEGEND.iter().filter(|(_, key)| *key != "plan" || report.after.is_some());
+    let legend: String = legend
+        .map(|(obstacle, key)| {
+            format!("<span><i style='background:{}'></i>{}</span>", color(*obstacle), words.get(key))
+        })
+        .collect();
+    let mut text = format!(
+        "<h2>{}</h2><p>{} {}</p><p class='legend'>{legend}</p>",
+        words.get("each-window"),
+        words.get("strips-text"),
+        words.get("sky-text")
+    );
+    for number in 0..report.params.windows.len() {
+        if !report.last().calendar.targets.is_target(number) {
+            continue;
+        }
+        let name = escaped(&report.params.window_name(number, words));
+        let _ = write!(
+            text,
+            "<section class='window'><h3>{}. {name}</h3>{}{}{}{}</section>",
+            number + 1,
+            strips(report, number, words),
+            sky(report, number, words),
+            day_table(report, number, words),
+            lost_table(report, number, words)
+        );
+    }
+    text
+}
+
+/// First and last sun, longest piece and unproven hours of each day.
+fn day_table(report: &SunlightReport, window: usize, words: &Words) -> String {
+    let mut rows = String::new();
+    for (number, day) in report.before.calendar.schedule.days.iter().enumerate() {
+        for (name, state) in report.states() {
+            let found: &CalendarDay = &state.calendar.days[window][number];
+            let [first, last] = match found.first_and_last() {
+                Some(ends) => ends.map(|hour| clock_time(hour.into())),
+                None => ["–", "–"].map(str::to_owned),
+            };
+            let without = state.calendar.without_trees.as_ref().map(|days| days[window][number].sun_hours());
+            let unproven: f64 = found.sun().map(|stretch| f64::from(stretch.unproven)).sum();
+            let _ = write!(
+                rows,
+                "<tr><th>{}</th><td>{}</td><td>{}</td><td>{first}</td><td>{last}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
+                words.date(day.date),
+                words.get(name),
+                hm(found.sun_hours()),
+                hm(found.longest()),
+                without.map_or("–".to_owned(), hm),
+                hm(unproven),
+            );
+        }
+    }
+    let keys = ["date", "sun", "first", "last", "longest", "without-trees", "unproven"].map(|key| words.get(key));
+    let rest: String = keys[1..].iter().map(|name| format!("<th>{name}</th>")).collect();
+    format!("<table><thead><tr><th>{}</th><th></th>{rest}</tr></thead><tbody>{rows}</tbody></table>", keys[0])
+}
+
+/// Stretches of sun that the plan takes.
+fn lost_table(report: &SunlightReport, window: usize, words: &Words) -> String {
+    let Some(after) = &report.after else { return String::new() };
+    let lost = lost_sun(report, window);
+    if lost.is_empty() {
+        return format!("<p>{}</p>", words.get("nothing-lost"));
+    }
+    let row = |(date, start, end, obstacle): &(crate::apps::sun::Date, f32, f32, _)| {
+        let [from, to] = [start, end].map(|&hour| clock_time(hour.into()));
+        let object = match obstacle {
+            SunObstacle::Mesh(_) => crate::results::file_name(after.calendar.name_of(*obstacle)),
+            _ => name_of(*obstacle, words).to_owned(),
+        };
+        let minutes = (f64::from(end - start) * 60.0).round();
+        format!(
+            "<tr><th>{}</th><td>{from}</td><td>{to}</td><td>{minutes:.0}</td><td>{}</td></tr>",
+            words.date(*date),
+            escaped(&object)
+        )
+    };
+    let rows: String = lost.iter().map(row).collect();
+    let head: String = ["date", "from", "to", "minutes"].map(|key| format!("<th>{}</th>", words.get(key))).concat();
+    format!("<h4>{}</h4><table><thead><tr>{head}<th></th></tr></thead><tbody>{rows}</tbody></table>", words.get("lost"))
+}
+
+fn details(report: &SunlightReport, words: &Words) -> String {
+    let params = &report.params;
+    let site = report.before.calendar.site;
+    let [latitude, longitude] = [site.latitude, site.longitude].map(f64::to_degrees);
+    let [count, density] = report.points;
+    let flown = report.flown.map(|[from, to]| match from == to {
+        true => format!("{}, ", words.date(from)),
+        false => format!("{}, ", words.with("flown", &[("from", &words.date(from)), ("to", &words.date(to))])),
+    });
+    let points = flown.unwrap_or_default()
+        + &words.with("points", &[("count", &format!("{count:.0}")), ("density", &format!("{density:.1}"))]);
+    let file = |source: &super::ReportSource| {
+        let hash = if source.sha256.is_empty() {
+            String::new()
+        } else {
+            format!("<br><code>SHA-256 {}</code>", source.sha256)
+        };
+        let role = match source.role {
+            "plan" => words.get("plan"),
+            "windows" => words.get("windows"),
+            "areas" => words.get("areas"),
+            "terrain" => words.get("terrain"),
+            _ => words.get("cloud"),
+        };
+        format!("{} ({role}){hash}<br>", escaped(&source.name))
+    };
+    let files: String = params.sources.iter().map(file).collect();
+    let rows = [
+        (words.get("made-on"), escaped(&params.date)),
+        (words.get("place"), format!("{latitude:.5}, {longitude:.5}")),
+        (words.get("system"), escaped(&report.reference_system)),
+        (words.get("clock"), escaped(report.before.calendar.zone.name())),
+        (words.get("survey"), points),
+        (words.get("files"), files),
+        (words.get("program"), format!("Belvedere {}", env!("CARGO_PKG_VERSION"))),
+        (words.get("command"), format!("<code>{}</code>", escaped(&params.command))),
+    ];
+    let row = |(name, value): &(&str, String)| format!("<tr><th>{name}</th><td class='text'>{value}</td></tr>");
+    let rows: String = rows.iter().filter(|(_, value)| !value.is_empty()).map(row).collect();
+    format!("<h2>{}</h2><table class='details'><tbody>{rows}</tbody></table>", words.get("details"))
+}
+
+fn limits(report: &SunlightReport, words: &Words) -> String {
+    let steps = || report.before.calendar.schedule.days.iter().flat_map(|day| &day.steps);
+    let step = steps().map(|step| f64::from(step.hours) * 60.0).fold(0.0, f64::max).round();
+    let half = hours_in_words(step / 120.0);
+    let step = format!("{step:.0}");
+    let method = words.with("method-3", &[("step", &step), ("half", &half)]);
+    let texts = [words.get("method-1"), words.get("method-2"), &method, words.get("method-4"), words.get("method-5")];
+    let texts: String = texts.iter().map(|text| format!("<li>{text}</li>")).collect();
+    let mut page = format!("<h2>{}</h2><ul>{texts}</ul>", words.get("limits"));
+    if !report.remarks.is_empty() {
+        let remarks: String =
+            report.remarks.iter().map(|remark| format!("<li>{}</li>", escaped(&remark.text))).collect();
+        let _ = write!(page, "<h3>{}</h3><ul lang='en'>{remarks}</ul>", words.get("remarks"));
+    }
+    page
+}
+
+/// All stretches as a table inside the page that can be saved.
+fn all_rows(report: &SunlightReport, words: &Words) -> String {
+    let mut csv = "state,window,name,date,from,to,hours,obstacle,object,unproven_hours\n".to_owned();
+    for (state_name, state) in report.states() {
+        for (window, days) in state.calendar.days.iter().enumerate() {
+            let name = report.params.window_name(window, words).replace(['"', '\n'], " ");
+            for (day, found) in state.calendar.schedule.days.iter().zip(days) {
+                for stretch in &found.0 {
+                    let [from, to] = [stretch.start, stretch.end].map(|hour| clock_time(hour.into()));
+                    let object = match stretch.obstacle {
+                        SunObstacle::Mesh(_) => {
+                            crate::results::file_name(state.calendar.name_of(stretch.obstacle)).replace('"', " ")
+                        }
+                        _ => String::new(),
+                    };
+                    let _ = writeln!(
+                        csv,
+                        "{state_name},{},\"{name}\",{},{from},{to},{:.3},{},\"{object}\",{:.3}",
+                        window + 1,
+                        day.date,
+                        stretch.hours(),
+                        stretch.obstacle.name(),
+                        stretch.unproven,
+                    );
+                }
+            }
+        }
+    }
+    let data = BASE64_STANDARD.encode(&csv);
+    format!(
+        "<h2>{}</h2><p>{} <a download='sunlight.csv' href='data:text/csv;base64,{data}'>sunlight.csv</a></p><details><summary>sunlight.csv</summary><pre>{}</pre></details>",
+        words.get("rows"),
+        words.get("rows-text"),
+        escaped(&csv)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hours_are_hours_and_minutes() {
+        assert_eq!([3.2, 0.999, -0.5, 0.0, f64::NAN].map(hm), ["3:12", "1:00", "−0:30", "0:00", "–"]);
+        assert_eq!([3.2, 2.0, 0.25].map(hours_in_words), ["3 h 12 min", "2 h", "15 min"]);
+        assert_eq!(change(2.0, 1.5), "−30 min");
+        assert_eq!(change(1.5, 2.0), "+30 min");
+        assert_eq!(change(1.5, 1.5001), "0");
+    }
+
+    #[test]
+    fn names_of_others_are_no_markup() {
+        assert_eq!(escaped("<b>\"A & B\"</b>"), "&lt;b&gt;&quot;A &amp; B&quot;&lt;/b&gt;");
+    }
+
+    #[test]
+    fn bars_have_round_lengths() {
+        assert!(
+            scale_bar(330.0).contains("50 m") && scale_bar(90.0).contains("20 m") && scale_bar(5.0).contains("1 m")
+        );
+    }
+}

@@ -1,0 +1,46 @@
+//! Files that a report rests on.
+
+use crate::{Error, Result};
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// A file that a report rests on.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ReportSource {
+    /// Key of what it is for: cloud, plan, windows, areas or terrain.
+    pub role: &'static str,
+    /// Its name, without folder.
+    pub name: String,
+    /// Its size in bytes; 0 where it is not a file of this machine.
+    pub bytes: u64,
+    /// Its SHA-256 in hexadecimal digits; empty where it is not a file of this machine.
+    pub sha256: String,
+}
+
+impl ReportSource {
+    /// Reads the whole of a file for its hash. A folder or an address of the web has its name alone.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub fn of_path(role: &'static str, path: &Path) -> Result<Self> {
+        let name = crate::results::file_name(&path.to_string_lossy());
+        if !path.is_file() {
+            return Ok(Self { role, name, ..Self::default() });
+        }
+        let mut file = File::open(path).map_err(Error::io(path))?;
+        let (mut hasher, mut buffer, mut bytes) = (Sha256::new(), vec![0; 1 << 20], 0);
+        loop {
+            match file.read(&mut buffer).map_err(Error::io(path))? {
+                0 => break,
+                count => {
+                    hasher.update(&buffer[..count]);
+                    bytes += count as u64;
+                }
+            }
+        }
+        let sha256 = hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        Ok(Self { role, name, bytes, sha256 })
+    }
+}

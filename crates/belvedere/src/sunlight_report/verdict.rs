@@ -1,0 +1,126 @@
+//! Verdicts on daylight rules.
+
+use crate::apps::ask::SunCalendarResults;
+use crate::apps::sun::Date;
+use crate::apps::sun_calendar::CalendarDay;
+use crate::apps::sun_hours::{Counted, NeededDays};
+
+/// Tolerance of the required hours, hours: the rounding of f32 in a sum of steps.
+const ROUNDING: f64 = 1e-4;
+
+/// A rule at a window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RuleFinding {
+    /// Day that decides: that with the least sun, or with the most where one day is enough.
+    pub date: Date,
+    /// Hours that count on it.
+    pub hours: f64,
+    /// The same without trees; `None` where trees are not known.
+    pub without_trees: Option<f64>,
+    /// Interval of the hours that holds the truth in nine of ten cases; `None` if it is not known.
+    pub interval: Option<[f64; 2]>,
+    /// Hours that the rule requires.
+    pub required: f64,
+    /// Number of days with enough sun, and of all days.
+    pub days: [usize; 2],
+}
+
+/// Verdict on a rule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// It is met.
+    Met,
+    /// It is not met.
+    NotMet,
+    /// The hours suffice, but those of its interval do not all.
+    MetUncertain,
+    /// The hours do not suffice, but some of its interval do.
+    NotMetUncertain,
+}
+
+impl RuleFinding {
+    /// Finds the day that decides on the rule of a calendar at a window; `None` without a rule or a position.
+    pub(super) fn of(found: &SunCalendarResults, window: usize) -> Option<Self> {
+        let rule = found.rule.as_ref()?;
+        if !found.targets.is_target(window) {
+            return None;
+        }
+        let counted = |day: &CalendarDay| match rule.counted {
+            Counted::All => day.sun_hours(),
+            Counted::LongestPiece => day.longest(),
+        };
+        let days = found.days.get(window)?;
+        let hours: Vec<f64> = days.iter().map(counted).collect();
+        let numbered = hours.iter().enumerate();
+        let (number, &of_day) = match rule.needed {
+            NeededDays::All => numbered.min_by(|a, b| a.1.total_cmp(b.1))?,
+            // the first of the best
+            NeededDays::Any => numbered.rev().max_by(|a, b| a.1.total_cmp(b.1))?,
+        };
+        let without = found.without_trees.as_ref().and_then(|all| all.get(window)?.get(number)).map(counted);
+        let enough = hours.iter().filter(|&&hours| hours >= rule.hours - ROUNDING).count();
+        Some(Self {
+            date: found.schedule.days.get(number)?.date,
+            hours: of_day,
+            without_trees: without,
+            interval: None,
+            required: rule.hours,
+            days: [enough, hours.len()],
+        })
+    }
+
+    /// Sets the interval to the hours with the differences of its ends.
+    pub(super) fn widen(&mut self, ends: Option<[f64; 2]>) {
+        self.interval = ends.map(|[low, high]| [(self.hours + low).max(0.0), self.hours + high]);
+    }
+
+    /// The verdict.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        let suffices = |hours: f64| hours >= self.required - ROUNDING;
+        let [low, high] = self.interval.unwrap_or([self.hours; 2]);
+        match (suffices(self.hours), suffices(low), suffices(high)) {
+            (true, true, _) => Verdict::Met,
+            (true, false, _) => Verdict::MetUncertain,
+            (false, _, true) => Verdict::NotMetUncertain,
+            (false, _, false) => Verdict::NotMet,
+        }
+    }
+}
+
+impl Verdict {
+    /// Returns true if the hours suffice.
+    #[must_use]
+    pub fn is_met(self) -> bool {
+        matches!(self, Self::Met | Self::MetUncertain)
+    }
+
+    /// Returns true if the interval holds hours that would change it.
+    #[must_use]
+    pub fn is_uncertain(self) -> bool {
+        matches!(self, Self::MetUncertain | Self::NotMetUncertain)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verdicts_are_uncertain_where_the_interval_crosses_the_hours() {
+        let date = Date::new(2026, 3, 21).unwrap();
+        let of = |hours: f64, ends: Option<[f64; 2]>| {
+            let mut found =
+                RuleFinding { date, hours, without_trees: None, interval: None, required: 2.0, days: [0, 1] };
+            found.widen(ends);
+            found.verdict()
+        };
+        assert_eq!(of(2.0, None), Verdict::Met);
+        assert_eq!(of(1.99, None), Verdict::NotMet);
+        assert_eq!(of(2.5, Some([-0.4, 0.4])), Verdict::Met);
+        assert_eq!(of(2.5, Some([-0.6, 0.4])), Verdict::MetUncertain);
+        assert_eq!(of(1.5, Some([-0.4, 0.6])), Verdict::NotMetUncertain);
+        assert_eq!(of(1.5, Some([-0.4, 0.4])), Verdict::NotMet);
+        assert!(Verdict::MetUncertain.is_met() && Verdict::NotMetUncertain.is_uncertain());
+    }
+}
