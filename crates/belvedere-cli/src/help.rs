@@ -212,6 +212,9 @@ pub(crate) fn command() -> Command {
             height.help("Height above the ground or above --surface, in metres [default: 1.1]")
         })
     });
+    let command = command.mut_subcommand("sun-calendar", |sub| {
+        sub.mut_arg("step", |step| step.help("Time between two sun positions in minutes, 1/6 to 60 [default: 2]"))
+    });
     let template = overview(&command);
     command.help_template(template)
 }

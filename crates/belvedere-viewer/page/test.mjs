@@ -671,6 +671,36 @@ async function main() {
     assert.ok(await pixels(shown, [255, 176, 0]) < 200, "the raster is gone");
     await shown.close();
   });
+  await step("a report says what the program printed, fits screens, and prints on A4 in four languages", async () => {
+    const corners = [[-6, -6], [6, -6], [6, 6], [-6, 6]].map(([x, y]) => [155000 + x, 463000 + y]);
+    const vertices = [0, 30].flatMap((z) => corners.map((corner) => `v ${corner.join(" ")} ${z}`)).join("\n");
+    writeFileSync(join(folder, "tower.obj"), `o tower\n${vertices}\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 5 6 7 8\n`);
+    writeFileSync(join(folder, "panes.csv"), "x,y,z,azimuth,name\n155000,463014,8,180,A window with a name that is rather long\n154986,463000,6,90,\n");
+    const area = ["--area", "155008,463008 155016,463008 155016,463016 155008,463016", "--rule", "nl-strict", "--zone", "Europe/Amsterdam"];
+    for (const language of ["en", "nl", "de", "fr"]) {
+      const words = ["report", "town/cloud.laz", "--windows", "panes.csv", "--add", "tower.obj", ...area, "--language", language, "-o", `${language}.html`];
+      const said = execFileSync(program, words, { cwd: folder, stdio: ["ignore", "pipe", "ignore"] }).toString();
+      const report = await browser.newPage();
+      report.on("request", (request) => { if (!/^(file|data):/.test(request.url())) problems.push(`the report fetches ${request.url()}`); });
+      for (const width of [390, 768, 1280]) {
+        await report.setViewportSize({ width, height: 800 });
+        await report.goto(`file://${folder}/${language}.html`);
+        assert.equal(await report.evaluate(() => Math.max(0, document.documentElement.scrollWidth - innerWidth)), 0, `${language} overflows ${width} pixels`);
+      }
+      const shown = await report.innerText("main");
+      if (language === "en") for (const line of said.split("\n").filter((line) => line && !line.startsWith("written"))) assert.ok(shown.includes(line), `${line} is not in the report`);
+      // the width of A4 between its margins, at 96 pixels an inch
+      await report.emulateMedia({ media: "print" });
+      await report.setViewportSize({ width: 680, height: 1000 });
+      const wide = await report.evaluate(() => [...document.querySelectorAll("table, svg, figure")].filter((part) => part.getBoundingClientRect().right > innerWidth + 1 || part.scrollWidth > part.clientWidth + 1).map((part) => part.outerHTML.slice(0, 80)));
+      assert.deepEqual(wide, [], `${language} is cut on paper`);
+      const printed = (await report.pdf({ preferCSSPageSize: true })).toString("latin1");
+      const pages = printed.match(/\/Type\s*\/Page[^s]/g).length;
+      assert.ok(pages >= 4 && pages <= 7, `${pages} pages`);
+      assert.match(printed, /\/MediaBox\s*\[\s*0 0 59[45][.\d]* 84[12]/);
+      await report.close();
+    }
+  });
   await step("own colours of points", async () => {
     const rows = Array.from({ length: 2500 }, (_, i) => `${(i % 50) / 5} ${Math.floor(i / 50) / 5} ${i % 50 < 25 ? 0 : 3} ${i % 50 < 40 ? "220 30 200" : "30 200 40"}`);
     const head = `ply\nformat ascii 1.0\nelement vertex ${rows.length}\n${["x", "y", "z"].map((name) => `property float ${name}\n`).join("")}${["red", "green", "blue"].map((name) => `property uchar ${name}\n`).join("")}end_header\n`;

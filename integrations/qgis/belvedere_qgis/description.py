@@ -23,6 +23,7 @@ GROUPS = {
     "heat": "Sun and sky",
     "envelope": "Sun and sky",
     "comfort": "Sun and sky",
+    "report": "Sun and sky",
     "surfaces": "Scene",
 }
 TITLES = {
@@ -42,6 +43,7 @@ TITLES = {
     "heat": "Heat stress",
     "envelope": "Solar envelope",
     "comfort": "Sun and sky along walks",
+    "report": "Sunlight report",
     "surfaces": "Roofs and walls",
 }
 # Headings of parameters that few people change.
@@ -55,6 +57,7 @@ GEOMETRIES = {
     ("protected-view", "--target-polygon"): "polygon",
     ("comfort", "--route"): "line",
     ("envelope", "--parcel"): "polygon",
+    ("report", "--area"): "polygon",
 }
 # Names of layers that say more than those of their flags.
 NAMES = {"--pairs": "Lines from observers to targets", "--protect": "Lines, polygons or points to protect from shadow"}

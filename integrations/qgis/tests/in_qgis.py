@@ -151,6 +151,13 @@ def check_algorithms():
             "OUTPUT": "walk_sun.gpkg",
         },
         "surfaces": {"OUTPUT": "surfaces.gpkg"},
+        "report": {
+            "WINDOWS": windows(),
+            "AREA": geojson("garden", [parcel]),
+            "ZONE": "Europe/Amsterdam",
+            "TIME_STEP_MIN": 20,
+            "OUTPUT": "report.html",
+        },
         "cameras": {
             "ON_ROOFS": 25,
             "COUNT": 3,
@@ -194,6 +201,8 @@ def check_algorithms():
 
 
 def check_results():
+    page = (FOLDER / "report.html").read_text(encoding="utf-8")
+    assert "Window 1: " in page and "Area 1: " in page, page[:2000]
     rasters = {
         "viewshed.tif": QgsPalettedRasterRenderer,
         "landmark.tif": QgsSingleBandPseudoColorRenderer,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 ALL = {"viewshed", "line-of-sight", "isovist", "horizon", "landmark", "protected-view", "window-views", "cameras", "survey-plan"} | {
-    *("shadow", "sun-hours", "sky-view", "irradiance", "heat", "envelope", "comfort", "surfaces")
+    *("shadow", "sun-hours", "sky-view", "irradiance", "heat", "envelope", "comfort", "report", "surfaces")
 }
 
 

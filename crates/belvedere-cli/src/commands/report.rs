@@ -75,13 +75,18 @@ fn now() -> f64 {
 
 fn areas(given: &CornersArgument, frame: &Frame) -> Result<Vec<ReportArea>> {
     let mut areas = Vec::new();
+    let file = match given {
+        CornersArgument::File(path) => path.file_name().and_then(|name| name.to_str()),
+        CornersArgument::Typed(_) => None,
+    };
     for named in shapes("--area", given, TypedAre::Polygon, frame)? {
         let FeatureShape::Polygon(polygon) = named.shape else {
             return wrong_shape("--area", given, "an area is a polygon, but this file has a line or a point");
         };
         let rings = polygon.iter().map(|ring| ring.iter().map(|&[x, y, _]| [x, y]).collect()).collect();
-        // corners that were typed have no name
-        let name = Some(named.name).filter(|name| name != "--area").unwrap_or_default();
+        // what has no name of its own is called by its flag or its file
+        let is_own = named.name != "--area" && !file.is_some_and(|file| named.name.starts_with(file));
+        let name = if is_own { named.name } else { String::new() };
         areas.push(ReportArea { name, rings });
     }
     Ok(areas)

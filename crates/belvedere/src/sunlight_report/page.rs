@@ -54,8 +54,8 @@ fn change(before: f64, after: f64) -> String {
     let minutes = ((after - before) * 60.0).round();
     match minutes {
         _ if !minutes.is_finite() => "–".to_owned(),
-        minutes if minutes < 0.0 => format!("−{:.0} min", -minutes),
-        minutes if minutes > 0.0 => format!("+{minutes:.0} min"),
+        minutes if minutes < 0.0 => format!("−{:.0}", -minutes),
+        minutes if minutes > 0.0 => format!("+{minutes:.0}"),
         _ => "0".to_owned(),
     }
 }
@@ -624,8 +624,8 @@ mod tests {
     fn hours_are_hours_and_minutes() {
         assert_eq!([3.2, 0.999, -0.5, 0.0, f64::NAN].map(hm), ["3:12", "1:00", "−0:30", "0:00", "–"]);
         assert_eq!([3.2, 2.0, 0.25].map(hours_in_words), ["3 h 12 min", "2 h", "15 min"]);
-        assert_eq!(change(2.0, 1.5), "−30 min");
-        assert_eq!(change(1.5, 2.0), "+30 min");
+        assert_eq!(change(2.0, 1.5), "−30");
+        assert_eq!(change(1.5, 2.0), "+30");
         assert_eq!(change(1.5, 1.5001), "0");
     }
 
