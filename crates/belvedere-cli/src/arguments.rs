@@ -241,7 +241,7 @@ pub(crate) enum Command {
     SunPosition(SunPositionArguments),
     /// Compute the largest volume on a parcel that casts no shadow on its neighbours
     Envelope(EnvelopeArguments),
-    /// Write a sunlight report of a plan for windows and gardens: verdicts, maps, days, sources
+    /// Write a sunlight report for windows and gardens, before and after a plan
     Report(ReportArguments),
     /// List from when to when the sun shines at windows and places, and what shades them
     #[command(name = "sun-calendar")]

@@ -31,6 +31,7 @@ pub(crate) struct ReportKeywords {
     rule: Option<String>,
     area_rule: Option<String>,
     title: String,
+    notes: Vec<String>,
     language: String,
     today: String,
 }
@@ -50,6 +51,7 @@ impl ReportKeywords {
         };
         Ok(ReportParams {
             title: self.title.clone(),
+            notes: self.notes.clone(),
             language,
             windows,
             names: self.names.clone(),

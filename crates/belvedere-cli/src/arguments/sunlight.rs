@@ -100,6 +100,9 @@ pub(crate) struct ReportArguments {
     /// Title of the report
     #[arg(long, value_name = "TEXT", default_value = "", hide_default_value = true, help_heading = "Result")]
     pub(crate) title: String,
+    /// A line below the title, such as the client, the address or the author; repeatable
+    #[arg(long, value_name = "TEXT", help_heading = "Result")]
+    pub(crate) note: Vec<String>,
     /// Language of the report
     #[arg(long, value_enum, value_name = "CODE", default_value_t = LanguageChoice::En, help_heading = "Result")]
     pub(crate) language: LanguageChoice,

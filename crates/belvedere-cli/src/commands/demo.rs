@@ -156,7 +156,7 @@ fn write_town(folder: &Path, scene: &TriangleScene, scan: &Scan) -> Result<()> {
         ("trajectory.csv", scan.sensor_path.to_csv()),
         ("town.obj", scene.to_obj()),
         ("planned.obj", planned),
-        ("windows.csv", windows_that_face(scene)),
+        ("neighbours.csv", windows_that_face(scene)),
     ];
     for (name, text) in texts {
         write_text(&folder.join(name), &text)?;

@@ -24,6 +24,7 @@ pub(crate) fn run(arguments: &ReportArguments, global: &Global) -> Result<Summar
     arguments.windows.as_deref().map_or(Ok(()), refuse_mesh)?;
     let mut params = ReportParams {
         title: arguments.title.clone(),
+        notes: arguments.note.clone(),
         language: arguments.language.into(),
         rule: arguments.rule.clone(),
         area_rule: arguments.area_rule.clone(),

@@ -61,13 +61,14 @@ fn reports_compare_a_plan_with_what_is() {
     let place = place();
     let garden = corners(&[[-6.0, 8.0], [6.0, 8.0], [6.0, 14.0], [-6.0, 14.0]]);
     let command = format!("report {HOUSE} --windows windows.csv --add wall.obj --rule 2@03-21 -o r.html");
-    let run = place.run_with(&command, &["--area", &garden, "--title", "A <wall>"]);
+    let run = place.run_with(&command, &["--area", &garden, "--title", "A <wall>", "--note", "For <us>"]);
     assert_eq!(run.status, 0, "{}", run.stderr);
-    assert!(run.stdout.contains("1 of 2 windows meet the rule with the plan, 2 without it"), "{}", run.stdout);
+    assert!(run.stdout.contains("Windows that meet the rule: 1 of 2 with the plan, 2 without it"), "{}", run.stdout);
     // only low suns in the east and in the west reach it beside the wall
-    assert!(run.stdout.contains("garden room: 56 min of possible sun on 21 March 2026"), "{}", run.stdout);
+    assert!(run.stdout.contains("garden room: with the plan 56 min of possible sun on the critical day, 21 March 2026, without the plan 6 h 58 min on 21 March 2026"), "{}", run.stdout);
     let page = place.text("r.html");
     assert!(page.contains("<h1>A &lt;wall&gt;</h1>") && page.contains("Sunlight before and after a plan"));
+    assert!(page.contains("<p class='note'>For &lt;us&gt;</p>"));
     assert!(page.contains("belvedere report house.laz --windows windows.csv"), "the command is in the report");
     for file in ["house.laz", "windows.csv", "wall.obj"] {
         assert!(page.contains(&format!("{file} (")), "{file}");

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import wrong
-from ._inputs import Day, Progress, Time, check_finite, reporter
+from ._inputs import Day, Progress, Time, as_list, check_finite, reporter
 from ._planning import _windows
 from ._remarks import warned
 from ._shapes import in_system
@@ -128,6 +128,7 @@ class Documents:
         year: int | None = None,
         time_step_min: float | None = None,
         title: str = "",
+        notes: str | list[str] = [],
         language: str = "en",
         location: npt.ArrayLike | None = None,
         zone: str | datetime.tzinfo | None = None,
@@ -158,6 +159,8 @@ class Documents:
             Minutes between two suns; 2 for windows and 10 for areas if not given.
         title : str, optional
             Title of the report.
+        notes : str or list of str, optional
+            Lines below the title, such as the client, the address and the author.
         language : {'en', 'nl', 'de', 'fr'}
             Language of the report.
         location, zone, grid_north, progress : optional
@@ -209,6 +212,7 @@ class Documents:
                 "rule": rule,
                 "area_rule": area_rule,
                 "title": title,
+                "notes": as_list(notes),
                 "language": language,
                 "today": datetime.date.today().isoformat(),
             },

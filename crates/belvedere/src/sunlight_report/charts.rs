@@ -97,20 +97,19 @@ pub(super) fn strips(report: &SunlightReport, window: usize, words: &Words) -> S
     let at = |hour: f64| LABELS + (hour - first) / (last - first) * (WIDTH - LABELS - RIGHT);
     let mut body = String::new();
     let mut top = 2.0;
-    for (number, day) in schedule.days.iter().enumerate() {
-        let title = words.date(day.date);
+    for (title, strips) in groups_of(report, window, words) {
         let _ = write!(body, "<text class='day' x='0' y='{:.1}'>{title}</text>", top + STRIP - 3.0);
         top += STRIP + 2.0;
-        for (name, days) in strips_of(report, window) {
-            let _ = write!(body, "<text x='8' y='{:.1}'>{}</text>", top + STRIP - 3.5, words.get(name));
+        for (name, day) in strips {
+            let _ = write!(body, "<text x='8' y='{:.1}'>{name}</text>", top + STRIP - 3.5);
             let (from, to) = (at(first), at(last));
             let _ = write!(
                 body,
                 "<rect class='night' x='{from:.1}' y='{top:.1}' width='{:.1}' height='{STRIP}'/>",
                 to - from
             );
-            for stretch in &days[number].0 {
-                let [from, to] = [stretch.start, stretch.end].map(|hour| at(hour.into()));
+            for stretch in &day.0 {
+                let [from, to] = [stretch.start, stretch.end].map(|hour| at(f64::from(hour).clamp(first, last)));
                 let what = name_of(stretch.obstacle, words);
                 let times = [stretch.start, stretch.end].map(|hour| clock_time(hour.into())).join("–");
                 let _ = write!(
@@ -141,13 +140,30 @@ pub(super) fn strips(report: &SunlightReport, window: usize, words: &Words) -> S
     format!("<svg class='strips' viewBox='0 0 {WIDTH} {:.0}'>{body}</svg>", top + 14.0)
 }
 
-/// The strips of a window, each with the key of its name.
-fn strips_of(report: &SunlightReport, window: usize) -> Vec<(&'static str, &[CalendarDay])> {
-    let mut strips: Vec<(&'static str, &[CalendarDay])> =
-        report.states().map(|(name, state)| (name, &state.calendar.days[window][..])).collect();
+/// The strips of a window: for each day in detail, and for the critical day of the rule, with their names.
+fn groups_of<'a>(
+    report: &'a SunlightReport,
+    window: usize,
+    words: &Words,
+) -> Vec<(String, Vec<(String, &'a CalendarDay)>)> {
+    let days = report.before.calendar.schedule.days.iter().enumerate();
     let without = report.last().calendar.without_trees.as_ref();
-    strips.extend(without.map(|days| ("without-trees", &days[window][..])));
-    strips
+    let of_day = |(row, day): (usize, &crate::apps::sun::DayOfLight)| {
+        let states = report.states().map(|(name, state)| (words.get(name), &state.calendar.days[window][row]));
+        let without = without.map(|days| (words.get("without-trees"), &days[window][row]));
+        (words.date(day.date), states.chain(without).map(|(name, day)| (name.to_owned(), day)).collect())
+    };
+    let mut groups: Vec<_> = days.map(of_day).collect();
+    let critical = report.states().filter_map(|(name, state)| {
+        let (found, rule) = (state.of_rule.as_ref()?, state.windows[window].rule?);
+        let name = format!("{}, {}", words.get(name), words.short_date(rule.date));
+        Some((name, found.days.get(window)?.get(rule.row)?))
+    });
+    let critical: Vec<(String, &CalendarDay)> = critical.collect();
+    if !critical.is_empty() {
+        groups.push((words.get("deciding-day").to_owned(), critical));
+    }
+    groups
 }
 
 /// The sky before a window with the paths of the sun, as the last state of the scene has it.

@@ -3,15 +3,19 @@
 //! | step | file |
 //! |---|---|
 //! | questions to the scene as it is and as planned | here |
+//! | areas, and the shade that a plan adds to them | `areas.rs` |
 //! | verdicts on rules | `verdict.rs` |
 //! | maps of shadow | `maps.rs` |
 //! | strips of days and diagrams of the sky | `charts.rs` |
+//! | the answer in sentences | `sentences.rs` |
 //! | the page | `page.rs`, `report.css` |
 //! | its texts in four languages | `words.rs`, `words.csv` |
 
+mod areas;
 mod charts;
 mod maps;
 mod page;
+mod sentences;
 mod sources;
 mod verdict;
 mod words;
@@ -21,17 +25,18 @@ pub use verdict::{RuleFinding, Verdict};
 pub use words::Language;
 
 use crate::apps::ask::{
-    self, Answers, Days, GivenWindow, GivenWindows, GridCells, Places, Remark, Scene, SunCalendarQuestion,
-    SunCalendarResults, SunHoursQuestion, SunPlace, knows_intervals,
+    self, Answers, Days, GivenWindow, GivenWindows, Places, Remark, Scene, SunCalendarQuestion, SunCalendarResults,
+    SunHoursQuestion, SunPlace, knows_intervals,
 };
 use crate::apps::sun::{Date, Zone};
 use crate::apps::sun_calendar::{SunObstacle, sun_lines};
 use crate::apps::sun_hours::SunRule;
-use crate::apps::targets::{CellLevel, Measure, Targets};
+use crate::apps::targets::{Measure, Targets};
 use crate::cloud::ADJUSTED_GPS_EPOCH;
 use crate::control::Control;
 use crate::query::UnprovenAs;
 use crate::{Error, GpsTimeKind, Parameter, Result};
+use areas::AreaState;
 use charts::SkyView;
 use maps::ShadowMap;
 use std::sync::Arc;
@@ -40,10 +45,6 @@ use std::sync::Arc;
 const DAYS: [&str; 3] = ["equinox", "longest-day", "shortest-day"];
 /// Rule of areas unless another is given.
 pub const AREA_RULE: &str = "bre-equinox";
-/// Minutes between two suns in areas, which have many places.
-const AREA_STEP_MIN: f64 = 10.0;
-/// Side of the cells of areas, metres.
-const AREA_CELL: f64 = 0.5;
 
 /// An area that keeps its sun: a garden, a square.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,8 +80,10 @@ pub struct ReportParams {
     pub sources: Vec<ReportSource>,
     /// Command or code that makes the report again.
     pub command: String,
-    /// Day of the report.
+    /// Day of the report, such as 2026-11-29.
     pub date: String,
+    /// Lines below the title, such as the client, the address and the author.
+    pub notes: Vec<String>,
 }
 
 /// Sun of a window in one state of the scene.
@@ -90,19 +93,11 @@ struct WindowState {
     rule: Option<RuleFinding>,
 }
 
-/// Sun of an area in one state of the scene.
-struct AreaState {
-    /// Share of the area that meets the rule, 0 to 1.
-    share: f64,
-    /// Mean hours of sun a day on the days of the rule.
-    hours: f64,
-    /// Number of cells on the ground.
-    cells: usize,
-}
-
 /// Findings on the scene as it is, or as it is planned.
 struct State {
     calendar: SunCalendarResults,
+    /// The same on the days of the rule of windows; `None` without a rule.
+    of_rule: Option<SunCalendarResults>,
     windows: Vec<WindowState>,
     areas: Vec<AreaState>,
     maps: Vec<ShadowMap>,
@@ -206,7 +201,7 @@ pub fn sunlight_report(
     }
     let mut after = planned.map(|scene| State::of(scene, params, box_of_maps, &mut remarks, control)).transpose()?;
     for (area, was) in after.iter_mut().flat_map(|state| &mut state.areas).zip(&before.areas) {
-        area.cover(was.cells);
+        area.compare(was, &before.calendar.schedule);
     }
     let (low, high) = present.model().bounds().on_map();
     let count = present.cloud().len() as f64;
@@ -274,7 +269,7 @@ impl State {
             }
             windows.push(WindowState { intervals: of_days.unwrap_or_default(), rule });
         }
-        let areas = params.areas.iter().map(|area| AreaState::of(scene, area, params, control));
+        let areas = params.areas.iter().map(|area| AreaState::of(scene, area, params, &calendar.schedule, control));
         let areas = areas.collect::<Result<Vec<_>>>()?;
         let maps = maps::shadow_maps(scene, params, &calendar, box_of_maps, control)?;
         let blockers = scene.blockers(UnprovenAs::Reported, control)?;
@@ -284,7 +279,7 @@ impl State {
             SkyView::new(azimuth, |directions| sun_lines(&blockers, place, None, &calendar.kinds, directions))
         };
         let skies = (0..calendar.windows.len()).map(sky).collect();
-        Ok(Self { calendar, windows, areas, maps, skies })
+        Ok(Self { calendar, of_rule, windows, areas, maps, skies })
     }
 }
 
@@ -338,47 +333,11 @@ impl<'a> Intervals<'a> {
     }
 }
 
-impl AreaState {
-    /// Counts the ground that a plan covers, of so many cells in all, as ground without sun.
-    fn cover(&mut self, cells: usize) {
-        let left = self.cells as f64 / cells as f64;
-        let scaled = |value: f64| if self.cells == 0 { 0.0 } else { value * left };
-        [self.share, self.hours] = [self.share, self.hours].map(scaled);
-    }
-
-    fn of(scene: &Scene, area: &ReportArea, params: &ReportParams, control: &Control<'_>) -> Result<Self> {
-        let corners = || area.rings.iter().flatten();
-        let end = |pick: fn(f64, f64) -> f64, start| [0, 1].map(|axis| corners().map(|c| c[axis]).fold(start, pick));
-        let cells = GridCells {
-            cell: Some(AREA_CELL),
-            level: CellLevel::Ground,
-            bounds: Some((end(f64::min, f64::INFINITY), end(f64::max, f64::NEG_INFINITY))),
-            within: area.rings.clone(),
-            ..GridCells::default()
-        };
-        let step = params.days.time_step_min.or(Some(AREA_STEP_MIN));
-        let question = SunHoursQuestion {
-            days: Days { year: params.days.year, time_step_min: step, ..Days::default() },
-            rules: vec![params.area_rule().to_owned()],
-            place: params.place.clone(),
-            ..SunHoursQuestion::default()
-        };
-        let answers = ask::ask(scene, &question, &Places::Cells(cells), control)?;
-        let mean = |measure: Option<&Measure>| {
-            let known = measure.into_iter().flat_map(|measure| &measure.values).filter(|value| value.is_finite());
-            let values: Vec<f64> = known.map(|&value| value.into()).collect();
-            values.iter().sum::<f64>() / values.len() as f64
-        };
-        let cells = answers.found.targets.target_count();
-        Ok(Self { share: mean(answers.measures.last()), hours: mean(answers.measures.first()), cells })
-    }
-}
-
 impl SunlightReport {
     /// The answer in a few lines, one for each window and area.
     #[must_use]
     pub fn headlines(&self) -> Vec<String> {
-        page::sentences(self, &words::Words::of(Language::English))
+        sentences::sentences(self, &words::Words::of(Language::English))
     }
 
     /// The report as one HTML file that needs no other file and no network.

@@ -2,12 +2,13 @@
 
 use super::charts::{LEGEND, color, name_of, sky, strips};
 use super::maps::ShadowMap;
-use super::verdict::{RuleFinding, Verdict};
+use super::sentences::{hours_in_words, percent, rule_in_words, sentences, verdict_words};
+use super::verdict::RuleFinding;
 use super::words::Words;
 use super::{State, SunlightReport, lost_sun};
 use crate::Result;
+use crate::apps::sun::Date;
 use crate::apps::sun_calendar::{CalendarDay, SunObstacle};
-use crate::apps::sun_hours::{Counted, NeededDays, RuleDays, SunRule, WindowClock};
 use crate::figures::{MapLegend, MapMark, MapPicture, map_image, png_bytes};
 use crate::results::clock_time;
 use base64::Engine as _;
@@ -39,16 +40,6 @@ fn hm(hours: f64) -> String {
     format!("{sign}{}:{:02}", whole(minutes) / 60, whole(minutes) % 60)
 }
 
-/// Hours in a sentence: 3 h 12 min.
-fn hours_in_words(hours: f64) -> String {
-    let minutes = whole((hours * 60.0).round());
-    match (minutes / 60, minutes % 60) {
-        (0, minutes) => format!("{minutes} min"),
-        (hours, 0) => format!("{hours} h"),
-        (hours, minutes) => format!("{hours} h {minutes} min"),
-    }
-}
-
 /// A change of hours in minutes, with its sign.
 fn change(before: f64, after: f64) -> String {
     let minutes = ((after - before) * 60.0).round();
@@ -60,125 +51,6 @@ fn change(before: f64, after: f64) -> String {
     }
 }
 
-fn percent(share: f64) -> String {
-    if share.is_finite() { format!("{:.0}", 100.0 * share) } else { "–".to_owned() }
-}
-
-fn verdict_words(verdict: Verdict, words: &Words) -> &'static str {
-    match verdict {
-        Verdict::Met => words.get("met"),
-        Verdict::NotMet => words.get("not-met"),
-        Verdict::MetUncertain => words.get("met-uncertain"),
-        Verdict::NotMetUncertain => words.get("not-met-uncertain"),
-    }
-}
-
-/// A rule in the language of the words, with its name.
-fn rule_in_words(rule: &SunRule, report: &SunlightReport, words: &Words) -> String {
-    let calendar = &report.before.calendar;
-    let of_days = calendar.schedule.days.first().map(|day| day.date.year());
-    let year = report.params.days.year.or(of_days).unwrap_or_default();
-    let dates = rule.days.dates(year, &calendar.site, &calendar.zone).unwrap_or_default();
-    let [Some(first), Some(last)] = [dates.first(), dates.last()] else { return rule.description.clone() };
-    let hours = hours_in_words(rule.hours);
-    let ends = [("hours", hours.as_str()), ("from", &words.short_date(*first)), ("to", &words.short_date(*last))];
-    let mut text = match (rule.days, rule.needed) {
-        _ if dates.len() == 1 => words.with("rule-on", &[("hours", &hours), ("day", &words.short_date(*first))]),
-        (RuleDays::Equinoxes, _) => words.with("rule-two", &ends),
-        (_, NeededDays::All) => words.with("rule-each", &ends),
-        (_, NeededDays::Any) => words.with("rule-any", &ends),
-    };
-    if rule.counted == Counted::LongestPiece {
-        text += &format!(" {}", words.get("rule-piece"));
-    }
-    if let Some(window) = rule.window {
-        let [from, to] = window.hours.map(clock_time);
-        text += &format!(" {}", words.with("rule-hours", &[("from", &from), ("to", &to)]));
-        if window.clock == WindowClock::Sun {
-            text += &format!(" {}", words.get("rule-solar"));
-        }
-    }
-    if rule.min_elevation > 0.0 {
-        let degrees = format!("{:.0}", rule.min_elevation.to_degrees());
-        text += &format!(" {}", words.with("rule-above", &[("degrees", &degrees)]));
-    }
-    match SunRule::columns().any(|(name, _)| name == rule.name) {
-        true => format!("{text} ({})", rule.name),
-        false => text,
-    }
-}
-
-/// The answer: a sentence for all windows, and one for each window and area.
-pub(super) fn sentences(report: &SunlightReport, words: &Words) -> Vec<String> {
-    let (before, last) = (&report.before, report.last());
-    let is_planned = report.after.is_some();
-    let mut all = Vec::new();
-    if report.rule.is_some() && last.windows.len() > 1 {
-        let met = |state: &State| {
-            let rules = state.windows.iter().filter_map(|window| window.rule);
-            rules.filter(|rule| rule.verdict().is_met()).count().to_string()
-        };
-        let count = last.windows.len().to_string();
-        let key = if is_planned { "all-met-change" } else { "all-met" };
-        all.push(words.with(key, &[("met", &met(last)), ("before", &met(before)), ("count", &count)]));
-    }
-    for number in 0..last.windows.len() {
-        let name = report.params.window_name(number, words);
-        if !last.calendar.targets.is_target(number) {
-            all.push(words.with("no-position", &[("name", &name)]));
-            continue;
-        }
-        let (was, will) = (before.windows[number].rule, last.windows[number].rule);
-        let (day, hours, was_hours, verdict, required) = match (was, will) {
-            (Some(was), Some(will)) => {
-                let verdict = match (was.verdict(), will.verdict()) {
-                    (was, will) if is_planned && was.is_met() != will.is_met() => {
-                        let [was, will] = [was, will].map(|verdict| verdict_words(verdict, words));
-                        format!("{will} ({} {was})", words.get("before"))
-                    }
-                    (_, will) => verdict_words(will, words).to_owned(),
-                };
-                (will.date, will.hours, was.hours, verdict, hours_in_words(will.required))
-            }
-            _ => {
-                let Some(day) = last.calendar.schedule.days.first() else { continue };
-                let of = |state: &State| state.calendar.days[number][0].sun_hours();
-                (day.date, of(last), of(before), String::new(), String::new())
-            }
-        };
-        let is_same = change(was_hours, hours) == "0";
-        let key = match (will.is_some(), is_planned) {
-            (true, true) if is_same => "window-rule-same",
-            (true, true) => "window-rule-change",
-            (true, false) => "window-rule",
-            (false, true) if is_same => "window-day-same",
-            (false, true) => "window-day-change",
-            (false, false) => "window-day",
-        };
-        let values = [
-            ("name", name.as_str()),
-            ("hours", &hours_in_words(hours)),
-            ("before", &hours_in_words(was_hours)),
-            ("day", &words.date(day)),
-            ("required", &required),
-            ("verdict", &verdict),
-        ];
-        all.push(words.with(key, &values));
-    }
-    for (number, (was, will)) in before.areas.iter().zip(&last.areas).enumerate() {
-        let name = report.params.area_name(number, words);
-        let key = if is_planned { "area-rule-change" } else { "area-rule" };
-        let values = [
-            ("name", name.as_str()),
-            ("share", &percent(will.share)),
-            ("before", &percent(was.share)),
-            ("rule", &rule_in_words(&report.area_rule, report, words)),
-        ];
-        all.push(words.with(key, &values));
-    }
-    all
-}
-
 /// The whole page.
 pub(super) fn html(report: &SunlightReport) -> Result<String> {
     let words = Words::of(report.params.language);
@@ -187,6 +59,9 @@ pub(super) fn html(report: &SunlightReport) -> Result<String> {
     let mut body = format!("<h1>{}</h1>", escaped(title));
     if !report.params.title.is_empty() {
         let _ = write!(body, "<p class='subtitle'>{usual}</p>");
+    }
+    for note in &report.params.notes {
+        let _ = write!(body, "<p class='note'>{}</p>", escaped(note));
     }
     let answers: String = sentences(report, &words).iter().map(|line| format!("<li>{}</li>", escaped(line))).collect();
     let _ = write!(body, "<h2>{}</h2><ul class='answer'>{answers}</ul>", words.get("answer"));
@@ -249,8 +124,13 @@ fn window_table(report: &SunlightReport, words: &Words) -> String {
         let azimuth = (window.azimuth + calendar.grid_north).to_degrees().rem_euclid(360.0);
         let height = calendar.targets.frame.file_from_local(window.center)[2];
         let name = escaped(&report.params.window_name(number, words));
-        let _ =
-            write!(rows, "<tr><th>{}. {name}</th><td>{}</td><td>{height:.1}</td>", number + 1, compass(azimuth, words));
+        let _ = write!(
+            rows,
+            "<tr><th>{}. {name}</th><td>{}</td><td>{}</td>",
+            number + 1,
+            compass(azimuth, words),
+            words.number(height, 1)
+        );
         for day in 0..days.len() {
             let hours = |state: &State| state.calendar.days[number][day].sun_hours();
             let cell = |state: &State| {
@@ -272,10 +152,8 @@ fn window_table(report: &SunlightReport, words: &Words) -> String {
     }
     let title = words.get("windows");
     let mut text = format!(
-        "<h2>{title}</h2><p class='note'>{}. {}: {}.</p><table><thead><tr>{head}</tr><tr>{second}</tr></thead><tbody>{rows}</tbody></table>",
-        words.get("hours-of"),
-        "<small>0:00–0:00</small>",
-        words.get("interval")
+        "<h2>{title}</h2><p class='note'>{}</p><table><thead><tr>{head}</tr><tr>{second}</tr></thead><tbody>{rows}</tbody></table>",
+        words.get("hours-of")
     );
     if report.rule.is_some() {
         text += &rule_table(report, words);
@@ -303,11 +181,13 @@ fn rule_table(report: &SunlightReport, words: &Words) -> String {
                 if row == 0 { format!("<th rowspan='{count}'>{}. {name}</th>", number + 1) } else { String::new() };
             let RuleFinding { date, hours, without_trees, interval, days: [enough, all], .. } = rule;
             let verdict = rule.verdict();
-            let class = if verdict.is_met() { "met" } else { "not-met" };
+            let class_of = |is_met: bool| if is_met { "met" } else { "not-met" };
+            let class = class_of(verdict.is_met());
+            let class_without = rule.is_met_without_trees().map_or("", class_of);
             let interval = interval.map_or("–".to_owned(), |[low, high]| format!("{}–{}", hm(low), hm(high)));
             let _ = write!(
                 rows,
-                "<tr>{start}<td>{}</td><td class='{class}'>{}</td><td class='day'>{}</td><td>{}</td><td>{interval}</td><td>{}</td><td>{enough} / {all}</td></tr>",
+                "<tr>{start}<td>{}</td><td class='{class}'>{}</td><td class='day'>{}</td><td>{}</td><td>{interval}</td><td class='{class_without}'>{}</td><td>{enough} / {all}</td></tr>",
                 words.get(state_name),
                 verdict_words(verdict, words),
                 words.short_date(date),
@@ -344,19 +224,46 @@ fn area_table(report: &SunlightReport, words: &Words) -> String {
             );
         }
     }
-    let half = match report.area_rule.name.starts_with("bre-") {
+    let half = match report.area_rule.name.starts_with(super::sentences::BRE) {
         true => format!(" {}", words.get("bre-half")),
         false => String::new(),
     };
     let names = ["areas", "share", "kept", "mean-hours", "cells"].map(|key| words.get(key));
     let head: String = names[1..].iter().map(|name| format!("<th>{name}</th>")).collect();
     format!(
-        "<section class='areas'><h2>{}</h2><p>{}: {}.{half}</p><table><thead><tr><th>{}</th><th></th>{head}</tr></thead><tbody>{rows}</tbody></table></section>",
+        "<section class='areas'><h2>{}</h2><p>{}: {}.{half}</p><table><thead><tr><th>{}</th><th></th>{head}</tr></thead><tbody>{rows}</tbody></table>{}</section>",
         names[0],
         words.get("rule"),
         escaped(&rule_in_words(&report.area_rule, report, words)),
-        words.get("area")
+        words.get("area"),
+        added_table(report, words)
     )
+}
+
+/// Shade that a plan adds to each area and day: its first and last time, duration, and greatest share.
+fn added_table(report: &SunlightReport, words: &Words) -> String {
+    let Some(after) = &report.after else { return String::new() };
+    let mut rows = String::new();
+    for (number, area) in after.areas.iter().enumerate() {
+        for found in &area.added {
+            let [from, to, at] = [found.ends[0], found.ends[1], found.most.1].map(|hour| clock_time(hour.into()));
+            let _ = write!(
+                rows,
+                "<tr><th>{}</th><td>{}</td><td>{from}</td><td>{to}</td><td>{}</td><td>{} % ({at})</td><td>{:.0}</td></tr>",
+                escaped(&report.params.area_name(number, words)),
+                words.short_date(found.date),
+                hm(found.hours.into()),
+                percent(found.most.0),
+                found.area_hours,
+            );
+        }
+    }
+    if rows.is_empty() {
+        return format!("<p>{}</p>", words.get("no-added"));
+    }
+    let names = ["area", "date", "from", "to", "duration", "at-most", "area-hours"].map(|key| words.get(key));
+    let head: String = names.iter().map(|name| format!("<th>{name}</th>")).collect();
+    format!("<h3>{}</h3><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>", words.get("added"))
 }
 
 /// Colours of the cells of a map: what the plan adds and frees where there is one.
@@ -502,12 +409,9 @@ fn lost_table(report: &SunlightReport, window: usize, words: &Words) -> String {
     if lost.is_empty() {
         return format!("<p>{}</p>", words.get("nothing-lost"));
     }
-    let row = |(date, start, end, obstacle): &(crate::apps::sun::Date, f32, f32, _)| {
+    let row = |(date, start, end, obstacle): &(Date, f32, f32, _)| {
         let [from, to] = [start, end].map(|&hour| clock_time(hour.into()));
-        let object = match obstacle {
-            SunObstacle::Mesh(_) => crate::results::file_name(after.calendar.name_of(*obstacle)),
-            _ => name_of(*obstacle, words).to_owned(),
-        };
+        let object = object_of(after, *obstacle, name_of(*obstacle, words));
         let minutes = (f64::from(end - start) * 60.0).round();
         format!(
             "<tr><th>{}</th><td>{from}</td><td>{to}</td><td>{minutes:.0}</td><td>{}</td></tr>",
@@ -530,7 +434,7 @@ fn details(report: &SunlightReport, words: &Words) -> String {
         false => format!("{}, ", words.with("flown", &[("from", &words.date(from)), ("to", &words.date(to))])),
     });
     let points = flown.unwrap_or_default()
-        + &words.with("points", &[("count", &format!("{count:.0}")), ("density", &format!("{density:.1}"))]);
+        + &words.with("points", &[("count", &words.number(count, 0)), ("density", &words.number(density, 1))]);
     let file = |source: &super::ReportSource| {
         let hash = if source.sha256.is_empty() {
             String::new()
@@ -548,7 +452,10 @@ fn details(report: &SunlightReport, words: &Words) -> String {
     };
     let files: String = params.sources.iter().map(file).collect();
     let rows = [
-        (words.get("made-on"), escaped(&params.date)),
+        (
+            words.get("made-on"),
+            Date::parse(&params.date).map_or_else(|_| escaped(&params.date), |date| words.date(date)),
+        ),
         (words.get("place"), format!("{latitude:.5}, {longitude:.5}")),
         (words.get("system"), escaped(&report.reference_system)),
         (words.get("clock"), escaped(report.before.calendar.zone.name())),
@@ -579,28 +486,35 @@ fn limits(report: &SunlightReport, words: &Words) -> String {
     page
 }
 
-/// All stretches as a table inside the page that can be saved.
+/// Name of the file of a mesh that shades, or of another obstacle.
+fn object_of(state: &State, obstacle: SunObstacle, other: &str) -> String {
+    match obstacle {
+        SunObstacle::Mesh(_) => crate::results::file_name(state.calendar.name_of(obstacle)),
+        _ => other.to_owned(),
+    }
+}
+
+/// All stretches as a table inside the page that can be saved: those of the days in detail and of critical days.
 fn all_rows(report: &SunlightReport, words: &Words) -> String {
-    let mut csv = "state,window,name,date,from,to,hours,obstacle,object,unproven_hours\n".to_owned();
+    let mut csv = "state,window,name,date,from,to,hours,obstacle,object,unproven_hours,day\n".to_owned();
     for (state_name, state) in report.states() {
         for (window, days) in state.calendar.days.iter().enumerate() {
             let name = report.params.window_name(window, words).replace(['"', '\n'], " ");
-            for (day, found) in state.calendar.schedule.days.iter().zip(days) {
+            let detailed = state.calendar.schedule.days.iter().zip(days).map(|(of, day)| ("detail", of.date, day));
+            let rule = state.windows.get(window).and_then(|window| window.rule);
+            let critical = rule.and_then(|rule| {
+                Some(("critical", rule.date, state.of_rule.as_ref()?.days.get(window)?.get(rule.row)?))
+            });
+            for (kind, date, found) in detailed.chain(critical) {
                 for stretch in &found.0 {
                     let [from, to] = [stretch.start, stretch.end].map(|hour| clock_time(hour.into()));
-                    let object = match stretch.obstacle {
-                        SunObstacle::Mesh(_) => {
-                            crate::results::file_name(state.calendar.name_of(stretch.obstacle)).replace('"', " ")
-                        }
-                        _ => String::new(),
-                    };
                     let _ = writeln!(
                         csv,
-                        "{state_name},{},\"{name}\",{},{from},{to},{:.3},{},\"{object}\",{:.3}",
+                        "{state_name},{},\"{name}\",{date},{from},{to},{:.3},{},\"{}\",{:.3},{kind}",
                         window + 1,
-                        day.date,
                         stretch.hours(),
                         stretch.obstacle.name(),
+                        object_of(state, stretch.obstacle, "").replace('"', " "),
                         stretch.unproven,
                     );
                 }
@@ -623,7 +537,6 @@ mod tests {
     #[test]
     fn hours_are_hours_and_minutes() {
         assert_eq!([3.2, 0.999, -0.5, 0.0, f64::NAN].map(hm), ["3:12", "1:00", "−0:30", "0:00", "–"]);
-        assert_eq!([3.2, 2.0, 0.25].map(hours_in_words), ["3 h 12 min", "2 h", "15 min"]);
         assert_eq!(change(2.0, 1.5), "−30");
         assert_eq!(change(1.5, 2.0), "+30");
         assert_eq!(change(1.5, 1.5001), "0");

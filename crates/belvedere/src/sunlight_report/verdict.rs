@@ -11,11 +11,13 @@ const ROUNDING: f64 = 1e-4;
 /// A rule at a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RuleFinding {
-    /// Day that decides: that with the least sun, or with the most where one day is enough.
+    /// Critical day: that with the least sun, or with the most where one day is enough.
     pub date: Date,
+    /// Row of that day among those of the rule.
+    pub row: usize,
     /// Hours that count on it.
     pub hours: f64,
-    /// The same without trees; `None` where trees are not known.
+    /// Hours on the critical day without trees, which may be another day; `None` where trees are not known.
     pub without_trees: Option<f64>,
     /// Interval of the hours that holds the truth in nine of ten cases; `None` if it is not known.
     pub interval: Option<[f64; 2]>,
@@ -39,7 +41,7 @@ pub enum Verdict {
 }
 
 impl RuleFinding {
-    /// Finds the day that decides on the rule of a calendar at a window; `None` without a rule or a position.
+    /// Finds the critical day of the rule of a calendar at a window; `None` without a rule or a position.
     pub(super) fn of(found: &SunCalendarResults, window: usize) -> Option<Self> {
         let rule = found.rule.as_ref()?;
         if !found.targets.is_target(window) {
@@ -49,20 +51,24 @@ impl RuleFinding {
             Counted::All => day.sun_hours(),
             Counted::LongestPiece => day.longest(),
         };
-        let days = found.days.get(window)?;
-        let hours: Vec<f64> = days.iter().map(counted).collect();
-        let numbered = hours.iter().enumerate();
-        let (number, &of_day) = match rule.needed {
-            NeededDays::All => numbered.min_by(|a, b| a.1.total_cmp(b.1))?,
-            // the first of the best
-            NeededDays::Any => numbered.rev().max_by(|a, b| a.1.total_cmp(b.1))?,
+        let critical = |days: &[CalendarDay]| {
+            let hours = days.iter().map(counted).enumerate();
+            match rule.needed {
+                NeededDays::All => hours.min_by(|a, b| a.1.total_cmp(&b.1)),
+                // the first of the best
+                NeededDays::Any => hours.collect::<Vec<_>>().into_iter().rev().max_by(|a, b| a.1.total_cmp(&b.1)),
+            }
         };
-        let without = found.without_trees.as_ref().and_then(|all| all.get(window)?.get(number)).map(counted);
+        let days = found.days.get(window)?;
+        let (row, of_day) = critical(days)?;
+        let without = found.without_trees.as_ref().and_then(|all| critical(all.get(window)?));
+        let hours: Vec<f64> = days.iter().map(counted).collect();
         let enough = hours.iter().filter(|&&hours| hours >= rule.hours - ROUNDING).count();
         Some(Self {
-            date: found.schedule.days.get(number)?.date,
+            date: found.schedule.days.get(row)?.date,
+            row,
             hours: of_day,
-            without_trees: without,
+            without_trees: without.map(|(_, hours)| hours),
             interval: None,
             required: rule.hours,
             days: [enough, hours.len()],
@@ -72,6 +78,12 @@ impl RuleFinding {
     /// Sets the interval to the hours with the differences of its ends.
     pub(super) fn widen(&mut self, ends: Option<[f64; 2]>) {
         self.interval = ends.map(|[low, high]| [(self.hours + low).max(0.0), self.hours + high]);
+    }
+
+    /// Returns true if the hours suffice without trees; `None` where trees are not known.
+    #[must_use]
+    pub fn is_met_without_trees(&self) -> Option<bool> {
+        self.without_trees.map(|hours| hours >= self.required - ROUNDING)
     }
 
     /// The verdict.
@@ -111,7 +123,7 @@ mod tests {
         let date = Date::new(2026, 3, 21).unwrap();
         let of = |hours: f64, ends: Option<[f64; 2]>| {
             let mut found =
-                RuleFinding { date, hours, without_trees: None, interval: None, required: 2.0, days: [0, 1] };
+                RuleFinding { date, row: 0, hours, without_trees: None, interval: None, required: 2.0, days: [0, 1] };
             found.widen(ends);
             found.verdict()
         };

@@ -61,6 +61,27 @@ impl Words {
         text
     }
 
+    /// Returns a number as the language writes it: 11.3 or 11,3; 163,095 or 163.095 or 163 095.
+    pub(super) fn number(&self, value: f64, decimals: usize) -> String {
+        let (point, group) = match self.language {
+            Language::English => (".", ","),
+            Language::Dutch | Language::German => (",", "."),
+            Language::French => (",", "\u{202f}"),
+        };
+        let text = format!("{:.decimals$}", value.abs());
+        let (whole, rest) = text.split_once('.').unwrap_or((&text, ""));
+        let mut grouped = String::new();
+        for (place, digit) in whole.chars().enumerate() {
+            if place > 0 && (whole.len() - place).is_multiple_of(3) {
+                grouped += group;
+            }
+            grouped.push(digit);
+        }
+        let sign = if value < 0.0 { "−" } else { "" };
+        let point = if rest.is_empty() { "" } else { point };
+        format!("{sign}{grouped}{point}{rest}")
+    }
+
     fn month(&self, date: Date) -> &'static str {
         let number = usize::try_from(date.month()).unwrap_or(1);
         self.get("months").split('|').nth(number.max(1) - 1).unwrap_or_default()
@@ -83,7 +104,13 @@ mod tests {
     use super::*;
 
     /// Sources that use texts.
-    const USERS: [&str; 3] = [include_str!("page.rs"), include_str!("charts.rs"), include_str!("mod.rs")];
+    const USERS: [&str; 5] = [
+        include_str!("page.rs"),
+        include_str!("sentences.rs"),
+        include_str!("charts.rs"),
+        include_str!("mod.rs"),
+        include_str!("words.rs"),
+    ];
 
     #[test]
     fn every_text_is_there_in_every_language_and_is_used() {
@@ -107,6 +134,14 @@ mod tests {
                 assert!(TABLE.lines().any(|line| line.split(';').next() == Some(key)), "{key} has no text");
             }
         }
+    }
+
+    #[test]
+    fn numbers_are_those_of_the_language() {
+        let of = |language| [(163_095.0, 0), (11.34, 1), (-0.5, 1)].map(|(v, n)| Words::of(language).number(v, n));
+        assert_eq!(of(Language::English), ["163,095", "11.3", "−0.5"]);
+        assert_eq!(of(Language::German), ["163.095", "11,3", "−0,5"]);
+        assert_eq!(of(Language::French), ["163\u{202f}095", "11,3", "−0,5"]);
     }
 
     #[test]

@@ -2,11 +2,11 @@
 
 use crate::common::simulated::cloud_of;
 use belvedere::apps::ask::{
-    Days, GivenWindow, GivenWindows, Places, Scene, SunCalendarQuestion, SunCalendarResults, SunHoursQuestion,
-    SunPlace, ask,
+    Days, GivenWindow, GivenWindows, GridCells, Places, Scene, SunCalendarQuestion, SunCalendarResults,
+    SunHoursQuestion, SunPlace, ask,
 };
 use belvedere::apps::sun::{Date, Refraction, Site, Zone, sun_position_with};
-use belvedere::apps::sun_calendar::SunObstacle;
+use belvedere::apps::sun_calendar::{CalendarDay, SunObstacle};
 use belvedere::apps::window_views::SeenKind;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
@@ -172,7 +172,7 @@ fn a_report_says_what_calendars_and_hours_of_sun_say_in_four_languages() {
     let mut params = ReportParams {
         windows: windows(&present),
         names: vec!["<b>kitchen & \"hall\"</b>".to_owned()],
-        areas: vec![ReportArea { name: String::new(), rings: vec![ring] }],
+        areas: vec![ReportArea { name: String::new(), rings: vec![ring.clone()] }],
         rule: Some("2@equinoxes@8-17".to_owned()),
         days: Days { dates: vec!["2026-03-21".to_owned()], year: Some(2026), ..Days::default() },
         place: SunPlace { zone: Some("Europe/Amsterdam".to_owned()), ..SunPlace::default() },
@@ -180,8 +180,11 @@ fn a_report_says_what_calendars_and_hours_of_sun_say_in_four_languages() {
     };
     let report = sunlight_report(&present, Some(&planned), &params, &Control::none()).unwrap();
     let said = report.headlines();
-    assert_eq!(said.len(), 14, "{said:?}");
-    assert!(said[0].contains("of 12 windows meet the rule with the plan"), "{said:?}");
+    assert_eq!(said.len(), 15, "{said:?}");
+    assert!(
+        said[0].starts_with("Windows that meet the rule: ") && said[0].contains(" of 12 with the plan, "),
+        "{said:?}"
+    );
     assert!(said[1].starts_with("<b>kitchen & \"hall\"</b>: ") && said[2].starts_with("Window 2: "), "{said:?}");
     assert!(said[13].starts_with("Area 1: "), "{said:?}");
     let page = report.to_html().unwrap();
@@ -196,13 +199,45 @@ fn a_report_says_what_calendars_and_hours_of_sun_say_in_four_languages() {
             &SunCalendarQuestion { place: params.place.clone(), ..question(params.windows.clone(), "2026-03-21", 2.0) },
         );
         for (number, days) in found.days.iter().enumerate() {
-            let is_of = |cells: &[&str]| cells[0] == state && cells[1] == (number + 1).to_string() && cells[7] == "sun";
+            let is_of = |cells: &[&str]| {
+                cells[0] == state && cells[1] == (number + 1).to_string() && cells[7] == "sun" && cells[10] == "detail"
+            };
             let cells = rows.lines().skip(1).map(|row| row.split(',').collect::<Vec<_>>()).filter(|cells| is_of(cells));
             let hours: f64 = cells.map(|cells| cells[6].parse::<f64>().unwrap()).sum();
             // three decimals in each row
             assert!((hours - days[0].sun_hours()).abs() < 0.02, "{state} {number}: {hours} {}", days[0].sun_hours());
         }
     }
+    // shade of the plan on the area, by the first obstacle on each line
+    let cells = GridCells {
+        cell: Some(0.5),
+        bounds: Some((ring[0], ring[2])),
+        within: vec![ring.clone()],
+        ..GridCells::default()
+    };
+    let of_cells = SunCalendarQuestion {
+        days: Days { dates: vec!["2026-03-21".to_owned()], ..Days::default() },
+        place: params.place.clone(),
+        ..SunCalendarQuestion::default()
+    };
+    let [was, will] = [&present, &planned]
+        .map(|scene| ask(scene, &of_cells, &Places::Cells(cells.clone()), &Control::none()).unwrap().found);
+    let count = was.targets.target_count() as f64;
+    let is_sun = |days: &[CalendarDay], hour: f32| days[0].sun().any(|s| s.start <= hour && hour < s.end);
+    let (mut times, mut most) = (Vec::new(), 0.0_f64);
+    for step in &was.schedule.days[0].steps {
+        let hour = step.start + step.hours / 2.0;
+        let pairs = was.days.iter().zip(&will.days);
+        let lost = pairs.filter(|(was, will)| is_sun(was, hour) && !is_sun(will, hour)).count() as f64 / count;
+        if lost >= 0.01 {
+            times.extend([step.start, step.start + step.hours]);
+            most = most.max(lost);
+        }
+    }
+    let [first, last] = [times[0], *times.last().unwrap()].map(|hour| clock_time(hour.into()));
+    let row = format!("<tr><th>Area 1</th><td>21 March</td><td>{first}</td><td>{last}</td>");
+    assert!(page.contains(&row), "{row}");
+    assert!(page.contains(&format!("<td>{:.0} % (", 100.0 * most)), "{most}");
     let mut pages = vec![page];
     for (code, language) in Language::ALL.into_iter().skip(1) {
         params.language = language;

@@ -1,0 +1,215 @@
+//! The answer of a report in sentences.
+
+use super::page::whole;
+use super::verdict::{RuleFinding, Verdict};
+use super::words::Words;
+use super::{State, SunlightReport};
+use crate::apps::sun_hours::{Counted, NeededDays, RuleDays, SunRule, WindowClock};
+use crate::results::clock_time;
+
+/// Beginning of the names of rules of BRE 209.
+pub(super) const BRE: &str = "bre-";
+/// Share of an open space that must have the sun of the rule, and else of the share before (BRE 209, 2022, section 3.3).
+const BRE_SHARE: f64 = 0.5;
+const BRE_KEPT: f64 = 0.8;
+
+/// Hours in a sentence: 3 h 12 min.
+pub(super) fn hours_in_words(hours: f64) -> String {
+    let minutes = whole((hours * 60.0).round());
+    match (minutes / 60, minutes % 60) {
+        (0, minutes) => format!("{minutes} min"),
+        (hours, 0) => format!("{hours} h"),
+        (hours, minutes) => format!("{hours} h {minutes} min"),
+    }
+}
+
+/// A share in percent.
+pub(super) fn percent(share: f64) -> String {
+    if share.is_finite() { format!("{:.0}", 100.0 * share) } else { "–".to_owned() }
+}
+
+/// A verdict in the language of the words.
+pub(super) fn verdict_words(verdict: Verdict, words: &Words) -> &'static str {
+    match verdict {
+        Verdict::Met => words.get("met"),
+        Verdict::NotMet => words.get("not-met"),
+        Verdict::MetUncertain => words.get("met-uncertain"),
+        Verdict::NotMetUncertain => words.get("not-met-uncertain"),
+    }
+}
+
+/// A rule in the language of the words, with its name.
+pub(super) fn rule_in_words(rule: &SunRule, report: &SunlightReport, words: &Words) -> String {
+    let calendar = &report.before.calendar;
+    let of_days = calendar.schedule.days.first().map(|day| day.date.year());
+    let year = report.params.days.year.or(of_days).unwrap_or_default();
+    let dates = rule.days.dates(year, &calendar.site, &calendar.zone).unwrap_or_default();
+    let [Some(first), Some(last)] = [dates.first(), dates.last()] else { return rule.description.clone() };
+    let hours = hours_in_words(rule.hours);
+    let ends = [("hours", hours.as_str()), ("from", &words.short_date(*first)), ("to", &words.short_date(*last))];
+    let mut text = match (rule.days, rule.needed) {
+        _ if dates.len() == 1 => words.with("rule-on", &[("hours", &hours), ("day", &words.short_date(*first))]),
+        (RuleDays::Equinoxes, _) => words.with("rule-two", &ends),
+        (_, NeededDays::All) => words.with("rule-each", &ends),
+        (_, NeededDays::Any) => words.with("rule-any", &ends),
+    };
+    if rule.counted == Counted::LongestPiece {
+        text += &format!(" {}", words.get("rule-piece"));
+    }
+    if let Some(window) = rule.window {
+        let [from, to] = window.hours.map(clock_time);
+        text += &format!(" {}", words.with("rule-hours", &[("from", &from), ("to", &to)]));
+        if window.clock == WindowClock::Sun {
+            text += &format!(" {}", words.get("rule-solar"));
+        }
+    }
+    if rule.min_elevation > 0.0 {
+        let degrees = format!("{:.0}", rule.min_elevation.to_degrees());
+        text += &format!(" {}", words.with("rule-above", &[("degrees", &degrees)]));
+    }
+    match SunRule::columns().any(|(name, _)| name == rule.name) {
+        // the source of a named rule stands in the brackets of its description
+        true => match rule.description.rsplit_once('(') {
+            Some((_, source)) => format!("{text} ({}: {source}", rule.name),
+            None => format!("{text} ({})", rule.name),
+        },
+        false => text,
+    }
+}
+
+/// Returns true if hours before and after a plan are the same to the minute.
+pub(super) fn is_unchanged(before: f64, after: f64) -> bool {
+    ((after - before) * 60.0).round() == 0.0
+}
+
+/// Returns true if an area meets BRE 209: half of it has the sun of the rule, or 0.8 of what had it before.
+pub(super) fn bre_verdict(share: f64, before: f64) -> bool {
+    share >= BRE_SHARE || share >= BRE_KEPT * before
+}
+
+/// The answer: a sentence for all windows, and one for each window and area.
+pub(super) fn sentences(report: &SunlightReport, words: &Words) -> Vec<String> {
+    let last = report.last();
+    let mut all = Vec::new();
+    if report.rule.is_some() && last.windows.len() > 1 {
+        all.push(of_all_windows(report, words));
+    }
+    all.extend((0..last.windows.len()).filter_map(|number| of_window(report, number, words)));
+    all.extend((0..last.areas.len()).map(|number| of_area(report, number, words)));
+    let near = last.calendar.near_edge.iter().filter(|near| **near == Some(true)).count();
+    if near > 0 {
+        let (count, of) = (near.to_string(), last.windows.len().to_string());
+        all.push(words.with("near-edge", &[("count", &count), ("all", &of)]));
+    }
+    all
+}
+
+fn of_all_windows(report: &SunlightReport, words: &Words) -> String {
+    let verdicts = |state: &State| -> Vec<Verdict> {
+        state.windows.iter().filter_map(|window| Some(window.rule?.verdict())).collect()
+    };
+    let met = |state: &State| verdicts(state).iter().filter(|verdict| verdict.is_met()).count().to_string();
+    let uncertain =
+        report.states().flat_map(|(_, state)| verdicts(state)).filter(|verdict| verdict.is_uncertain()).count();
+    let uncertain = match uncertain {
+        0 => String::new(),
+        count => format!(" ({})", words.with("uncertain-count", &[("count", &count.to_string())])),
+    };
+    let key = if report.after.is_some() { "all-met-change" } else { "all-met" };
+    let last = report.last();
+    let values = [
+        ("met", met(last)),
+        ("before", met(&report.before)),
+        ("count", last.windows.len().to_string()),
+        ("uncertain", uncertain),
+    ];
+    words.with(key, &values.each_ref().map(|(name, value)| (*name, value.as_str())))
+}
+
+/// The verdict on a rule, with that before a plan where it was another, and that without trees where it is met.
+fn verdict_in_words(was: &RuleFinding, will: &RuleFinding, words: &Words) -> String {
+    let text = verdict_words(will.verdict(), words);
+    let text = match was.verdict().is_met() == will.verdict().is_met() {
+        true => text.to_owned(),
+        false => format!("{text}; {}: {}", words.get("before"), verdict_words(was.verdict(), words)),
+    };
+    match !will.verdict().is_met() && will.is_met_without_trees() == Some(true) {
+        true => format!("{text}; {}: {}", words.get("without-trees"), words.get("met")),
+        false => text,
+    }
+}
+
+fn of_window(report: &SunlightReport, number: usize, words: &Words) -> Option<String> {
+    let (before, last, is_planned) = (&report.before, report.last(), report.after.is_some());
+    let name = report.params.window_name(number, words);
+    if !last.calendar.targets.is_target(number) {
+        return Some(words.with("no-position", &[("name", &name)]));
+    }
+    let rules = before.windows[number].rule.zip(last.windows[number].rule);
+    let detailed = last.calendar.schedule.days.first()?.date;
+    let of_day = |state: &State| state.calendar.days[number][0].sun_hours();
+    let (days, [was, will]) = match &rules {
+        Some((was, will)) => ([was.date, will.date], [was.hours, will.hours]),
+        None => ([detailed; 2], [before, last].map(of_day)),
+    };
+    let is_same = is_unchanged(was, will) && days[0] == days[1];
+    let key = match (rules.is_some(), is_planned) {
+        (true, true) if is_same => "window-rule-same",
+        (true, true) => "window-rule-change",
+        (true, false) => "window-rule",
+        (false, true) if is_same => "window-day-same",
+        (false, true) => "window-day-change",
+        (false, false) => "window-day",
+    };
+    let values = [
+        ("name", name),
+        ("hours", hours_in_words(will)),
+        ("before", hours_in_words(was)),
+        ("day", words.date(days[1])),
+        ("before-day", words.date(days[0])),
+        ("required", rules.as_ref().map(|(_, will)| hours_in_words(will.required)).unwrap_or_default()),
+        ("verdict", rules.as_ref().map(|(was, will)| verdict_in_words(was, will, words)).unwrap_or_default()),
+    ];
+    Some(words.with(key, &values.each_ref().map(|(name, value)| (*name, value.as_str()))))
+}
+
+fn of_area(report: &SunlightReport, number: usize, words: &Words) -> String {
+    let (was, will) = (&report.before.areas[number], &report.last().areas[number]);
+    let mut verdict = String::new();
+    if report.area_rule.name.starts_with(BRE) {
+        let is_met = match report.after {
+            Some(_) => bre_verdict(will.share, was.share),
+            None => will.share >= BRE_SHARE,
+        };
+        verdict = format!(". {}", if is_met { words.get("bre-met") } else { words.get("bre-not-met") });
+    }
+    let covered = 1.0 - will.cells as f64 / was.cells as f64;
+    if covered > 0.005 {
+        verdict += &format!(" ({})", words.with("covered", &[("share", &percent(covered))]));
+    }
+    let key = if report.after.is_some() { "area-rule-change" } else { "area-rule" };
+    let values = [
+        ("name", report.params.area_name(number, words)),
+        ("share", percent(will.share)),
+        ("before", percent(was.share)),
+        ("verdict", verdict),
+    ];
+    words.with(key, &values.each_ref().map(|(name, value)| (*name, value.as_str())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bre_209_is_met_by_half_or_by_four_fifths_of_before() {
+        assert!(bre_verdict(0.5, 1.0) && bre_verdict(0.24, 0.3));
+        assert!(!bre_verdict(0.49, 0.9) && !bre_verdict(0.1, 0.2));
+    }
+
+    #[test]
+    fn hours_are_words() {
+        assert_eq!([3.2, 2.0, 0.25].map(hours_in_words), ["3 h 12 min", "2 h", "15 min"]);
+        assert!(is_unchanged(1.5, 1.5001) && !is_unchanged(1.5, 1.52));
+    }
+}
