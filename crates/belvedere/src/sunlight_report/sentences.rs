@@ -9,7 +9,7 @@ use crate::results::clock_time;
 
 /// Beginning of the names of rules of BRE 209.
 pub(super) const BRE: &str = "bre-";
-/// Share of an open space that must have the sun of the rule, and else of the share before (BRE 209, 2022, section 3.3).
+/// Share of an open space that must have the sun of the rule, or else of the share before (BRE 209:2022, section 3.3).
 const BRE_SHARE: f64 = 0.5;
 const BRE_KEPT: f64 = 0.8;
 
