@@ -14,6 +14,8 @@ pub(crate) enum ColumnValues<'a> {
     I32(Cow<'a, [i32]>),
     F32(Cow<'a, [f32]>),
     F64(Cow<'a, [f64]>),
+    /// Hours of the day: text is HH:MM.
+    Clock(Cow<'a, [f32]>),
 }
 
 /// A named column.
@@ -34,6 +36,7 @@ macro_rules! with_values {
             ColumnValues::I32($v) => $body,
             ColumnValues::F32($v) => $body,
             ColumnValues::F64($v) => $body,
+            ColumnValues::Clock($v) => $body,
         }
     };
 }
@@ -48,7 +51,7 @@ impl ColumnValues<'_> {
         match self {
             Self::U8(_) => 1,
             Self::U16(_) => 2,
-            Self::U32(_) | Self::I32(_) | Self::F32(_) => 4,
+            Self::U32(_) | Self::I32(_) | Self::F32(_) | Self::Clock(_) => 4,
             Self::F64(_) => 8,
         }
     }
@@ -61,10 +64,23 @@ impl ColumnValues<'_> {
         });
     }
 
-    /// Writes value `index` as text, with as many digits as bring back the same value.
+    /// Writes value `index` as text, with as many digits as bring back the same value; of hours to the minute, and
+    /// nothing where there is none.
     pub(crate) fn print(&self, index: usize, text: &mut Vec<u8>) -> std::io::Result<()> {
-        with_values!(self, v => write!(text, "{}", v[index]))
+        match self {
+            Self::Clock(hours) if hours[index].is_nan() => Ok(()),
+            Self::Clock(hours) => write!(text, "{}", clock_time(hours[index].into())),
+            _ => with_values!(self, v => write!(text, "{}", v[index])),
+        }
     }
+}
+
+/// Hours of the day as HH:MM, rounded to the minute; hours of the day before or after count round the clock.
+#[must_use]
+pub fn clock_time(hours: f64) -> String {
+    #[expect(clippy::cast_possible_truncation, reason = "a few days of minutes")]
+    let minutes = (hours * 60.0).round() as i64;
+    format!("{:02}:{:02}", minutes.div_euclid(60).rem_euclid(24), minutes.rem_euclid(60))
 }
 
 /// Checks that every column has `expected` values.
@@ -140,6 +156,8 @@ pub enum ExtraValues<'a> {
     U32(&'a [u32]),
     /// Measurements.
     F32(&'a [f32]),
+    /// Hours of the day: HH:MM in text files, empty where NaN.
+    Clock(&'a [f32]),
 }
 
 /// Report of writing a cloud.
@@ -169,6 +187,22 @@ pub(crate) fn to_column<'a>(extra: &ExtraColumn<'a>) -> Column<'a> {
         ExtraValues::U8(v) => ColumnValues::U8(Cow::Borrowed(v)),
         ExtraValues::U32(v) => ColumnValues::U32(Cow::Borrowed(v)),
         ExtraValues::F32(v) => ColumnValues::F32(Cow::Borrowed(v)),
+        ExtraValues::Clock(v) => ColumnValues::Clock(Cow::Borrowed(v)),
     };
     Column { name: extra.name.into(), description: extra.description.into(), values }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hours_are_minutes_of_the_clock_and_empty_without_an_answer() {
+        assert_eq!([9.5, 7.999, 24.2, -0.25].map(clock_time), ["09:30", "08:00", "00:12", "23:45"]);
+        let column = ColumnValues::Clock(Cow::Borrowed(&[9.694_777, f32::NAN]));
+        let mut text = Vec::new();
+        column.print(0, &mut text).unwrap();
+        column.print(1, &mut text).unwrap();
+        assert_eq!(text, b"09:42");
+    }
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
+use crate::columns::clock_time;
 use crate::output::Output;
 use crate::source::{Input, Source, extension};
 use crate::text_rows::TextRows;
@@ -133,6 +134,8 @@ pub fn read_table<'a>(source: impl Into<Source<'a>>) -> Result<Table> {
 pub enum TableCells<'a> {
     /// Numbers with so many decimals; empty where not finite.
     Real(&'a [f64], usize),
+    /// Hours of the day as HH:MM; empty where NaN.
+    Clock(&'a [f64]),
     /// Whole numbers; empty where there is none.
     Whole(&'a [Option<u64>]),
     /// Words, quoted where they hold a separator.
@@ -144,7 +147,7 @@ pub enum TableCells<'a> {
 impl TableCells<'_> {
     fn len(&self) -> usize {
         match self {
-            Self::Real(values, _) => values.len(),
+            Self::Real(values, _) | Self::Clock(values) => values.len(),
             Self::Whole(values) => values.len(),
             Self::Words(values) | Self::Given(values, ..) => values.len(),
         }
@@ -154,6 +157,10 @@ impl TableCells<'_> {
         match self {
             Self::Real(values, decimals) => match values.get(row) {
                 Some(value) if value.is_finite() => write!(text, "{value:.decimals$}"),
+                _ => Ok(()),
+            },
+            Self::Clock(values) => match values.get(row) {
+                Some(hours) if hours.is_finite() => write!(text, "{}", clock_time(*hours)),
                 _ => Ok(()),
             },
             Self::Whole(values) => match values.get(row) {

@@ -300,7 +300,7 @@ fn descriptor(column: &Column<'_>) -> [u8; 192] {
         ColumnValues::U16(_) => 3,
         ColumnValues::U32(_) => 5,
         ColumnValues::I32(_) => 6,
-        ColumnValues::F32(_) => 9,
+        ColumnValues::F32(_) | ColumnValues::Clock(_) => 9,
         ColumnValues::F64(_) => 10,
     };
     put_text(&mut bytes[4..36], &column.name);

@@ -63,7 +63,7 @@ fn header(cloud: &PointCloud, columns: &[Column<'_>], comments: &[String], eleme
             ColumnValues::U16(_) => "ushort",
             ColumnValues::U32(_) => "uint",
             ColumnValues::I32(_) => "int",
-            ColumnValues::F32(_) => "float",
+            ColumnValues::F32(_) | ColumnValues::Clock(_) => "float",
             ColumnValues::F64(_) => "double",
         };
         text.push_str(&format!("property {kind} {}\n", column.name));

@@ -21,6 +21,9 @@ pub const SUN_HOURS: &str = "hours of sun a day";
 /// See [`SUN_HOURS`].
 pub const RULE_IS_MET: &str = "rule is met";
 
+/// Measures that are hours on the clock, each with the name of the column that has them as HH:MM in tables.
+pub const CLOCK_MEASURES: [(&str, &str); 2] = [("first_light", "first_light_time"), ("last_light", "last_light_time")];
+
 /// Targets handed to a thread at once.
 const CHUNK: usize = 64;
 /// Tolerance of the required hours of a day, hours: the rounding of f32 in a sum of steps.

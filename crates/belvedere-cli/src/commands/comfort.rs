@@ -12,6 +12,7 @@ use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{self, Ask, ComfortResults, Places, RoutesOrWindows};
 use belvedere::apps::exposure::ShadeAtEachSun;
+use belvedere::apps::sun_hours::CLOCK_MEASURES;
 use belvedere::apps::targets::{Measure, Route};
 use belvedere::io::{FeatureShape, TableCells, TextRows, with_columns_read, write_table};
 use std::path::Path;
@@ -135,6 +136,7 @@ impl ComfortOutput<'_> {
         let mut cells = vec![("route", TableCells::Whole(&groups))];
         cells.extend(columns.iter().map(|(name, values, decimals)| (*name, TableCells::Real(values, *decimals))));
         cells.extend(self.of_measures(&values));
+        cells.extend(self.clocks(&values));
         Ok(write_table(output, &cells)?)
     }
 
@@ -161,6 +163,7 @@ impl ComfortOutput<'_> {
         }
         cells.extend(columns.iter().map(|(name, values, decimals)| (*name, TableCells::Real(values, *decimals))));
         cells.extend(self.of_measures(&values));
+        cells.extend(self.clocks(&values));
         let read = given.columns(0..given.row_count());
         Ok(write_table(output, &with_columns_read(&read, &["x", "y", "z", "azimuth", "tilt"], &cells))?)
     }
@@ -169,6 +172,15 @@ impl ComfortOutput<'_> {
     fn of_measures<'a>(&'a self, values: &'a [Vec<f64>]) -> impl Iterator<Item = (&'a str, TableCells<'a>)> {
         let measures = self.found.exposure.measures.iter().zip(values);
         measures.map(|((measure, _), values)| (measure.name.as_str(), TableCells::Real(values, measure.decimals)))
+    }
+
+    /// Hours of the day as times of the clock.
+    fn clocks<'a>(&'a self, values: &'a [Vec<f64>]) -> impl Iterator<Item = (&'a str, TableCells<'a>)> {
+        let measures = self.found.exposure.measures.iter().zip(values);
+        measures.filter_map(|((measure, _), hours)| {
+            let (_, name) = CLOCK_MEASURES.into_iter().find(|(hours, _)| *hours == measure.name)?;
+            Some((name, TableCells::Clock(hours)))
+        })
     }
 
     /// A row for each route and sun.

@@ -37,6 +37,18 @@ fn hours_are_those_of_the_exact_house() {
         }
     }
     let found = ["sun_hours", "first_light", "last_light"].map(|name| column(&place, "hours.csv", name));
+    // the same on the clock, to the minute
+    let table = place.text("hours.csv");
+    let header: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    let of_clock = header.iter().position(|name| *name == "first_light_time").unwrap();
+    for (row, line) in table.lines().skip(1).enumerate() {
+        let time = line.split(',').nth(of_clock).unwrap();
+        let hours = time.split_once(':').map(|(h, m)| h.parse::<f64>().unwrap() + m.parse::<f64>().unwrap() / 60.0);
+        match found[1][row].is_nan() {
+            true => assert_eq!(time, ""),
+            false => assert!((hours.unwrap() - found[1][row]).abs() <= 0.5 / 60.0 + 1e-4, "{line}"),
+        }
+    }
     for (i, expected) in expected.iter().enumerate() {
         for k in 0..3 {
             // balls end a quarter of a metre beside edges here (points half a metre apart): 2° of the sun's way from 8

@@ -14,14 +14,6 @@ const MIN_APPOINTMENT: f32 = 5.0 / 60.0;
 /// Maximum length of a line of iCalendar, bytes (RFC 5545, section 3.1).
 const MAX_LINE: usize = 75;
 
-/// Hours on the clock as HH:MM, rounded to the minute.
-#[must_use]
-pub fn clock_time(hours: f64) -> String {
-    #[expect(clippy::cast_possible_truncation, reason = "a few days of minutes")]
-    let minutes = (hours * 60.0).round() as i64;
-    format!("{:02}:{:02}", minutes.div_euclid(60).rem_euclid(24), minutes.rem_euclid(60))
-}
-
 /// A stretch of a calendar with its place and date.
 struct Row<'a> {
     place: usize,
@@ -60,13 +52,13 @@ fn write_rows(path: &Path, found: &SunCalendarResults, names: &[String]) -> Resu
     let words = |of: &dyn Fn(&Row<'_>) -> String| -> Vec<String> { rows.iter().map(of).collect() };
     let names = words(&|row| name_of(row.place, found, names));
     let dates = words(&|row| row.date.to_string());
-    let starts = words(&|row| clock_time(row.stretch.start.into()));
-    let ends = words(&|row| clock_time(row.stretch.end.into()));
+    let starts: Vec<f64> = rows.iter().map(|row| row.stretch.start.into()).collect();
+    let ends: Vec<f64> = rows.iter().map(|row| row.stretch.end.into()).collect();
     let objects = words(&|row| match row.stretch.obstacle {
         SunObstacle::Mesh(_) => found.name_of(row.stretch.obstacle).to_owned(),
         _ => String::new(),
     });
-    let [names, dates, starts, ends, objects] = [&names[..], &dates, &starts, &ends, &objects].map(refer);
+    let [names, dates, objects] = [&names[..], &dates, &objects].map(refer);
     let states: Vec<&str> = rows.iter().map(|row| row.stretch.obstacle.name()).collect();
     let hours: Vec<f64> = rows.iter().map(|row| row.stretch.hours().into()).collect();
     let unproven: Vec<f64> = rows.iter().map(|row| row.stretch.unproven.into()).collect();
@@ -77,8 +69,8 @@ fn write_rows(path: &Path, found: &SunCalendarResults, names: &[String]) -> Resu
             (place, TableCells::Whole(&numbers)),
             ("name", TableCells::Words(&names)),
             ("date", TableCells::Words(&dates)),
-            ("from", TableCells::Words(&starts)),
-            ("to", TableCells::Words(&ends)),
+            ("from", TableCells::Clock(&starts)),
+            ("to", TableCells::Clock(&ends)),
             ("hours", TableCells::Real(&hours, 3)),
             ("state", TableCells::Words(&states)),
             ("object", TableCells::Words(&objects)),
@@ -152,11 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hours_are_minutes_of_the_clock() {
-        assert_eq!(clock_time(9.5), "09:30");
-        assert_eq!(clock_time(7.999), "08:00");
-        assert_eq!(clock_time(24.2), "00:12");
-        assert_eq!(clock_time(-0.25), "23:45");
+    fn instants_are_minutes_of_utc() {
         assert_eq!(utc(1_774_081_800.0), "20260321T083000Z");
     }
 

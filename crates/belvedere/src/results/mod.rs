@@ -15,7 +15,7 @@ mod map;
 mod question;
 mod raster;
 
-pub use calendar::{clock_time, write_calendar};
+pub use calendar::write_calendar;
 #[cfg(feature = "figures")]
 pub use difference::{difference_map, relief_of};
 pub use faces::FaceRows;
@@ -26,6 +26,7 @@ pub use raster::{ADDED_BAND, Pixels, ResultRaster, UNPROVEN_BAND, viewshed_words
 
 pub use crate::apps::targets::ResultKind;
 
+use crate::apps::sun_hours::CLOCK_MEASURES;
 use crate::apps::targets::{Measure, TargetLayout, Targets};
 use crate::ground::{Ground, MapGrid};
 use crate::io::{
@@ -101,7 +102,7 @@ pub fn write_measures(
             Ok(WriteReport::default())
         }
         (_, TakenFrom::Rows(rows)) if !is_tiff => {
-            write_text_rows(path, rows, &columns(measures)).map(|()| WriteReport::default())
+            write_text_rows(path, rows, &columns(path, measures)).map(|()| WriteReport::default())
         }
         (_, TakenFrom::Cloud(cloud)) if !is_tiff => write_points(path, cloud, measures),
         (TargetLayout::Cells(_) | TargetLayout::Points, TakenFrom::Nothing) if !is_tiff => {
@@ -148,13 +149,20 @@ fn cells(targets: &Targets) -> Result<&Ground> {
 }
 
 fn write_points(path: &Path, cloud: &PointCloud, measures: &[Measure]) -> Result<WriteReport> {
-    write_cloud(path, cloud, &columns(measures))
+    write_cloud(path, cloud, &columns(path, measures))
 }
 
-fn columns(measures: &[Measure]) -> Vec<ExtraColumn<'_>> {
-    let column = |measure| {
-        let measure: &Measure = measure;
-        ExtraColumn { name: &measure.name, description: measure.description, values: ExtraValues::F32(&measure.values) }
+/// Measures as columns. Tables (.csv) have hours on the clock as HH:MM, too.
+fn columns<'a>(path: &Path, measures: &'a [Measure]) -> Vec<ExtraColumn<'a>> {
+    let column = |measure: &'a Measure| ExtraColumn {
+        name: &measure.name,
+        description: measure.description,
+        values: ExtraValues::F32(&measure.values),
     };
-    measures.iter().map(column).collect()
+    let is_table = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
+    let clock = |measure: &'a Measure| {
+        let (_, name) = CLOCK_MEASURES.into_iter().find(|(hours, _)| is_table && *hours == measure.name)?;
+        Some(ExtraColumn { name, description: "time of the clock", values: ExtraValues::Clock(&measure.values) })
+    };
+    measures.iter().map(column).chain(measures.iter().filter_map(clock)).collect()
 }

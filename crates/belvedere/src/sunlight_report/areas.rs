@@ -1,8 +1,8 @@
 //! Areas of a report: the share that meets a rule, and the shade that a plan adds.
 
-use super::{ReportArea, ReportParams};
+use super::{ReportArea, ReportParams, add_remarks};
 use crate::Result;
-use crate::apps::ask::{self, Days, GridCells, Places, Scene, SunHoursQuestion};
+use crate::apps::ask::{self, Days, GridCells, Places, Remark, Scene, SunHoursQuestion};
 use crate::apps::sun::{Date, SunSchedule};
 use crate::apps::targets::{CellLevel, Measure, Targets};
 use crate::control::Control;
@@ -48,9 +48,9 @@ pub(super) struct AddedShade {
 impl AreaState {
     pub(super) fn of(
         scene: &Scene,
-        area: &ReportArea,
-        params: &ReportParams,
+        (area, params): (&ReportArea, &ReportParams),
         schedule: &SunSchedule,
+        remarks: &mut Vec<Remark>,
         control: &Control<'_>,
     ) -> Result<Self> {
         let corners = || area.rings.iter().flatten();
@@ -70,6 +70,7 @@ impl AreaState {
             ..SunHoursQuestion::default()
         };
         let answers = ask::ask(scene, &question, &Places::Cells(cells), control)?;
+        add_remarks(remarks, &answers);
         let mean = |measure: Option<&Measure>| {
             let known = measure.into_iter().flat_map(|measure| &measure.values).filter(|value| value.is_finite());
             let values: Vec<f64> = known.map(|&value| value.into()).collect();

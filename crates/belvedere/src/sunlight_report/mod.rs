@@ -258,7 +258,7 @@ impl State {
             }
             _ => None,
         };
-        let intervals = Intervals::new(scene, params, &calendar, control)?;
+        let mut intervals = Intervals::new(scene, params, &calendar, control)?;
         let mut windows = Vec::with_capacity(params.windows.len());
         for number in 0..params.windows.len() {
             let dates = calendar.schedule.days.iter().map(|day| day.date);
@@ -269,14 +269,19 @@ impl State {
             }
             windows.push(WindowState { intervals: of_days.unwrap_or_default(), rule });
         }
-        let areas = params.areas.iter().map(|area| AreaState::of(scene, area, params, &calendar.schedule, control));
-        let areas = areas.collect::<Result<Vec<_>>>()?;
+        let mut areas = Vec::with_capacity(params.areas.len());
+        for area in &params.areas {
+            areas.push(AreaState::of(scene, (area, params), &calendar.schedule, remarks, control)?);
+        }
         let maps = maps::shadow_maps(scene, params, &calendar, box_of_maps, control)?;
         let blockers = scene.blockers(UnprovenAs::Reported, control)?;
         let sky = |window: usize| {
             let place = calendar.targets.positions[window].map(f64::from);
             let azimuth = calendar.windows[window].azimuth;
-            SkyView::new(azimuth, |directions| sun_lines(&blockers, place, None, &calendar.kinds, directions))
+            SkyView::new(azimuth, |directions| match calendar.targets.is_target(window) {
+                true => sun_lines(&blockers, place, None, &calendar.kinds, directions),
+                false => Vec::new(),
+            })
         };
         let skies = (0..calendar.windows.len()).map(sky).collect();
         Ok(Self { calendar, of_rule, windows, areas, maps, skies })
@@ -289,7 +294,7 @@ struct Intervals<'a> {
     question: SunHoursQuestion,
     targets: Arc<Targets>,
     /// Those of days that were needed.
-    kept: std::sync::Mutex<Vec<(Date, Vec<[f64; 3]>)>>,
+    kept: Vec<(Date, Vec<[f64; 3]>)>,
     are_known: bool,
 }
 
@@ -304,18 +309,17 @@ impl<'a> Intervals<'a> {
             scene,
             question: SunHoursQuestion { place: params.place.clone(), interval: true, ..SunHoursQuestion::default() },
             targets: Arc::clone(&calendar.targets),
-            kept: std::sync::Mutex::default(),
+            kept: Vec::new(),
             are_known: !params.windows.is_empty() && knows_intervals(scene, control)?,
         })
     }
 
     /// Returns the interval of the hours of sun of a window on a day, less those hours; `None` where it is not known.
-    fn of(&self, date: Date, window: usize, control: &Control<'_>) -> Result<Option<[f64; 2]>> {
+    fn of(&mut self, date: Date, window: usize, control: &Control<'_>) -> Result<Option<[f64; 2]>> {
         if !self.are_known {
             return Ok(None);
         }
-        let mut kept = self.kept.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        if !kept.iter().any(|(day, _)| *day == date) {
+        if !self.kept.iter().any(|(day, _)| *day == date) {
             let days = Days { dates: vec![date.to_string()], ..Days::default() };
             let question = SunHoursQuestion { days, ..self.question.clone() };
             let answers = ask::ask(self.scene, &question, &Places::Targets(Arc::clone(&self.targets)), control)?;
@@ -325,9 +329,9 @@ impl<'a> Intervals<'a> {
             };
             let (hours, low, high) = (column("sun_hours"), column("hours_low"), column("hours_high"));
             let rows = hours.iter().zip(&low).zip(&high).map(|((hours, low), high)| [*hours, *low, *high]);
-            kept.push((date, rows.collect()));
+            self.kept.push((date, rows.collect()));
         }
-        let rows = kept.iter().find(|(day, _)| *day == date).map(|(_, rows)| rows);
+        let rows = self.kept.iter().find(|(day, _)| *day == date).map(|(_, rows)| rows);
         let row = rows.and_then(|rows| rows.get(window)).filter(|row| row.iter().all(|v| v.is_finite()));
         Ok(row.map(|[hours, low, high]| [(low - hours).min(0.0), (high - hours).max(0.0)]))
     }
