@@ -110,6 +110,26 @@ impl CalendarDay {
     }
 }
 
+/// Returns the sun of a day that shines on any of several places, such as the windows of a room: its stretches of sun
+/// joined, without those of shade.
+#[must_use]
+pub fn sun_of_any<'a>(days: impl IntoIterator<Item = &'a CalendarDay>) -> CalendarDay {
+    let mut all: Vec<SunStretch> = days.into_iter().flat_map(CalendarDay::sun).copied().collect();
+    all.sort_by(|a, b| a.start.total_cmp(&b.start));
+    let mut joined: Vec<SunStretch> = Vec::new();
+    for stretch in all {
+        match joined.last_mut() {
+            Some(last) if stretch.start <= last.end + ROUNDING => {
+                last.end = last.end.max(stretch.end);
+                // proven by any window is proven
+                last.unproven = last.unproven.min(stretch.unproven);
+            }
+            _ => joined.push(stretch),
+        }
+    }
+    CalendarDay(joined)
+}
+
 /// Computes the lines from `place`, local metres, to suns in `directions`, (D, 3) unit vectors. A sun behind the plane
 /// of `normal` has the wall of the place before it. `kinds` are those of the balls of the model, (B).
 #[must_use]
@@ -240,5 +260,17 @@ mod tests {
         assert_eq!((day.sun_hours(), day.longest()), (2.0, 1.0));
         assert_eq!(day.first_and_last(), Some([8.5, 13.0]));
         assert_eq!(CalendarDay::default().first_and_last(), None);
+    }
+
+    #[test]
+    fn windows_of_a_room_add_up_where_the_sun_is_not_in_both() {
+        let sun = |start: f32, end: f32| SunStretch { start, end, obstacle: SunObstacle::None, unproven: 0.0 };
+        let shade = SunStretch { obstacle: SunObstacle::OwnWall, ..sun(12.0, 18.0) };
+        let east = CalendarDay(vec![sun(7.0, 9.0), sun(10.0, 12.0), shade]);
+        let south = CalendarDay(vec![sun(11.0, 14.0), sun(14.0, 15.0)]);
+        let both = sun_of_any([&east, &south]);
+        assert_eq!((both.sun_hours(), both.longest()), (7.0, 5.0));
+        assert_eq!(both.first_and_last(), Some([7.0, 15.0]));
+        assert_eq!(sun_of_any([&CalendarDay::default()]), CalendarDay::default());
     }
 }

@@ -25,6 +25,7 @@ use std::sync::Arc;
 pub(crate) struct ReportKeywords {
     windows: Vec<WindowRow>,
     names: Vec<String>,
+    rooms: Vec<String>,
     /// Names of areas, and their corners in the coordinates of the file.
     areas: Vec<(String, Vec<[f64; 2]>)>,
     planned: Option<Py<PyScene>>,
@@ -55,6 +56,7 @@ impl ReportKeywords {
             language,
             windows,
             names: self.names.clone(),
+            rooms: self.rooms.clone(),
             areas: self.areas.iter().map(area).collect(),
             rule: self.rule.clone(),
             area_rule: self.area_rule.clone(),

@@ -675,7 +675,7 @@ async function main() {
     const corners = [[-6, -6], [6, -6], [6, 6], [-6, 6]].map(([x, y]) => [155000 + x, 463000 + y]);
     const vertices = [0, 30].flatMap((z) => corners.map((corner) => `v ${corner.join(" ")} ${z}`)).join("\n");
     writeFileSync(join(folder, "tower.obj"), `o tower\n${vertices}\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 5 6 7 8\n`);
-    writeFileSync(join(folder, "panes.csv"), "x,y,z,azimuth,name\n155000,463014,8,180,A window with a name that is rather long\n154986,463000,6,90,\n");
+    writeFileSync(join(folder, "panes.csv"), "x,y,z,azimuth,name,room\n155000,463014,8,180,A window with a name that is rather long,A large living room\n154986,463000,6,90,,A large living room\n");
     const area = ["--area", "155008,463008 155016,463008 155016,463016 155008,463016", "--rule", "nl-strict", "--zone", "Europe/Amsterdam"];
     for (const language of ["en", "nl", "de", "fr"]) {
       const words = ["report", "town/cloud.laz", "--windows", "panes.csv", "--add", "tower.obj", ...area, "--language", language, "-o", `${language}.html`];

@@ -65,7 +65,7 @@ pub(crate) struct ReportArguments {
     /// Windows: a table (.csv), of which the middles count
     ///
     /// The table has the columns x, y, z of the middle and azimuth in degrees from true north (see --grid-north). It
-    /// may have tilt (90: vertical) and name.
+    /// may have tilt (90: vertical), name and room: for a rule, the sun of the windows of one room adds up.
     #[arg(long, value_name = "FILE", required_unless_present = "area", help_heading = "Windows and areas")]
     pub(crate) windows: Option<PathBuf>,
     /// Areas that keep their sun, such as gardens: polygons (GeoJSON), or "X,Y X,Y X,Y"; repeatable

@@ -51,6 +51,7 @@ pub(crate) fn run(arguments: &ReportArguments, global: &Global) -> Result<Summar
     if let Some(path) = &arguments.windows {
         let file = WindowFile::read(path, &FaceChoice::default(), frame, &mut run)?;
         params.names = file.buildings(&[]);
+        params.rooms = file.column_of_words("room").unwrap_or_default();
         if let GivenWindows::Each(windows) = file.given {
             params.windows = windows;
         }

@@ -61,11 +61,14 @@ impl WindowFile {
 
     /// The building of each window: what a table calls it, or its object; empty where that is not known.
     pub(crate) fn buildings(&self, objects: &[String]) -> Vec<String> {
+        self.column_of_words("name").unwrap_or_else(|| objects.to_vec())
+    }
+
+    /// A column of a table as it was given; `None` where there is none of that name.
+    pub(crate) fn column_of_words(&self, name: &str) -> Option<Vec<String>> {
         let columns = self.rows.columns(0..self.rows.row_count());
-        match columns.iter().find(|(name, _)| name.eq_ignore_ascii_case("name")) {
-            Some((_, cells)) => cells.iter().map(|&cell| cell.to_owned()).collect(),
-            None => objects.to_vec(),
-        }
+        let (_, cells) = columns.iter().find(|(own, _)| own.eq_ignore_ascii_case(name))?;
+        Some(cells.iter().map(|&cell| cell.to_owned()).collect())
     }
 
     /// Returns the position and properties of each window; the azimuth of grid north is `grid_north`, radians.

@@ -142,7 +142,8 @@ class Documents:
         path : path
             Where it is written (``.html``).
         windows : mapping of str to array_like, optional
-            Columns ``x, y, z`` and ``azimuth`` (degrees), and if known ``tilt`` and ``name``. Their middles count.
+            Columns ``x, y, z`` and ``azimuth`` (degrees), and if known ``tilt``, ``name`` and ``room``. Their middles
+            count; for a rule, the sun of the windows of one room adds up.
         areas : mapping of str to array_like of shape (N, 2), optional
             Names of areas that keep their sun, such as gardens, and their corners in the coordinates of the file.
         planned : Scene, optional
@@ -198,7 +199,7 @@ class Documents:
             raise wrong("path", repr(path), "a report is a file .html")
         check_finite(time_step_min=time_step_min)
         columns = dict(windows or {})
-        names = [str(name) for name in np.asarray(columns.pop("name", []), object)]
+        names, rooms = ([str(text) for text in np.asarray(columns.pop(name, []), object)] for name in ("name", "room"))
         rings = [(str(name), np.asarray(ring, float).tolist()) for name, ring in (areas or {}).items()]
         if any(np.ndim(ring) != 2 or len(ring) < 3 or len(ring[0]) != 2 for _, ring in rings):
             raise wrong("areas", "not polygons", "give corners of shape (N, 2), three or more for each")
@@ -207,6 +208,7 @@ class Documents:
             {
                 "windows": _windows(columns) if columns else [],
                 "names": names,
+                "rooms": rooms,
                 "areas": rings,
                 "planned": None if planned is None else planned._core,
                 "rule": rule,

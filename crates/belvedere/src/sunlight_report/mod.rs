@@ -66,6 +66,8 @@ pub struct ReportParams {
     pub windows: Vec<GivenWindow>,
     /// Name of each window; empty or missing for its number.
     pub names: Vec<String>,
+    /// Room of each window; empty or missing for none. The sun of windows of one room adds up.
+    pub rooms: Vec<String>,
     /// The areas.
     pub areas: Vec<ReportArea>,
     /// Daylight rule of the windows; `None` for hours without a verdict.
@@ -99,6 +101,8 @@ struct State {
     /// The same on the days of the rule of windows; `None` without a rule.
     of_rule: Option<SunCalendarResults>,
     windows: Vec<WindowState>,
+    /// Rule in each room.
+    rooms: Vec<Option<RuleFinding>>,
     areas: Vec<AreaState>,
     maps: Vec<ShadowMap>,
     skies: Vec<SkyView>,
@@ -171,6 +175,19 @@ impl ReportParams {
     fn window_name(&self, number: usize, words: &words::Words) -> String {
         let own = self.names.get(number).filter(|name| !name.trim().is_empty()).cloned();
         own.unwrap_or_else(|| format!("{} {}", words.get("window"), number + 1))
+    }
+
+    /// Rooms in the order of their first windows, with their windows.
+    fn rooms(&self) -> Vec<(&str, Vec<usize>)> {
+        let mut rooms: Vec<(&str, Vec<usize>)> = Vec::new();
+        for (window, room) in self.rooms.iter().enumerate().take(self.windows.len()) {
+            match rooms.iter_mut().find(|(name, _)| name == room) {
+                _ if room.trim().is_empty() => {}
+                Some((_, windows)) => windows.push(window),
+                None => rooms.push((room, vec![window])),
+            }
+        }
+        rooms
     }
 
     /// Name of an area.
@@ -269,6 +286,8 @@ impl State {
             }
             windows.push(WindowState { intervals: of_days.unwrap_or_default(), rule });
         }
+        let of_room = |(_, windows): &(&str, Vec<usize>)| RuleFinding::of_room(of_rule.as_ref()?, windows);
+        let rooms = params.rooms().iter().map(of_room).collect();
         let mut areas = Vec::with_capacity(params.areas.len());
         for area in &params.areas {
             areas.push(AreaState::of(scene, (area, params), &calendar.schedule, remarks, control)?);
@@ -284,7 +303,7 @@ impl State {
             })
         };
         let skies = (0..calendar.windows.len()).map(sky).collect();
-        Ok(Self { calendar, of_rule, windows, areas, maps, skies })
+        Ok(Self { calendar, of_rule, windows, rooms, areas, maps, skies })
     }
 }
 

@@ -170,15 +170,38 @@ fn compass(azimuth: f64, words: &Words) -> String {
     format!("{} ({azimuth:.0}°)", words.get("compass").split('|').nth(eighth).unwrap_or_default())
 }
 
+/// Rule of windows, and of rooms whose windows add up.
 fn rule_table(report: &SunlightReport, words: &Words) -> String {
+    let params = &report.params;
+    let of_window = |number: usize| {
+        let rules = report.states().map(|(name, state)| (name, state.windows[number].rule)).collect();
+        (format!("{}. {}", number + 1, params.window_name(number, words)), rules)
+    };
+    let of_room = |(number, (room, windows)): (usize, &(&str, Vec<usize>))| {
+        let rules = report.states().map(|(name, state)| (name, state.rooms[number])).collect();
+        let numbers: Vec<String> = windows.iter().map(|window| (window + 1).to_string()).collect();
+        (format!("{room} ({})", numbers.join(", ")), rules)
+    };
+    let mut text = rule_rows(words.get("rule"), (0..params.windows.len()).map(of_window), words);
+    let rooms = params.rooms();
+    if !rooms.is_empty() {
+        text += &rule_rows(words.get("rooms"), rooms.iter().enumerate().map(of_room), words);
+    }
+    text
+}
+
+/// A table of names with a rule in each state.
+fn rule_rows(
+    title: &str,
+    named: impl Iterator<Item = (String, Vec<(&'static str, Option<RuleFinding>)>)>,
+    words: &Words,
+) -> String {
     let mut rows = String::new();
-    for number in 0..report.params.windows.len() {
-        let name = escaped(&report.params.window_name(number, words));
-        let count = report.states().count();
-        for (row, (state_name, state)) in report.states().enumerate() {
-            let Some(rule) = state.windows[number].rule else { continue };
-            let start =
-                if row == 0 { format!("<th rowspan='{count}'>{}. {name}</th>", number + 1) } else { String::new() };
+    for (name, states) in named {
+        let (name, count) = (escaped(&name), states.len());
+        for (row, (state_name, rule)) in states.into_iter().enumerate() {
+            let Some(rule) = rule else { continue };
+            let start = if row == 0 { format!("<th rowspan='{count}'>{name}</th>") } else { String::new() };
             let RuleFinding { date, hours, without_trees, interval, days: [enough, all], .. } = rule;
             let verdict = rule.verdict();
             let class_of = |is_met: bool| if is_met { "met" } else { "not-met" };
@@ -196,10 +219,9 @@ fn rule_table(report: &SunlightReport, words: &Words) -> String {
             );
         }
     }
-    let keys = ["rule", "verdict", "deciding-day", "sun", "interval", "without-trees", "rule-days"];
-    let names = keys.map(|key| words.get(key));
-    let head: String = names[1..].iter().map(|name| format!("<th>{name}</th>")).collect();
-    format!("<h3>{}</h3><table><thead><tr><th></th><th></th>{head}</tr></thead><tbody>{rows}</tbody></table>", names[0])
+    let keys = ["verdict", "deciding-day", "sun", "interval", "without-trees", "rule-days"];
+    let head: String = keys.map(|key| format!("<th>{}</th>", words.get(key))).concat();
+    format!("<h3>{title}</h3><table><thead><tr><th></th><th></th>{head}</tr></thead><tbody>{rows}</tbody></table>")
 }
 
 fn area_table(report: &SunlightReport, words: &Words) -> String {

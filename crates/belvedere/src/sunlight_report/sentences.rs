@@ -95,6 +95,12 @@ pub(super) fn sentences(report: &SunlightReport, words: &Words) -> Vec<String> {
         all.push(of_all_windows(report, words));
     }
     all.extend((0..last.windows.len()).filter_map(|number| of_window(report, number, words)));
+    for (number, (room, _)) in report.params.rooms().into_iter().enumerate() {
+        let rules = report.before.rooms[number].zip(last.rooms[number]);
+        let is_planned = report.after.is_some();
+        let name = format!("{}: {room}", words.get("room"));
+        all.extend(rules.map(|rules| of_rule(name, rules, is_planned, words)));
+    }
     all.extend((0..last.areas.len()).map(|number| of_area(report, number, words)));
     let near = last.calendar.near_edge.iter().filter(|near| **near == Some(true)).count();
     if near > 0 {
@@ -140,37 +146,43 @@ fn verdict_in_words(was: &RuleFinding, will: &RuleFinding, words: &Words) -> Str
 }
 
 fn of_window(report: &SunlightReport, number: usize, words: &Words) -> Option<String> {
-    let (before, last, is_planned) = (&report.before, report.last(), report.after.is_some());
+    let (before, last) = (&report.before, report.last());
     let name = report.params.window_name(number, words);
     if !last.calendar.targets.is_target(number) {
         return Some(words.with("no-position", &[("name", &name)]));
     }
-    let rules = before.windows[number].rule.zip(last.windows[number].rule);
-    let detailed = last.calendar.schedule.days.first()?.date;
-    let of_day = |state: &State| state.calendar.days[number][0].sun_hours();
-    let (days, [was, will]) = match &rules {
-        Some((was, will)) => ([was.date, will.date], [was.hours, will.hours]),
-        None => ([detailed; 2], [before, last].map(of_day)),
+    if let Some(rules) = before.windows[number].rule.zip(last.windows[number].rule) {
+        return Some(of_rule(name, rules, report.after.is_some(), words));
+    }
+    let day = last.calendar.schedule.days.first()?.date;
+    let [was, will] = [before, last].map(|state| state.calendar.days[number][0].sun_hours());
+    let key = match report.after {
+        Some(_) if is_unchanged(was, will) => "window-day-same",
+        Some(_) => "window-day-change",
+        None => "window-day",
     };
-    let is_same = is_unchanged(was, will) && days[0] == days[1];
-    let key = match (rules.is_some(), is_planned) {
-        (true, true) if is_same => "window-rule-same",
-        (true, true) => "window-rule-change",
-        (true, false) => "window-rule",
-        (false, true) if is_same => "window-day-same",
-        (false, true) => "window-day-change",
-        (false, false) => "window-day",
+    let values =
+        [("name", name), ("hours", hours_in_words(will)), ("before", hours_in_words(was)), ("day", words.date(day))];
+    Some(words.with(key, &values.each_ref().map(|(name, value)| (*name, value.as_str()))))
+}
+
+/// A rule at a window or in a room before and after a plan; the same twice where nothing is planned.
+fn of_rule(name: String, (was, will): (RuleFinding, RuleFinding), is_planned: bool, words: &Words) -> String {
+    let key = match is_planned {
+        true if is_unchanged(was.hours, will.hours) && was.date == will.date => "window-rule-same",
+        true => "window-rule-change",
+        false => "window-rule",
     };
     let values = [
         ("name", name),
-        ("hours", hours_in_words(will)),
-        ("before", hours_in_words(was)),
-        ("day", words.date(days[1])),
-        ("before-day", words.date(days[0])),
-        ("required", rules.as_ref().map(|(_, will)| hours_in_words(will.required)).unwrap_or_default()),
-        ("verdict", rules.as_ref().map(|(was, will)| verdict_in_words(was, will, words)).unwrap_or_default()),
+        ("hours", hours_in_words(will.hours)),
+        ("before", hours_in_words(was.hours)),
+        ("day", words.date(will.date)),
+        ("before-day", words.date(was.date)),
+        ("required", hours_in_words(will.required)),
+        ("verdict", verdict_in_words(&was, &will, words)),
     ];
-    Some(words.with(key, &values.each_ref().map(|(name, value)| (*name, value.as_str()))))
+    words.with(key, &values.each_ref().map(|(name, value)| (*name, value.as_str())))
 }
 
 fn of_area(report: &SunlightReport, number: usize, words: &Words) -> String {

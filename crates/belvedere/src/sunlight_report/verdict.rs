@@ -2,13 +2,13 @@
 
 use crate::apps::ask::SunCalendarResults;
 use crate::apps::sun::Date;
-use crate::apps::sun_calendar::CalendarDay;
+use crate::apps::sun_calendar::{CalendarDay, sun_of_any};
 use crate::apps::sun_hours::{Counted, NeededDays};
 
 /// Tolerance of the required hours, hours: the rounding of f32 in a sum of steps.
 const ROUNDING: f64 = 1e-4;
 
-/// A rule at a window.
+/// A rule at a window or in a room.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RuleFinding {
     /// Critical day: that with the least sun, or with the most where one day is enough.
@@ -43,10 +43,23 @@ pub enum Verdict {
 impl RuleFinding {
     /// Finds the critical day of the rule of a calendar at a window; `None` without a rule or a position.
     pub(super) fn of(found: &SunCalendarResults, window: usize) -> Option<Self> {
+        let without = found.without_trees.as_ref().map(|all| &all[window][..]);
+        Self::of_days(found, &found.days[window], without).filter(|_| found.targets.is_target(window))
+    }
+
+    /// Finds the critical day of a room with several `windows`, whose sun adds up where it is not in both.
+    pub(super) fn of_room(found: &SunCalendarResults, windows: &[usize]) -> Option<Self> {
+        let joined = |all: &[Vec<CalendarDay>]| -> Vec<CalendarDay> {
+            let rows = 0..found.schedule.days.len();
+            rows.map(|row| sun_of_any(windows.iter().map(|&window| &all[window][row]))).collect()
+        };
+        let without = found.without_trees.as_ref().map(|all| joined(all));
+        Self::of_days(found, &joined(&found.days), without.as_deref())
+            .filter(|_| windows.iter().any(|&window| found.targets.is_target(window)))
+    }
+
+    fn of_days(found: &SunCalendarResults, days: &[CalendarDay], without: Option<&[CalendarDay]>) -> Option<Self> {
         let rule = found.rule.as_ref()?;
-        if !found.targets.is_target(window) {
-            return None;
-        }
         let counted = |day: &CalendarDay| match rule.counted {
             Counted::All => day.sun_hours(),
             Counted::LongestPiece => day.longest(),
@@ -59,9 +72,8 @@ impl RuleFinding {
                 NeededDays::Any => hours.collect::<Vec<_>>().into_iter().rev().max_by(|a, b| a.1.total_cmp(&b.1)),
             }
         };
-        let days = found.days.get(window)?;
         let (row, of_day) = critical(days)?;
-        let without = found.without_trees.as_ref().and_then(|all| critical(all.get(window)?));
+        let without = without.and_then(critical);
         let hours: Vec<f64> = days.iter().map(counted).collect();
         let enough = hours.iter().filter(|&&hours| hours >= rule.hours - ROUNDING).count();
         Some(Self {

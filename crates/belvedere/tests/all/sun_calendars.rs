@@ -174,6 +174,7 @@ fn a_report_says_what_calendars_and_hours_of_sun_say_in_four_languages() {
         windows: windows(&present),
         names: vec!["<b>kitchen & \"hall\"</b>".to_owned()],
         areas: vec![ReportArea { name: String::new(), rings: vec![ring.clone()] }],
+        rooms: ["", "hall", "hall"].map(str::to_owned).to_vec(),
         rule: Some("2@equinoxes@8-17".to_owned()),
         days: Days { dates: vec!["2026-03-21".to_owned()], year: Some(2026), ..Days::default() },
         place: SunPlace { zone: Some("Europe/Amsterdam".to_owned()), ..SunPlace::default() },
@@ -181,13 +182,24 @@ fn a_report_says_what_calendars_and_hours_of_sun_say_in_four_languages() {
     };
     let report = sunlight_report(&present, Some(&planned), &params, &Control::none()).unwrap();
     let said = report.headlines();
-    assert_eq!(said.len(), 15, "{said:?}");
+    assert_eq!(said.len(), 16, "{said:?}");
     assert!(
         said[0].starts_with("Windows that meet the rule: ") && said[0].contains(" of 12 with the plan, "),
         "{said:?}"
     );
     assert!(said[1].starts_with("<b>kitchen & \"hall\"</b>: ") && said[2].starts_with("Window 2: "), "{said:?}");
-    assert!(said[13].starts_with("Area 1: "), "{said:?}");
+    // the hall has the sun of its windows together, so no less than the best of them
+    let hours = |sentence: &str| -> f64 {
+        let of = sentence.split(" of possible sun").next().unwrap();
+        let number = |unit: &str| {
+            let words: Vec<&str> = of.split(' ').collect();
+            words.iter().position(|word| *word == unit).map_or(0.0, |at| words[at - 1].parse().unwrap())
+        };
+        number("h") + number("min") / 60.0
+    };
+    assert!(said[13].starts_with("Room: hall: "), "{said:?}");
+    assert!(hours(&said[13]) >= hours(&said[2]).max(hours(&said[3])), "{said:?}");
+    assert!(said[14].starts_with("Area 1: "), "{said:?}");
     let page = report.to_html().unwrap();
     assert!(page.contains("&lt;b&gt;kitchen &amp; &quot;hall&quot;&lt;/b&gt;") && !page.contains("<b>kitchen"));
     assert!(!page.contains("http:") && !page.contains("https:") && !page.contains("<script"), "it needs a network");
