@@ -12,6 +12,8 @@ mod survey;
 
 pub use folder::{CacheEntry, ReadBefore, SceneCache};
 pub use key::CloudKey;
+#[cfg(feature = "figures")]
+pub(crate) use key::file_hash;
 pub use survey::SurveyFolder;
 
 use crate::apps::ask::Remark;

@@ -1,9 +1,7 @@
 //! Files that a report rests on.
 
-use crate::{Error, Result};
-use sha2::{Digest, Sha256};
-use std::fs::File;
-use std::io::Read;
+use crate::Result;
+use crate::cache::file_hash;
 use std::path::Path;
 
 /// A file that a report rests on.
@@ -29,18 +27,7 @@ impl ReportSource {
         if !path.is_file() {
             return Ok(Self { role, name, ..Self::default() });
         }
-        let mut file = File::open(path).map_err(Error::io(path))?;
-        let (mut hasher, mut buffer, mut bytes) = (Sha256::new(), vec![0; 1 << 20], 0);
-        loop {
-            match file.read(&mut buffer).map_err(Error::io(path))? {
-                0 => break,
-                count => {
-                    hasher.update(&buffer[..count]);
-                    bytes += count as u64;
-                }
-            }
-        }
-        let sha256 = hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        let (sha256, bytes) = file_hash(path)?;
         Ok(Self { role, name, bytes, sha256 })
     }
 }
