@@ -21,7 +21,7 @@ impl ReportSource {
     /// Reads the whole of a file for its hash. A folder or an address of the web has its name alone.
     ///
     /// # Errors
-    /// [`Error::Io`].
+    /// [`crate::Error::Io`].
     pub fn of_path(role: &'static str, path: &Path) -> Result<Self> {
         let name = crate::results::file_name(&path.to_string_lossy());
         if !path.is_file() {
