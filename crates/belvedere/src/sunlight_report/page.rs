@@ -202,7 +202,7 @@ fn rule_rows(
         for (row, (state_name, rule)) in states.into_iter().enumerate() {
             let Some(rule) = rule else { continue };
             let start = if row == 0 { format!("<th rowspan='{count}'>{name}</th>") } else { String::new() };
-            let RuleFinding { date, hours, without_trees, interval, days: [enough, all], .. } = rule;
+            let RuleFinding { date, without_trees, interval, days: [enough, all], .. } = rule;
             let verdict = rule.verdict();
             let class_of = |is_met: bool| if is_met { "met" } else { "not-met" };
             let class = class_of(verdict.is_met());
@@ -214,7 +214,7 @@ fn rule_rows(
                 words.get(state_name),
                 verdict_words(verdict, words),
                 words.short_date(date),
-                hm(hours),
+                hm(rule.printed_hours()),
                 without_trees.map_or("–".to_owned(), hm),
             );
         }

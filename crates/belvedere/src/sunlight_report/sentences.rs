@@ -175,8 +175,8 @@ fn of_rule(name: String, (was, will): (RuleFinding, RuleFinding), is_planned: bo
     };
     let values = [
         ("name", name),
-        ("hours", hours_in_words(will.hours)),
-        ("before", hours_in_words(was.hours)),
+        ("hours", hours_in_words(will.printed_hours())),
+        ("before", hours_in_words(was.printed_hours())),
         ("day", words.date(will.date)),
         ("before-day", words.date(was.date)),
         ("required", hours_in_words(will.required)),

@@ -92,6 +92,16 @@ impl RuleFinding {
         self.interval = ends.map(|[low, high]| [(self.hours + low).max(0.0), self.hours + high]);
     }
 
+    /// Returns the hours to print: those that miss the rule by seconds are not rounded up to what it requires.
+    pub(super) fn printed_hours(&self) -> f64 {
+        let minutes = |hours: f64| (hours * 60.0).round();
+        let is_short = self.hours < self.required - ROUNDING;
+        match is_short && minutes(self.hours) >= minutes(self.required) {
+            true => self.required - 1.0 / 60.0,
+            false => self.hours,
+        }
+    }
+
     /// Returns true if the hours suffice without trees; `None` where trees are not known.
     #[must_use]
     pub fn is_met_without_trees(&self) -> Option<bool> {
@@ -145,6 +155,13 @@ mod tests {
         assert_eq!(of(2.5, Some([-0.6, 0.4])), Verdict::MetUncertain);
         assert_eq!(of(1.5, Some([-0.4, 0.6])), Verdict::NotMetUncertain);
         assert_eq!(of(1.5, Some([-0.4, 0.4])), Verdict::NotMet);
+        let printed = |hours: f64| {
+            let days = [0, 1];
+            RuleFinding { date, row: 0, hours, without_trees: None, interval: None, required: 2.0, days }
+                .printed_hours()
+        };
+        assert_eq!(printed(1.999), 2.0 - 1.0 / 60.0);
+        assert_eq!([1.5, 2.0, 2.001].map(printed), [1.5, 2.0, 2.001]);
         assert!(Verdict::MetUncertain.is_met() && Verdict::NotMetUncertain.is_uncertain());
     }
 }
