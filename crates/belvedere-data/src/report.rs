@@ -1,4 +1,4 @@
-//! Rounding of the numbers of reports for a reader.
+//! Numbers of reports as a reader wants them.
 
 /// `value` with `digits` decimals; a value that is not finite stays as it is. Zero has no sign.
 #[must_use]
@@ -14,9 +14,22 @@ pub fn percent(part: usize, whole: usize) -> f64 {
     rounded(100.0 * part as f64 / whole.max(1) as f64, 2)
 }
 
+/// Hours of the day as HH:MM, rounded to the minute; hours before it and after it are those of the days beside it.
+#[must_use]
+pub fn clock_time(hours: f64) -> String {
+    #[expect(clippy::cast_possible_truncation, reason = "a few days of minutes")]
+    let minutes = (hours * 60.0).round() as i64;
+    format!("{:02}:{:02}", minutes.div_euclid(60).rem_euclid(24), minutes.rem_euclid(60))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn clocks_go_round() {
+        assert_eq!([9.5, 7.999, 24.2, -0.25].map(clock_time), ["09:30", "08:00", "00:12", "23:45"]);
+    }
 
     #[test]
     fn numbers_are_rounded_half_away_from_zero_and_zero_has_no_sign() {

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::io::Write;
 
+use belvedere_data::report::clock_time;
 use belvedere_data::{Error, PointCloud, Result};
 
 /// Values of one column.
@@ -73,14 +74,6 @@ impl ColumnValues<'_> {
             _ => with_values!(self, v => write!(text, "{}", v[index])),
         }
     }
-}
-
-/// Hours of the day as HH:MM, rounded to the minute; hours of the day before or after count round the clock.
-#[must_use]
-pub fn clock_time(hours: f64) -> String {
-    #[expect(clippy::cast_possible_truncation, reason = "a few days of minutes")]
-    let minutes = (hours * 60.0).round() as i64;
-    format!("{:02}:{:02}", minutes.div_euclid(60).rem_euclid(24), minutes.rem_euclid(60))
 }
 
 /// Checks that every column has `expected` values.
@@ -197,8 +190,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hours_are_minutes_of_the_clock_and_empty_without_an_answer() {
-        assert_eq!([9.5, 7.999, 24.2, -0.25].map(clock_time), ["09:30", "08:00", "00:12", "23:45"]);
+    fn clocks_are_printed_to_the_minute_and_empty_without_an_answer() {
         let column = ColumnValues::Clock(Cow::Borrowed(&[9.694_777, f32::NAN]));
         let mut text = Vec::new();
         column.print(0, &mut text).unwrap();

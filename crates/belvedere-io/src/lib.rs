@@ -124,7 +124,7 @@ pub use balls::{is_ball_file, read_balls, write_balls};
 pub use cityjson::{LevelOfDetail, read_cityjson};
 pub use cloud_batches::{CloudBatch, CloudBatches, read_batches};
 pub use colors::{class_color, in_shadow, ramp, ramp_colors};
-pub use columns::{ExtraColumn, ExtraValues, WriteReport, clock_time};
+pub use columns::{ExtraColumn, ExtraValues, WriteReport};
 pub use geojson::{GeojsonCoordinates, PathLine, PolygonArea, Spot, write_geojson, write_geojson_areas};
 pub use geojson_read::{FeatureShape, GeojsonFeature, read_geojson};
 #[cfg(feature = "tiff")]

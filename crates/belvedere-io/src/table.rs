@@ -6,10 +6,10 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use crate::columns::clock_time;
 use crate::output::Output;
 use crate::source::{Input, Source, extension};
 use crate::text_rows::TextRows;
+use belvedere_data::report::clock_time;
 use belvedere_data::{Error, Result};
 
 /// Rows printed by one task.

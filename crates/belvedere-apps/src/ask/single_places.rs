@@ -10,7 +10,7 @@ use crate::targets::{CellLevel, CellParams, Measure, Targets, grid_around};
 use belvedere_core::ground::{Ground, GroundPoints};
 use belvedere_data::control::Control;
 use belvedere_data::crs::Crs;
-use belvedere_data::report::rounded;
+use belvedere_data::report::{clock_time, rounded};
 use belvedere_data::{Bounds, Error, Frame, Parameter, Result};
 use serde::Serialize;
 
@@ -251,7 +251,7 @@ fn sentence(place: &PlaceSection, measures: &[Measure], row: usize) -> String {
             }
             for (name, what) in [("first_light", "first"), ("last_light", "last")] {
                 if let Some(hour) = named(name) {
-                    text += &format!(", {what} {}", clock(hour));
+                    text += &format!(", {what} {}", clock_time(hour));
                 }
             }
             for measure in measures.iter().filter(|measure| measure.description == crate::sun_hours::RULE_IS_MET) {
@@ -286,12 +286,6 @@ fn figure(measure: &Measure, value: f64, has_several_suns: bool) -> String {
     }
     let name = if measure.description.is_empty() { &measure.name } else { measure.description };
     format!("{name} {value:.*}", measure.decimals.min(3))
-}
-
-/// An hour of the day as clocks show it.
-fn clock(hour: f64) -> String {
-    let minutes = (hour * 60.0).round();
-    format!("{:02}:{:02}", (minutes / 60.0).floor(), minutes.rem_euclid(60.0))
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::words::Words;
 use super::{SunlightReport, page};
 use crate::apps::sun_calendar::{CalendarDay, SunLine, SunObstacle};
 use crate::apps::window_views::SeenKind;
-use crate::io::clock_time;
+use crate::report::clock_time;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write as _;
 

@@ -10,7 +10,7 @@ use crate::Result;
 use crate::apps::sun::Date;
 use crate::apps::sun_calendar::{CalendarDay, SunObstacle};
 use crate::figures::{MapLegend, MapMark, MapPicture, map_image, png_bytes};
-use crate::io::clock_time;
+use crate::report::clock_time;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use std::fmt::Write as _;

@@ -5,7 +5,7 @@ use super::verdict::{RuleFinding, Verdict};
 use super::words::Words;
 use super::{State, SunlightReport};
 use crate::apps::sun_hours::{Counted, NeededDays, RuleDays, SunRule, WindowClock};
-use crate::io::clock_time;
+use crate::report::clock_time;
 
 /// Beginning of the names of rules of BRE 209.
 pub(super) const BRE: &str = "bre-";
