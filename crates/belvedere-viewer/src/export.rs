@@ -5,6 +5,8 @@ use crate::chunks::Chunks;
 use crate::page;
 use crate::scene::{PageScene, ShownCloud};
 use crate::scene_text::{SceneText, typed};
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
 use belvedere::apps::ask::{self, HowSure, Places, ShadowQuestion, SunPlace, ThroughTrees, UNPROVEN};
 use belvedere::apps::eyes::fault_of;
 use belvedere::apps::sun::{Date, Refraction, Zone, sun_position_with};
@@ -21,7 +23,6 @@ use std::sync::Arc;
 
 /// Maximum number of points of a file: it then has 35 MB, which browsers open in a second.
 const MAX_POINTS: usize = 3_000_000;
-const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 /// Content of a file.
 #[derive(Clone, Debug)]
@@ -72,7 +73,7 @@ pub fn export(
     let viewpoints = viewpoints(&scene, &sent, params, control)?;
     let numbers = 0..shown.chunks.chunks.len();
     let of_chunks = |bytes: &dyn Fn(usize) -> Option<Vec<u8>>| -> Vec<String> {
-        numbers.clone().filter_map(bytes).map(|bytes| base64(&bytes)).collect()
+        numbers.clone().filter_map(bytes).map(|bytes| BASE64_STANDARD.encode(&bytes)).collect()
     };
     let points = shown.chunks.len();
     let report =
@@ -146,7 +147,7 @@ fn suns(
             "tells_unproven": unproven.is_some(),
             "remarks": answers.remarks,
             "command": text.shadow(&typed_time, typed_zone.name(), ThroughTrees::Opaque, HowSure::default()),
-            "answers": base64(&packed(&codes, 2, |&code| code)),
+            "answers": BASE64_STANDARD.encode(packed(&codes, 2, |&code| code)),
         }));
     }
     Ok(found)
@@ -187,7 +188,7 @@ fn viewpoints(
             "unproven": counts.unproven,
             "tells_unproven": blockers.proof().is_some(),
             "command": params.scene.seen_points(place, HowSure::default()),
-            "answers": base64(&packed(&seen.answers, 2, |&answer| (answer as u8).min(Answer::OutsideView as u8))),
+            "answers": BASE64_STANDARD.encode(packed(&seen.answers, 2, |&answer| (answer as u8).min(Answer::OutsideView as u8))),
         }))
     };
     eyes.iter().zip(&params.viewpoints).map(of_eye).collect()
@@ -199,22 +200,10 @@ fn packed<T>(values: &[T], width: usize, code: impl Fn(&T) -> u8) -> Vec<u8> {
     values.chunks(8 / width).map(byte).collect()
 }
 
-fn base64(bytes: &[u8]) -> String {
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for three in bytes.chunks(3) {
-        let word = (0..3).fold(0_u32, |word, i| word << 8 | u32::from(three.get(i).copied().unwrap_or(0)));
-        for i in 0..4 {
-            let digit = ALPHABET[(word >> (18 - 6 * i) & 63) as usize];
-            text.push(if i <= three.len() { char::from(digit) } else { '=' });
-        }
-    }
-    text
-}
-
 /// The page with everything in it.
 fn html(data: &Value) -> String {
     let text = |path| page::file(path).map(|(_, bytes)| String::from_utf8_lossy(bytes)).unwrap_or_default();
-    let icon = format!("data:image/svg+xml;base64,{}", base64(text("icon.svg").as_bytes()));
+    let icon = format!("data:image/svg+xml;base64,{}", BASE64_STANDARD.encode(&*text("icon.svg")));
     // a text in the data must not end its element
     let data = data.to_string().replace("</", "<\\/");
     text("index.html")
@@ -231,16 +220,7 @@ fn html(data: &Value) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{base64, packed};
-
-    #[test]
-    fn bytes_become_text_as_rfc_4648_says() {
-        let texts = ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"];
-        for (length, text) in texts.into_iter().enumerate() {
-            assert_eq!(base64(&b"foobar"[..length]), text);
-        }
-        assert_eq!(base64(&[0xFB, 0xFF]), "+/8=");
-    }
+    use super::packed;
 
     #[test]
     fn values_have_their_bits() {
