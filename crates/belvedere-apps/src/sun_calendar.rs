@@ -9,14 +9,12 @@ use belvedere_data::control::Control;
 use belvedere_data::vector::dot;
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
-use serde::Serialize;
 
 /// Maximum difference of the end of a step and the start of the next that follows it, hours: rounding of f32.
 const ROUNDING: f32 = 1e-4;
 
 /// First obstacle between a place and the sun.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SunObstacle {
     /// None: the sun shines there.
     None,
@@ -111,7 +109,7 @@ impl CalendarDay {
 }
 
 /// Returns the sun of a day that shines on any of several places, such as the windows of a room: its stretches of sun
-/// joined, without those of shade.
+/// joined, without those of shade. Unproven hours are at most as many as given.
 #[must_use]
 pub fn sun_of_any<'a>(days: impl IntoIterator<Item = &'a CalendarDay>) -> CalendarDay {
     let mut all: Vec<SunStretch> = days.into_iter().flat_map(CalendarDay::sun).copied().collect();
@@ -121,8 +119,7 @@ pub fn sun_of_any<'a>(days: impl IntoIterator<Item = &'a CalendarDay>) -> Calend
         match joined.last_mut() {
             Some(last) if stretch.start <= last.end + ROUNDING => {
                 last.end = last.end.max(stretch.end);
-                // proven by any window is proven
-                last.unproven = last.unproven.min(stretch.unproven);
+                last.unproven = (last.unproven + stretch.unproven).min(last.hours());
             }
             _ => joined.push(stretch),
         }

@@ -10,7 +10,7 @@ use crate::targets::RequestedTargets;
 use crate::windows::{WindowRow, given};
 use crate::work::run;
 use belvedere::apps::ask::{self, GivenWindows};
-use belvedere::apps::sun_calendar::SunObstacle;
+use belvedere::apps::sun_calendar::SunStretch;
 use belvedere::io::atomic;
 use belvedere::sunlight_report::{Language, ReportArea, ReportParams, sunlight_report};
 use pyo3::prelude::*;
@@ -99,25 +99,17 @@ impl PyScene {
         };
         let answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
         let found = &answers.found;
-        let rows = || {
-            found.days.iter().zip(0_u32..).flat_map(|(days, place)| {
-                let dated = found.schedule.days.iter().zip(days);
-                dated.flat_map(move |(of_day, day)| day.0.iter().map(move |stretch| (place, of_day.date, stretch)))
-            })
-        };
-        let object = |obstacle: SunObstacle| match obstacle {
-            SunObstacle::Mesh(_) => found.name_of(obstacle),
-            _ => "",
-        };
+        let stretches = || found.stretches().map(|(.., stretch)| stretch);
+        let object = |stretch: &SunStretch| found.mesh_name(stretch.obstacle).unwrap_or_default().to_owned();
         let dict = PyDict::new(py);
-        dict.set_item("place", to_1d(py, rows().map(|(place, ..)| place).collect()))?;
-        dict.set_item("date", rows().map(|(_, date, _)| date.to_string()).collect::<Vec<_>>())?;
-        dict.set_item("start", to_1d(py, rows().map(|(.., stretch)| f64::from(stretch.start)).collect()))?;
-        dict.set_item("end", to_1d(py, rows().map(|(.., stretch)| f64::from(stretch.end)).collect()))?;
-        dict.set_item("hours", to_1d(py, rows().map(|(.., stretch)| stretch.hours()).collect()))?;
-        dict.set_item("state", rows().map(|(.., stretch)| stretch.obstacle.name()).collect::<Vec<_>>())?;
-        dict.set_item("object", rows().map(|(.., stretch)| object(stretch.obstacle)).collect::<Vec<_>>())?;
-        dict.set_item("unproven_hours", to_1d(py, rows().map(|(.., stretch)| stretch.unproven).collect()))?;
+        dict.set_item("place", to_1d(py, found.stretches().map(|(place, ..)| place as u64).collect()))?;
+        dict.set_item("date", found.stretches().map(|(_, date, _)| date.to_string()).collect::<Vec<_>>())?;
+        dict.set_item("start", to_1d(py, stretches().map(|stretch| f64::from(stretch.start)).collect()))?;
+        dict.set_item("end", to_1d(py, stretches().map(|stretch| f64::from(stretch.end)).collect()))?;
+        dict.set_item("hours", to_1d(py, stretches().map(SunStretch::hours).collect()))?;
+        dict.set_item("state", stretches().map(|stretch| stretch.obstacle.name()).collect::<Vec<_>>())?;
+        dict.set_item("object", stretches().map(object).collect::<Vec<_>>())?;
+        dict.set_item("unproven_hours", to_1d(py, stretches().map(|stretch| stretch.unproven).collect()))?;
         Ok((dict, remarks_of(py, &answers.remarks)?))
     }
 

@@ -2,14 +2,14 @@
 
 use super::places::{leave_out_outside, test_edge};
 use super::sections::{LinesSection, MeasuresSection, PeriodSection, PlacesReport};
-use super::sun::{Days, SunPlace, remark_on_solar_hours, sun_days_above};
-use super::sun_hours::days_in_words;
+use super::sun::{Days, SunPlace, sun_days_above};
+use super::sun_hours::{days_in_words, days_of_rule, missing_period, remark_on_hours_of_rules};
 use super::window_views::kinds_of_balls;
 use super::windows::{GivenWindows, WindowTargets};
 use super::{Answers, Ask, Context, Places, Scene, spread};
-use crate::sun::{Binning, Site, SunSchedule, Zone};
-use crate::sun_calendar::{CalendarDay, SunObstacle, sun_calendars};
-use crate::sun_hours::{SunRule, WindowClock};
+use crate::sun::{Binning, Date, Site, SunSchedule, Zone};
+use crate::sun_calendar::{CalendarDay, SunObstacle, SunStretch, sun_calendars};
+use crate::sun_hours::SunRule;
 use crate::targets::{Measure, Targets, Window};
 use crate::window_views::{ClassMeanings, SeenKind};
 use belvedere_core::query::UnprovenAs;
@@ -80,21 +80,15 @@ impl SunCalendarQuestion {
         let days = self.stepped();
         let site = self.place.site(scene, context, None)?;
         let zone = self.place.zone_at(&site, days.times())?;
-        let mut params = days.params(&self.place);
+        let params = days.params(&self.place);
         let rule = self.rule.as_deref().map(SunRule::parse).transpose()?;
-        let of_days = match &rule {
-            Some(rule) => {
-                let min = days.min_sun_elevation_deg.map_or(rule.min_elevation, f64::to_radians);
-                params = params.with_min_elevation(min);
-                let by_clock = rule.window.filter(|window| window.clock == WindowClock::Zone);
-                let hours = by_clock.map(|window| window.hours);
-                context.add(remark_on_solar_hours("the rule counts sun", hours, (&zone, &site)));
-                rule.sun_days(days.dates_of(rule.days, &site, &zone)?, &site, &zone, &params)?
+        let (of_days, params) = match (&rule, days.period(&self.place, &site, &zone)?) {
+            (Some(rule), _) => {
+                context.add(remark_on_hours_of_rules([rule], (&zone, &site)));
+                days_of_rule(rule, &days, (&site, &zone), params)?
             }
-            None => {
-                let Some(period) = days.period(&self.place, &site, &zone)? else { return missing_period() };
-                sun_days_above(&site, &zone, &period, &params)?
-            }
+            (None, Some(period)) => (sun_days_above(&site, &zone, &period, &params)?, params),
+            (None, None) => return missing_period(),
         };
         let schedule = SunSchedule::new(&of_days, Binning::Exact)?;
         context.report.period = Some(PeriodSection::of(&schedule, &zone, &params));
@@ -118,7 +112,8 @@ impl SunCalendarQuestion {
                 middles.iter_mut().for_each(|window| window.size = None);
                 GivenWindows::Each(middles)
             }
-            _ => return refused(Parameter::Targets, "missing", "windows of a table, or places"),
+            GivenWindows::Each(_) => return refused("missing"),
+            GivenWindows::Faces(_) => return refused("faces of a mesh"),
         };
         let WindowTargets { mut targets, windows, .. } = middles.targets(scene.frame(), grid_north, (1.0, 0))?;
         leave_out_outside(&mut targets, scene, context);
@@ -126,12 +121,9 @@ impl SunCalendarQuestion {
     }
 }
 
-fn refused<T>(parameter: Parameter, value: &str, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { parameter, value: value.to_owned(), expected })
-}
-
-fn missing_period<T>() -> Result<T> {
-    refused(Parameter::Period, "missing", "given as days, as two times, or by a rule")
+fn refused<T>(value: &str) -> Result<T> {
+    let expected = "windows one by one, or places";
+    Err(Error::InvalidParameter { parameter: Parameter::Targets, value: value.to_owned(), expected })
 }
 
 impl Ask for SunCalendarQuestion {
@@ -244,12 +236,18 @@ impl SunCalendarResults {
         context.report.measures = Some(MeasuresSection::of(&self.targets, measures));
     }
 
-    /// Name of an obstacle, with that of the mesh that was added.
+    /// All stretches with the row of their place and their date, in the order of places and time.
+    pub fn stretches(&self) -> impl Iterator<Item = (usize, Date, &SunStretch)> {
+        self.days.iter().enumerate().flat_map(|(place, days)| {
+            let dated = self.schedule.days.iter().zip(days);
+            dated.flat_map(move |(of_day, day)| day.0.iter().map(move |stretch| (place, of_day.date, stretch)))
+        })
+    }
+
+    /// Name of the mesh that is an obstacle; `None` for other obstacles.
     #[must_use]
-    pub fn name_of(&self, obstacle: SunObstacle) -> &str {
-        match obstacle {
-            SunObstacle::Mesh(number) => self.meshes.get(number).map_or("plan", String::as_str),
-            other => other.name(),
-        }
+    pub fn mesh_name(&self, obstacle: SunObstacle) -> Option<&str> {
+        let SunObstacle::Mesh(number) = obstacle else { return None };
+        self.meshes.get(number).map(String::as_str)
     }
 }

@@ -6,9 +6,9 @@ use super::sections::{MeasuresSection, NamedValues, PeriodSection, PlacesReport}
 use super::sun::{Days, SunPlace, remark_on_solar_hours, sun_days_above};
 use super::sun_and_sky::{Light, OnTargets};
 use super::trees::remark_on_leaves;
-use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
+use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::sum_errors::Intervals;
-use crate::sun::{Binning, DayParams, Period, Site, SunSchedule, Zone};
+use crate::sun::{Binning, DayParams, Period, Site, SunDay, SunSchedule, Zone};
 use crate::sun_hours::{SunPlan, SunRule, WindowClock, scene_sun_hours};
 use crate::targets::{Measure, ResultKind};
 use crate::tree_light::Season;
@@ -85,14 +85,7 @@ impl SunHoursQuestion {
         };
         let mut of_rules = Vec::new();
         for (column, rule) in rules(&self.rules)? {
-            let dates = self.days.dates_of(rule.days, site, &zone)?;
-            let min_elevation = self.days.min_sun_elevation_deg.map_or(rule.min_elevation, f64::to_radians);
-            let params = params.with_min_elevation(min_elevation);
-            let days = rule.sun_days(dates, site, &zone, &params)?;
-            if days.iter().all(|day| day.steps.is_empty()) {
-                // says why there is no sun
-                sun_days_above(site, &zone, &Period::Days(days.iter().map(|day| day.date).collect()), &params)?;
-            }
+            let (days, _) = days_of_rule(&rule, &self.days, (site, &zone), params)?;
             let schedule = SunSchedule::new(&days, self.binning())?;
             of_rules.push((column.to_owned(), rule, schedule));
         }
@@ -115,12 +108,40 @@ impl SunHoursQuestion {
     }
 }
 
-fn missing_period<T>() -> Result<T> {
+pub(super) fn missing_period<T>() -> Result<T> {
     Err(Error::InvalidParameter {
         parameter: Parameter::Period,
         value: "missing".to_owned(),
         expected: "given as days, as two times, or by a rule",
     })
+}
+
+/// Returns the light that a rule counts on each of its days, and the parameters of their division: with its minimum
+/// elevation, unless `days` have one.
+pub(super) fn days_of_rule(
+    rule: &SunRule,
+    days: &Days,
+    (site, zone): (&Site, &Zone),
+    params: DayParams,
+) -> Result<(Vec<SunDay>, DayParams)> {
+    let min_elevation = days.min_sun_elevation_deg.map_or(rule.min_elevation, f64::to_radians);
+    let params = params.with_min_elevation(min_elevation);
+    let found = rule.sun_days(days.dates_of(rule.days, site, zone)?, site, zone, &params)?;
+    if found.iter().all(|day| day.steps.is_empty()) {
+        // says why there is no sun
+        sun_days_above(site, zone, &Period::Days(found.iter().map(|day| day.date).collect()), &params)?;
+    }
+    Ok((found, params))
+}
+
+/// A warning of the first of `rules` that counts hours of a clock that is that of the sun.
+pub(super) fn remark_on_hours_of_rules<'a>(
+    rules: impl IntoIterator<Item = &'a SunRule>,
+    at: (&Zone, &Site),
+) -> Option<Remark> {
+    let by_clock = |rule: &SunRule| rule.window.filter(|window| window.clock == WindowClock::Zone);
+    let hours = rules.into_iter().find_map(by_clock).map(|window| window.hours);
+    remark_on_solar_hours("the rule counts sun", hours, at)
 }
 
 impl Ask for SunHoursQuestion {
@@ -147,9 +168,8 @@ impl Ask for SunHoursQuestion {
         let has_interval = self.interval || is_single && !self.trees.is_light() && knows_intervals(scene, control)?;
         let site = self.place.site(scene, context, None)?;
         let (plan, zone) = self.plan(&site)?;
-        let by_clock = |rule: &SunRule| rule.window.filter(|window| window.clock == WindowClock::Zone);
-        let hours = plan.rules().iter().find_map(|planned| by_clock(&planned.rule)).map(|window| window.hours);
-        context.add(remark_on_solar_hours("the rule counts sun", hours, (&zone, &site)));
+        let rules = plan.rules().iter().map(|planned| &planned.rule);
+        context.add(remark_on_hours_of_rules(rules, (&zone, &site)));
         context.report.period = Some(section(&plan, &zone, &self.days.params(&self.place)));
         let trees = (&self.trees, Some(site.latitude), UnprovenAs::Visible);
         let light = Light::resolve(places, plan.directions(), trees, scene, context, control)?;

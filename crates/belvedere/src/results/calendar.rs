@@ -5,7 +5,6 @@ use crate::apps::sun::Date;
 use crate::apps::sun_calendar::{SunObstacle, SunStretch};
 use crate::io::{TableCells, atomic, write_table};
 use crate::{Error, Result};
-use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
 
@@ -13,20 +12,6 @@ use std::path::Path;
 const MIN_APPOINTMENT: f32 = 5.0 / 60.0;
 /// Maximum length of a line of iCalendar, bytes (RFC 5545, section 3.1).
 const MAX_LINE: usize = 75;
-
-/// A stretch of a calendar with its place and date.
-struct Row<'a> {
-    place: usize,
-    date: Date,
-    stretch: &'a SunStretch,
-}
-
-fn rows(found: &SunCalendarResults) -> impl Iterator<Item = Row<'_>> {
-    found.days.iter().enumerate().flat_map(|(place, days)| {
-        let dated = found.schedule.days.iter().zip(days);
-        dated.flat_map(move |(of_day, day)| day.0.iter().map(move |stretch| Row { place, date: of_day.date, stretch }))
-    })
-}
 
 /// Writes sun calendars in the format of the extension: a table with a row for each stretch (.csv), or appointments of
 /// sun and shade (.ics, iCalendar, RFC 5545). `names` are those of the places; the others have their number.
@@ -47,21 +32,18 @@ fn name_of(place: usize, found: &SunCalendarResults, names: &[String]) -> String
 }
 
 fn write_rows(path: &Path, found: &SunCalendarResults, names: &[String]) -> Result<()> {
-    let rows: Vec<Row<'_>> = rows(found).collect();
-    let numbers: Vec<Option<u64>> = rows.iter().map(|row| u64::try_from(row.place + 1).ok()).collect();
-    let words = |of: &dyn Fn(&Row<'_>) -> String| -> Vec<String> { rows.iter().map(of).collect() };
-    let names = words(&|row| name_of(row.place, found, names));
-    let dates = words(&|row| row.date.to_string());
-    let starts: Vec<f64> = rows.iter().map(|row| row.stretch.start.into()).collect();
-    let ends: Vec<f64> = rows.iter().map(|row| row.stretch.end.into()).collect();
-    let objects = words(&|row| match row.stretch.obstacle {
-        SunObstacle::Mesh(_) => found.name_of(row.stretch.obstacle).to_owned(),
-        _ => String::new(),
-    });
-    let [names, dates, objects] = [&names[..], &dates, &objects].map(refer);
-    let states: Vec<&str> = rows.iter().map(|row| row.stretch.obstacle.name()).collect();
-    let hours: Vec<f64> = rows.iter().map(|row| row.stretch.hours().into()).collect();
-    let unproven: Vec<f64> = rows.iter().map(|row| row.stretch.unproven.into()).collect();
+    let rows: Vec<(usize, Date, &SunStretch)> = found.stretches().collect();
+    let stretches = || rows.iter().map(|(.., stretch)| *stretch);
+    let numbers: Vec<Option<u64>> = rows.iter().map(|(place, ..)| u64::try_from(place + 1).ok()).collect();
+    let names: Vec<String> = rows.iter().map(|(place, ..)| name_of(*place, found, names)).collect();
+    let dates: Vec<String> = rows.iter().map(|(_, date, _)| date.to_string()).collect();
+    let hours =
+        |of: &dyn Fn(&SunStretch) -> f32| -> Vec<f64> { stretches().map(|stretch| of(stretch).into()).collect() };
+    let (starts, ends) = (hours(&|stretch| stretch.start), hours(&|stretch| stretch.end));
+    let (lasts, unproven) = (hours(&SunStretch::hours), hours(&|stretch| stretch.unproven));
+    let states: Vec<&str> = stretches().map(|stretch| stretch.obstacle.name()).collect();
+    let objects: Vec<&str> = stretches().map(|stretch| found.mesh_name(stretch.obstacle).unwrap_or_default()).collect();
+    let [names, dates] = [&names[..], &dates].map(refer);
     let place = if found.windows.is_empty() { "place" } else { "window" };
     write_table(
         path,
@@ -71,7 +53,7 @@ fn write_rows(path: &Path, found: &SunCalendarResults, names: &[String]) -> Resu
             ("date", TableCells::Words(&dates)),
             ("from", TableCells::Clock(&starts)),
             ("to", TableCells::Clock(&ends)),
-            ("hours", TableCells::Real(&hours, 3)),
+            ("hours", TableCells::Real(&lasts, 3)),
             ("state", TableCells::Words(&states)),
             ("object", TableCells::Words(&objects)),
             ("unproven_hours", TableCells::Real(&unproven, 3)),
@@ -89,18 +71,19 @@ fn write_appointments(path: &Path, found: &SunCalendarResults, names: &[String])
     line("BEGIN:VCALENDAR");
     line("VERSION:2.0");
     line("PRODID:-//Belvedere//sun calendar//EN");
-    let kept = rows(found)
-        .filter(|row| row.stretch.hours() >= MIN_APPOINTMENT && row.stretch.obstacle != SunObstacle::OwnWall);
-    for (number, row) in kept.enumerate() {
-        let instant = |hours: f32| found.zone.instant_of(row.date, hours.into()).map(utc);
-        let (start, end) = (instant(row.stretch.start)?, instant(row.stretch.end)?);
-        let name = name_of(row.place, found, names);
-        let what = match row.stretch.obstacle {
+    let kept = found
+        .stretches()
+        .filter(|(.., stretch)| stretch.hours() >= MIN_APPOINTMENT && stretch.obstacle != SunObstacle::OwnWall);
+    for (number, (place, date, stretch)) in kept.enumerate() {
+        let instant = |hours: f32| found.zone.instant_of(date, hours.into()).map(utc);
+        let (start, end) = (instant(stretch.start)?, instant(stretch.end)?);
+        let name = name_of(place, found, names);
+        let what = match stretch.obstacle {
             SunObstacle::None => format!("Sun: {name}"),
-            obstacle => format!("Shade of {}: {name}", found.name_of(obstacle)),
+            obstacle => format!("Shade of {}: {name}", found.mesh_name(obstacle).unwrap_or(obstacle.name())),
         };
         line("BEGIN:VEVENT");
-        line(&format!("UID:{start}-{}-{number}@belvedere", row.place + 1));
+        line(&format!("UID:{start}-{}-{number}@belvedere", place + 1));
         // the same file for the same question
         line(&format!("DTSTAMP:{start}"));
         line(&format!("DTSTART:{start}"));
@@ -136,7 +119,7 @@ fn fold(text: &mut String, content: &str) {
         text.push(character);
         length += character.len_utf8();
     }
-    let _ = write!(text, "\r\n");
+    text.push_str("\r\n");
 }
 
 #[cfg(test)]

@@ -433,7 +433,7 @@ fn lost_table(report: &SunlightReport, window: usize, words: &Words) -> String {
     }
     let row = |(date, start, end, obstacle): &(Date, f32, f32, _)| {
         let [from, to] = [start, end].map(|&hour| clock_time(hour.into()));
-        let object = object_of(after, *obstacle, name_of(*obstacle, words));
+        let object = file_of(after, *obstacle).unwrap_or_else(|| name_of(*obstacle, words).to_owned());
         let minutes = (f64::from(end - start) * 60.0).round();
         format!(
             "<tr><th>{}</th><td>{from}</td><td>{to}</td><td>{minutes:.0}</td><td>{}</td></tr>",
@@ -508,12 +508,9 @@ fn limits(report: &SunlightReport, words: &Words) -> String {
     page
 }
 
-/// Name of the file of a mesh that shades, or of another obstacle.
-fn object_of(state: &State, obstacle: SunObstacle, other: &str) -> String {
-    match obstacle {
-        SunObstacle::Mesh(_) => crate::results::file_name(state.calendar.name_of(obstacle)),
-        _ => other.to_owned(),
-    }
+/// File of the mesh that is an obstacle, without its folder; `None` for other obstacles.
+fn file_of(state: &State, obstacle: SunObstacle) -> Option<String> {
+    state.calendar.mesh_name(obstacle).map(crate::results::file_name)
 }
 
 /// All stretches as a table inside the page that can be saved: those of the days in detail and of critical days.
@@ -536,7 +533,7 @@ fn all_rows(report: &SunlightReport, words: &Words) -> String {
                         window + 1,
                         stretch.hours(),
                         stretch.obstacle.name(),
-                        object_of(state, stretch.obstacle, "").replace('"', " "),
+                        file_of(state, stretch.obstacle).unwrap_or_default().replace('"', " "),
                         stretch.unproven,
                     );
                 }

@@ -6,14 +6,14 @@ use belvedere::apps::ask::{
     SunHoursQuestion, SunPlace, ask,
 };
 use belvedere::apps::sun::{Date, Refraction, Site, Zone, sun_position_with};
-use belvedere::apps::sun_calendar::{CalendarDay, SunObstacle};
+use belvedere::apps::sun_calendar::{CalendarDay, SunObstacle, SunStretch};
 use belvedere::apps::window_views::SeenKind;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::model::{ModelParams, ModelParts, SceneModel};
 use belvedere::report::clock_time;
 use belvedere::results::write_calendar;
-use belvedere::sunlight_report::{Language, ReportArea, ReportParams, Verdict, sunlight_report};
+use belvedere::sunlight_report::{Language, ReportArea, ReportParams, sunlight_report};
 use belvedere::{Bounds, Frame, Mesh, PointCloud};
 use belvedere_scenes::{AirborneParams, PlanPlacement, TownParams, TriangleScene, extruded, scan_airborne, town};
 use std::sync::Arc;
@@ -92,10 +92,11 @@ fn a_tower_shades_a_window_from_minute_to_minute_as_its_closed_form() {
         }] += 1;
     }
     assert!(counts.iter().all(|&count| count > 30), "{counts:?}");
-    assert_eq!(found.name_of(SunObstacle::Mesh(0)), "tower.obj");
+    assert_eq!(found.mesh_name(SunObstacle::Mesh(0)), Some("tower.obj"));
+    assert_eq!(found.mesh_name(SunObstacle::Terrain), None);
     // sunrise to sunset
     let whole: f64 = day.hours(|_| true);
-    assert!((whole - found.schedule.possible_hours()).abs() < 1e-3);
+    assert!((whole - found.schedule.possible_hours()).abs() < 1e-3, "{whole}");
 }
 
 /// A scanned town of 60 m in the Netherlands, and the same with a tower.
@@ -147,13 +148,14 @@ fn calendars_add_up_to_the_hours_of_sun_with_and_without_a_plan() {
                 (column("sun_hours"), column("first_light"), column("last_light"), column("longest"));
             for (row, days) in found.days.iter().enumerate() {
                 let day = &days[0];
+                // a day of f32 sums of up to 100 steps, which are known to 1e-6 h each
                 assert!((day.sun_hours() - f64::from(hours[row])).abs() < 1e-3, "{row}: {day:?} {}", hours[row]);
                 assert!((day.longest() - f64::from(longest[row])).abs() < 1e-3, "{row}");
                 match day.first_and_last() {
                     Some([from, to]) => assert!((from - first[row]).abs() < 1e-3 && (to - last[row]).abs() < 1e-3),
                     None => assert!(first[row].is_nan() && last[row].is_nan()),
                 }
-                assert!((day.hours(|_| true) - found.schedule.possible_hours()).abs() < 1e-2);
+                assert!((day.hours(|_| true) - found.schedule.possible_hours()).abs() < 1e-3);
                 let without = found.without_trees.as_ref().unwrap()[row][0].clone();
                 // balls that give way to no tree any more can only free lines
                 assert!(without.sun_hours() >= day.sun_hours() - 1e-3, "{row}");
@@ -258,7 +260,6 @@ fn a_report_says_what_calendars_and_hours_of_sun_say_in_four_languages() {
         assert!(page.contains(&format!("<html lang='{code}'>")) && !pages.contains(&page));
         pages.push(page);
     }
-    assert!(Verdict::Met.is_met());
     for wrong in [
         ReportParams { rule: Some("nonsense".to_owned()), ..params.clone() },
         ReportParams { windows: Vec::new(), areas: Vec::new(), ..params.clone() },
@@ -289,6 +290,12 @@ fn calendars_are_tables_and_appointments() {
         [count("BEGIN:VEVENT"), count("END:VEVENT"), count("BEGIN:VCALENDAR"), count("END:VCALENDAR")],
         [expected, expected, 1, 1]
     );
-    assert!(text.contains("SUMMARY:Sun: a\\, b\\; c") || text.contains("a\\, b\\; c"), "{text}");
+    // one of each state of the place with a name that has to be escaped
+    let of_first = found.days[0].iter().flat_map(|day| &day.0);
+    let is_listed = |s: &&SunStretch| s.hours() >= 5.0 / 60.0 && s.obstacle != SunObstacle::OwnWall;
+    let kept: Vec<&SunStretch> = of_first.filter(is_listed).collect();
+    let named = |start: &str| lines.iter().filter(|l| l.starts_with(start) && l.ends_with(": a\\, b\\; c")).count();
+    let sunny = kept.iter().filter(|s| s.obstacle == SunObstacle::None).count();
+    assert!(!kept.is_empty() && named("SUMMARY:Sun") == sunny && named("SUMMARY:") == kept.len(), "{text}");
     assert!(lines.iter().any(|line| line.starts_with("DTSTART:20260321T") && line.ends_with('Z')));
 }
