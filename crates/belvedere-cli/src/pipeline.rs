@@ -8,8 +8,8 @@ pub(crate) use plan::{areas, mesh_in, planned};
 pub(crate) use scene_in_reach::scene_in_reach;
 
 use crate::arguments::{
-    CloudInput, GroundChoice, MethodChoice, ProfileChoice, SceneInput, SizeChoice, SkyPlaces, UnprovenChoice, UpChoice,
-    Usage, ViewChoice,
+    CloudInput, GroundChoice, MethodChoice, PlanArguments, ProfileChoice, SceneInput, SizeChoice, SkyPlaces,
+    UnprovenChoice, UpChoice, Usage, ViewChoice,
 };
 use crate::device::with_device;
 use crate::run::CommandContext;
@@ -114,6 +114,7 @@ pub(crate) fn advised(input: &CloudInput, error: Error) -> anyhow::Error {
 }
 
 /// A scene model, and the cloud it was made from unless it was read from a file.
+#[derive(Clone)]
 pub(crate) struct LoadedScene {
     pub(crate) model: SceneModel,
     /// In the frame of the model; without points where it was read from a file or its points are not needed.
@@ -187,12 +188,17 @@ pub(crate) enum KeepPoints {
 
 /// The scene of a ball file, or of a cloud, as it will be with what is planned.
 pub(crate) fn scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandContext) -> Result<LoadedScene> {
-    let clears = !arguments.plan.clear.is_empty();
-    let mut scene = present_scene(arguments, if clears { KeepPoints::Keep } else { points }, run)?;
-    if clears {
-        plan::clear(&mut scene, &arguments.plan, run)?;
+    let points = if arguments.plan.clear.is_empty() { points } else { KeepPoints::Keep };
+    let present = present_scene(arguments, points, run)?;
+    as_planned(present, &arguments.plan, run)
+}
+
+/// The scene as it will be, on the device that was chosen.
+fn as_planned(mut scene: LoadedScene, plan: &PlanArguments, run: &mut CommandContext) -> Result<LoadedScene> {
+    if !plan.clear.is_empty() {
+        plan::clear(&mut scene, plan, run)?;
     }
-    scene.model = with_device(planned(scene.model, &arguments.plan, run)?);
+    scene.model = with_device(planned(scene.model, plan, run)?);
     Ok(scene)
 }
 
@@ -203,23 +209,8 @@ pub(crate) fn present_and_planned(
 ) -> Result<(LoadedScene, Option<LoadedScene>)> {
     let mut present = present_scene(arguments, KeepPoints::Keep, run)?;
     let plan = &arguments.plan;
-    let planned = match plan.add.is_empty() && plan.clear.is_empty() {
-        true => None,
-        false => {
-            let mut scene = LoadedScene {
-                model: present.model.clone(),
-                cloud: present.cloud.clone(),
-                left_out: ReadReport::default(),
-                profile: present.profile,
-                ground_store: present.ground_store.clone(),
-            };
-            if !plan.clear.is_empty() {
-                plan::clear(&mut scene, plan, run)?;
-            }
-            scene.model = with_device(planned(scene.model, plan, run)?);
-            Some(scene)
-        }
-    };
+    let is_planned = !plan.add.is_empty() || !plan.clear.is_empty();
+    let planned = is_planned.then(|| as_planned(present.clone(), plan, run)).transpose()?;
     present.model = with_device(present.model);
     Ok((present, planned))
 }

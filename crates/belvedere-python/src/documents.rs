@@ -11,12 +11,10 @@ use crate::windows::{WindowRow, given};
 use crate::work::run;
 use belvedere::apps::ask::{self, GivenWindows};
 use belvedere::apps::sun_calendar::SunStretch;
-use belvedere::io::atomic;
 use belvedere::sunlight_report::{Language, ReportArea, ReportParams, sunlight_report};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Content of a report.
@@ -127,11 +125,7 @@ impl PyScene {
         let planned = keywords.planned.as_ref().map(|planned| Arc::clone(&planned.get().0));
         let params = keywords.params(&scene, &days, &place)?;
         let report = run(py, progress, move |control| sunlight_report(&scene, planned.as_deref(), &params, control))?;
-        write(&path, &report.to_html().map_err(exception)?).map_err(exception)?;
+        report.write(&path).map_err(exception)?;
         Ok((report.headlines(), remarks_of(py, &report.remarks)?))
     }
-}
-
-fn write(path: &Path, page: &str) -> belvedere::Result<()> {
-    atomic::write(path, |file| file.write_all(page.as_bytes()).map_err(belvedere::Error::io(path)))
 }

@@ -84,9 +84,9 @@ pub(crate) struct ReportArguments {
     /// A day in detail: 2026-06-21, equinox, shortest-day or longest-day; repeatable [default: these three]
     #[arg(long, value_name = "DATE", help_heading = "Rules and days")]
     pub(crate) date: Vec<String>,
-    /// Year of days that are given without a year
-    #[arg(long, value_name = "Y", default_value_t = 2026, help_heading = "Rules and days")]
-    pub(crate) year: i16,
+    /// Year of days that are given without a year [default: this year]
+    #[arg(long, value_name = "Y", help_heading = "Rules and days")]
+    pub(crate) year: Option<i16>,
     /// Time between two sun positions in minutes, 1/6 to 60 [default: 2 for windows, 10 for areas]
     #[arg(long = "time-step-min", value_name = "MIN", value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Rules and days")]

@@ -27,6 +27,7 @@ use belvedere_scenes::{
     AirborneParams, PlanPlacement, Scan, TownParams, TriangleScene, Truth, extruded, scan_airborne, town,
 };
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::io::Write;
 use std::path::Path;
@@ -35,7 +36,7 @@ use std::path::Path;
 const SUN_DEG: [f64; 2] = [235.0, 30.0];
 /// Length, width and height of the planned building.
 const PLANNED_M: [f64; 3] = [14.0, 10.0, 25.0];
-/// Number of windows.
+/// Number of windows around the planned building.
 const WINDOWS: usize = 4;
 /// Cells of the raster of the terrain around the town, metres, and their number a side.
 const TERRAIN_CELL_M: f64 = 25.0;
@@ -244,14 +245,8 @@ fn windows_that_face(town: &TriangleScene) -> String {
         }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut objects = Vec::new();
-    found.retain(|(_, object, _)| {
-        !objects.contains(object) && {
-            objects.push(*object);
-            true
-        }
-    });
-    let rows = found.into_iter().take(WINDOWS).map(|(.., row)| row);
+    let mut objects = BTreeSet::new();
+    let rows = found.into_iter().filter(|(_, object, _)| objects.insert(*object)).take(WINDOWS).map(|(.., row)| row);
     std::iter::once("x,y,z,azimuth,name\n".to_owned()).chain(rows).collect()
 }
 

@@ -11,13 +11,9 @@ use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{Days, GivenWindows};
-use belvedere::io::{FeatureShape, atomic};
+use belvedere::io::FeatureShape;
 use belvedere::sunlight_report::{ReportArea, ReportParams, ReportSource, sunlight_report};
-use std::io::Write;
 use std::path::Path;
-
-/// Maximum number of sentences that are printed; the report has all.
-const MAX_HEADLINES: usize = 12;
 
 pub(crate) fn run(arguments: &ReportArguments, global: &Global) -> Result<Summary> {
     check_output("-o", &arguments.output, &["html"])?;
@@ -30,7 +26,7 @@ pub(crate) fn run(arguments: &ReportArguments, global: &Global) -> Result<Summar
         area_rule: arguments.area_rule.clone(),
         days: Days {
             dates: arguments.date.clone(),
-            year: Some(arguments.year),
+            year: arguments.year,
             time_step_min: arguments.step,
             ..Days::default()
         },
@@ -61,12 +57,10 @@ pub(crate) fn run(arguments: &ReportArguments, global: &Global) -> Result<Summar
     }
     params.sources = run.stage("reading files again for their hashes", 0, |_| sources(arguments))?;
     let report = sunlight_report(&scenes[0], scenes.get(1), &params, &run.control())?;
-    report.headlines().iter().take(MAX_HEADLINES).for_each(|line| run.summary.answer(line));
+    report.headlines().iter().for_each(|line| run.summary.answer(line));
     run.summary.remarks(report.remarks.iter().cloned());
-    let page = run.stage("writing", 0, |_| report.to_html())?;
-    let output = &arguments.output;
-    atomic::write(output, |file| file.write_all(page.as_bytes()).map_err(belvedere::Error::io(output)))?;
-    run.summary.add("written", vec![output.display().to_string()]);
+    run.stage("writing", 0, |_| report.write(&arguments.output))?;
+    run.summary.add("written", vec![arguments.output.display().to_string()]);
     Ok(run.finish())
 }
 

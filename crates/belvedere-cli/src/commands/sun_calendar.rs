@@ -28,6 +28,7 @@ pub(crate) fn run(arguments: &SunCalendarArguments, global: &Global) -> Result<S
         ..ask::SunCalendarQuestion::default()
     };
     question.check()?;
+    arguments.places.windows.as_deref().map_or(Ok(()), refuse_mesh)?;
     if let (false, Some((crs, bounds))) = (typed.is_empty(), on_map(&arguments.scene.input)?) {
         typed.iter().try_for_each(|place| position_on_map(place.0, &crs, bounds).map(|_| ()))?;
     }
@@ -38,7 +39,6 @@ pub(crate) fn run(arguments: &SunCalendarArguments, global: &Global) -> Result<S
     let mut names = Vec::new();
     let places = match &arguments.places.windows {
         Some(path) => {
-            refuse_mesh(path)?;
             let file = WindowFile::read(path, &FaceChoice::default(), scene.frame(), &mut run)?;
             names = file.buildings(&[]);
             question.windows = file.given;

@@ -11,10 +11,12 @@ use anyhow::Result;
 use belvedere::apps::ask::{GridCells, OnTargets, Places, Remark, Scene, Turned, position_on_map, standing_on_map};
 use belvedere::apps::targets::{CellLevel, Facing, Measure, MeshParams};
 use belvedere::figures::{Picture, write_png};
-use belvedere::ground::{GroundPoints, highest_points};
+use belvedere::ground::GroundPoints;
 use belvedere::io::{Georeference, MetadataTag, ReadOptions, atomic, is_mesh, write_tif_u8};
 use belvedere::raster::Raster;
-use belvedere::results::{ResultKind, TakenFrom, georeference, measure_map, write_measures, write_raster};
+use belvedere::results::{
+    ResultKind, TakenFrom, georeference, measure_map, relief_of_cells, write_measures, write_raster,
+};
 use belvedere::{Mesh, PointCloud};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -163,13 +165,9 @@ impl<'a> TargetOutput<'a> {
 
     /// Returns the relief below maps; `None` if targets are no cells.
     pub(crate) fn relief(&self) -> Option<HighestPoints> {
-        let (ground, cloud) = (self.on.targets.ground()?, self.scene.ground_cloud().ok()?);
-        let mut heights = highest_points(&cloud.positions, ground);
-        if let Some(added) = self.scene.model().added() {
-            added.raise(&mut heights, &ground.grid);
-        }
+        let ground = self.on.targets.ground()?;
         Some(HighestPoints {
-            heights,
+            heights: relief_of_cells(&self.on.targets, self.scene)?,
             cell: ground.grid.cell,
             place: georeference(&ground.grid, &self.on.targets.frame),
         })

@@ -60,7 +60,7 @@ fn calendars_list_sun_and_shade_with_their_cause() {
 fn reports_compare_a_plan_with_what_is() {
     let place = place();
     let garden = corners(&[[-6.0, 8.0], [6.0, 8.0], [6.0, 14.0], [-6.0, 14.0]]);
-    let command = format!("report {HOUSE} --windows windows.csv --add wall.obj --rule 2@03-21 -o r.html");
+    let command = format!("report {HOUSE} --windows windows.csv --add wall.obj --rule 2@03-21 --year 2026 -o r.html");
     let run = place.run_with(&command, &["--area", &garden, "--title", "A <wall>", "--note", "For <us>"]);
     assert_eq!(run.status, 0, "{}", run.stderr);
     assert!(run.stdout.contains("Windows that meet the rule: 1 of 2 with the plan, 2 without it"), "{}", run.stdout);

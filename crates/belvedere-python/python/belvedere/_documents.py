@@ -218,7 +218,7 @@ class Documents:
                 "language": language,
                 "today": datetime.date.today().isoformat(),
             },
-            _days(date, None, datetime.date.today().year if year is None else year, time_step_min),
+            _days(date, None, year, time_step_min),
             _place(location, zone=zone, grid_north=grid_north),
             reporter(progress),
         )

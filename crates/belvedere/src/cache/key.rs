@@ -15,16 +15,16 @@ use std::path::{Path, PathBuf};
 /// The version of the program, and in its workspace the sources of the algorithms and of reading.
 const PROGRAM: &str = concat!(env!("CARGO_PKG_VERSION"), " ", env!("BELVEDERE_SOURCES"));
 
-/// Returns the SHA-256 of the contents of a file in hexadecimal digits, and their number of bytes.
+/// Returns the SHA-256 of the contents of a file in hexadecimal digits.
 ///
 /// # Errors
 /// [`crate::Error::Io`].
 #[cfg(feature = "figures")]
-pub(crate) fn file_hash(path: &Path) -> crate::Result<(String, u64)> {
+pub(crate) fn file_hash(path: &Path) -> crate::Result<String> {
     let mut file = File::open(path).map_err(crate::Error::io(path))?;
     let mut hasher = Sha256::new();
-    let bytes = std::io::copy(&mut file, &mut hasher).map_err(crate::Error::io(path))?;
-    Ok((hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect(), bytes))
+    std::io::copy(&mut file, &mut hasher).map_err(crate::Error::io(path))?;
+    Ok(hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
 /// The contents of a cloud: all that a scene of it follows from.

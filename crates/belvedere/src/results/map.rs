@@ -1,10 +1,24 @@
 //! Measures of the cells of a grid as maps.
 
 use crate::Result;
-use crate::apps::targets::Measure;
+use crate::apps::ask::Scene;
+use crate::apps::targets::{Measure, Targets};
 use crate::figures::{MapLegend, MapPicture, Picture, map_picture, ramp};
+use crate::ground::highest_points;
 use crate::io::Georeference;
 use crate::raster::Raster;
+
+/// Heights of the highest points in the cells of targets, metres, on the meshes that were added where these are higher;
+/// `None` for targets that are no cells, and without points.
+#[must_use]
+pub fn relief_of_cells(targets: &Targets, scene: &Scene) -> Option<Raster<f32>> {
+    let (ground, cloud) = (targets.ground()?, scene.ground_cloud().ok()?);
+    let mut heights = highest_points(&cloud.positions, ground);
+    if let Some(added) = scene.model().added() {
+        added.raise(&mut heights, &ground.grid);
+    }
+    Some(heights)
+}
 
 /// A measure of cells of `cell` metres over shaded `relief` that lies at `place`, with a legend.
 ///

@@ -20,7 +20,7 @@ pub use calendar::write_calendar;
 pub use difference::{difference_map, relief_of};
 pub use faces::FaceRows;
 #[cfg(feature = "figures")]
-pub use map::measure_map;
+pub use map::{measure_map, relief_of_cells};
 pub use question::{file_name, question_tags};
 pub use raster::{ADDED_BAND, Pixels, ResultRaster, UNPROVEN_BAND, viewshed_words};
 

@@ -64,7 +64,7 @@ impl AreaState {
         };
         let step = params.days.time_step_min.or(Some(AREA_STEP_MIN));
         let question = SunHoursQuestion {
-            days: Days { year: params.days.year, time_step_min: step, ..Days::default() },
+            days: Days { year: params.detailed_days().year, time_step_min: step, ..Days::default() },
             rules: vec![params.area_rule().to_owned()],
             place: params.place.clone(),
             ..SunHoursQuestion::default()

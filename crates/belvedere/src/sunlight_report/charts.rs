@@ -1,7 +1,8 @@
 //! Charts of a report as SVG: strips of days, and the sky before a window with the paths of the sun.
 
+use super::SunlightReport;
+use super::numbers::whole;
 use super::words::Words;
-use super::{SunlightReport, page};
 use crate::apps::sun_calendar::{CalendarDay, SunLine, SunObstacle};
 use crate::apps::window_views::SeenKind;
 use crate::report::clock_time;
@@ -58,7 +59,7 @@ pub(super) fn name_of(obstacle: SunObstacle, words: &Words) -> &'static str {
     words.get(key)
 }
 
-/// What is before a window, direction by direction.
+/// The view from a window: the first obstacle in each direction.
 pub(super) struct SkyView {
     /// Azimuth of the window from grid north, radians.
     azimuth: f64,
@@ -70,7 +71,7 @@ impl SkyView {
     /// Looks with `lines` from a window that faces `azimuth` from grid north, radians; south where it faces up.
     pub(super) fn new(azimuth: f64, lines: impl Fn(&[[f64; 3]]) -> Vec<SunLine>) -> Self {
         let azimuth = if azimuth.is_finite() { azimuth } else { PI };
-        let count = |reach: f64, step: f64| page::whole((reach / step).round());
+        let count = |reach: f64, step: f64| whole((reach / step).round());
         let [across, up] = [count(2.0 * SKY_REACH[0], SKY_STEP[0]), count(SKY_REACH[1], SKY_STEP[1])];
         let column = |number: usize| {
             let from_middle = (number as f64 + 0.5) * SKY_STEP[0] - SKY_REACH[0];

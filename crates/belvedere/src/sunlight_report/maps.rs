@@ -4,10 +4,12 @@ use super::ReportParams;
 use crate::Result;
 use crate::apps::ask::{self, GridCells, Places, Scene, ShadowQuestion, SunCalendarResults};
 use crate::apps::sun::{Date, sun_position_with};
-use crate::apps::targets::CellLevel;
+use crate::apps::targets::{CellLevel, Measure};
 use crate::control::Control;
-use crate::ground::{MapGrid, highest_points};
+use crate::ground::MapGrid;
+use crate::query::UnprovenAs;
 use crate::raster::Raster;
+use crate::results::relief_of_cells;
 
 /// Hours of the clock of maps, and that of many days.
 const HOURS: [f64; 3] = [9.0, 12.0, 15.0];
@@ -23,18 +25,23 @@ const MIN_CELL: f64 = 0.5;
 /// Room around windows, areas and plan, metres.
 const MARGIN: f64 = 40.0;
 
-/// Light of the cells of a map at one time.
-pub(super) struct ShadowMap {
-    pub(super) date: Date,
-    /// Hour of the clock.
-    pub(super) hour: f64,
+/// Light of the cells of a map at several times.
+pub(super) struct ShadowMaps {
     pub(super) grid: MapGrid,
     /// Heights of the highest points, metres.
     pub(super) relief: Raster<f32>,
-    /// True for lit cells; `None` without an answer.
-    pub(super) lit: Vec<Option<bool>>,
-    /// True for cells on a mesh that was added.
+    /// True for cells on a mesh that was added; empty where there is none.
     pub(super) is_plan: Vec<bool>,
+    pub(super) lit: Vec<LitCells>,
+}
+
+/// Light of cells at one time.
+pub(super) struct LitCells {
+    pub(super) date: Date,
+    /// Hour of the clock.
+    pub(super) hour: f64,
+    /// True for lit cells; `None` without an answer.
+    pub(super) cells: Vec<Option<bool>>,
 }
 
 /// Box on the map around windows, areas and plan, within the scene, local metres.
@@ -58,14 +65,15 @@ pub(super) fn extent(present: &Scene, planned: Option<&Scene>, params: &ReportPa
     }
 }
 
-/// Computes the maps of the days in detail, at hours of the clock at which the sun stands high enough.
+/// Computes the maps of the days in detail, at hours of the clock at which the sun stands high enough; `None` without
+/// such an hour.
 pub(super) fn shadow_maps(
     scene: &Scene,
     params: &ReportParams,
     calendar: &SunCalendarResults,
     (low, high): ([f64; 2], [f64; 2]),
     control: &Control<'_>,
-) -> Result<Vec<ShadowMap>> {
+) -> Result<Option<ShadowMaps>> {
     let mut times = Vec::new();
     let days = &calendar.schedule.days;
     let hours: &[f64] = if days.len() <= FEW_DAYS { &HOURS } else { &HOUR_OF_MANY_DAYS };
@@ -78,7 +86,7 @@ pub(super) fn shadow_maps(
         }
     }
     if times.is_empty() {
-        return Ok(Vec::new());
+        return Ok(None);
     }
     let cell = ((high[0] - low[0]).max(high[1] - low[1]) / CELLS).max(MIN_CELL);
     let cells = GridCells {
@@ -89,24 +97,17 @@ pub(super) fn shadow_maps(
     };
     let question = ShadowQuestion {
         place: params.place.clone(),
-        unproven: Some(crate::query::UnprovenAs::Visible),
+        unproven: Some(UnprovenAs::Visible),
         ..ShadowQuestion::of_times(times.iter().map(|(.., text)| text.clone()).collect())
     };
     let answers = ask::ask(scene, &question, &Places::Cells(cells), control)?;
     let targets = &answers.found.on.targets;
-    let Some(ground) = targets.ground() else { return Ok(Vec::new()) };
-    let relief = highest_points(&scene.ground_cloud()?.positions, ground);
-    let is_plan = match targets.on_added.is_empty() {
-        true => vec![false; targets.len()],
-        false => targets.on_added.clone(),
-    };
-    let of_time = |((date, hour, _), measure): (&(Date, f64, String), &crate::apps::targets::Measure)| ShadowMap {
+    let (Some(ground), Some(relief)) = (targets.ground(), relief_of_cells(targets, scene)) else { return Ok(None) };
+    let of_time = |((date, hour, _), measure): (&(Date, f64, String), &Measure)| LitCells {
         date: *date,
         hour: *hour,
-        grid: ground.grid,
-        relief: relief.clone(),
-        lit: measure.values.iter().map(|&lit| lit.is_finite().then_some(lit > 0.5)).collect(),
-        is_plan: is_plan.clone(),
+        cells: measure.values.iter().map(|&lit| lit.is_finite().then_some(lit > 0.5)).collect(),
     };
-    Ok(times.iter().zip(&answers.measures).map(of_time).collect())
+    let lit = times.iter().zip(&answers.measures).map(of_time).collect();
+    Ok(Some(ShadowMaps { grid: ground.grid, relief, is_plan: targets.on_added.clone(), lit }))
 }

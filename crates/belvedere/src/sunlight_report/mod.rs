@@ -8,12 +8,14 @@
 //! | maps of shadow | `maps.rs` |
 //! | strips of days and diagrams of the sky | `charts.rs` |
 //! | the answer in sentences | `sentences.rs` |
+//! | numbers for a reader | `numbers.rs` |
 //! | the page | `page.rs`, `report.css` |
 //! | its texts in four languages | `words.rs`, `words.csv` |
 
 mod areas;
 mod charts;
 mod maps;
+mod numbers;
 mod page;
 mod sentences;
 mod sources;
@@ -21,7 +23,6 @@ mod verdict;
 mod words;
 
 pub use sources::ReportSource;
-pub use verdict::{RuleFinding, Verdict};
 pub use words::Language;
 
 use crate::apps::ask::{
@@ -29,17 +30,21 @@ use crate::apps::ask::{
     SunHoursQuestion, SunPlace, knows_intervals,
 };
 use crate::apps::sun::{Date, Zone};
-use crate::apps::sun_calendar::{SunObstacle, sun_lines};
+use crate::apps::sun_calendar::sun_lines;
 use crate::apps::sun_hours::SunRule;
 use crate::apps::targets::{Measure, Targets};
 use crate::cloud::ADJUSTED_GPS_EPOCH;
 use crate::control::Control;
+use crate::io::atomic;
 use crate::query::UnprovenAs;
 use crate::{Error, GpsTimeKind, Parameter, Result};
 use areas::AreaState;
 use charts::SkyView;
-use maps::ShadowMap;
+use maps::ShadowMaps;
+use std::io::Write as _;
+use std::path::Path;
 use std::sync::Arc;
+use verdict::RuleFinding;
 
 /// Days that are shown in detail unless others are given.
 const DAYS: [&str; 3] = ["equinox", "longest-day", "shortest-day"];
@@ -74,7 +79,8 @@ pub struct ReportParams {
     pub rule: Option<String>,
     /// Daylight rule of the areas; `None` for [`AREA_RULE`].
     pub area_rule: Option<String>,
-    /// Days in detail: the equinox, the longest and the shortest day unless others are given.
+    /// Days in detail: the equinox, the longest and the shortest day unless others are given; without a year that of
+    /// the date.
     pub days: Days,
     /// Location on earth, clock, and the north of azimuths of windows.
     pub place: SunPlace,
@@ -104,7 +110,7 @@ struct State {
     /// Rule in each room.
     rooms: Vec<Option<RuleFinding>>,
     areas: Vec<AreaState>,
-    maps: Vec<ShadowMap>,
+    maps: Option<ShadowMaps>,
     skies: Vec<SkyView>,
 }
 
@@ -154,6 +160,7 @@ impl ReportParams {
 
     fn detailed_days(&self) -> Days {
         let mut days = self.days.clone();
+        days.year = days.year.or_else(|| Date::parse(&self.date).ok().map(Date::year));
         if days.is_empty() {
             days.dates = DAYS.map(str::to_owned).to_vec();
         }
@@ -276,13 +283,16 @@ impl State {
             _ => None,
         };
         let mut intervals = Intervals::new(scene, params, &calendar, control)?;
+        let counted = of_rule.as_ref().and_then(|found| found.rule.as_ref());
+        let min_elevation_deg = counted.map(|rule| rule.min_elevation.to_degrees()).filter(|degrees| *degrees > 0.0);
         let mut windows = Vec::with_capacity(params.windows.len());
         for number in 0..params.windows.len() {
             let dates = calendar.schedule.days.iter().map(|day| day.date);
-            let of_days = dates.map(|date| intervals.of(date, number, control)).collect::<Result<Option<Vec<_>>>>()?;
+            let of_days =
+                dates.map(|date| intervals.of((date, None), number, control)).collect::<Result<Option<Vec<_>>>>()?;
             let mut rule = of_rule.as_ref().and_then(|found| RuleFinding::of(found, number));
             if let Some(rule) = &mut rule {
-                rule.widen(intervals.of(rule.date, number, control)?);
+                rule.widen(intervals.of((rule.date, min_elevation_deg), number, control)?);
             }
             windows.push(WindowState { intervals: of_days.unwrap_or_default(), rule });
         }
@@ -307,13 +317,17 @@ impl State {
     }
 }
 
+/// A day, and the lowest sun that counts on it, degrees; `None` for the horizon.
+type SunsOfDay = (Date, Option<f64>);
+/// Hours of sun, and the low and high end of their interval.
+type HoursAndEnds = [f64; 3];
+
 /// Finds intervals of hours of sun of windows, day by day.
 struct Intervals<'a> {
     scene: &'a Scene,
     question: SunHoursQuestion,
     targets: Arc<Targets>,
-    /// Those of days that were needed.
-    kept: Vec<(Date, Vec<[f64; 3]>)>,
+    kept: Vec<(SunsOfDay, Vec<HoursAndEnds>)>,
     are_known: bool,
 }
 
@@ -333,24 +347,26 @@ impl<'a> Intervals<'a> {
         })
     }
 
-    /// Returns the interval of the hours of sun of a window on a day, less those hours; `None` where it is not known.
-    fn of(&mut self, date: Date, window: usize, control: &Control<'_>) -> Result<Option<[f64; 2]>> {
+    /// Returns the interval of the hours of a window on a day, less those hours; `None` where it is not known.
+    fn of(&mut self, of_day: SunsOfDay, window: usize, control: &Control<'_>) -> Result<Option<[f64; 2]>> {
         if !self.are_known {
             return Ok(None);
         }
-        if !self.kept.iter().any(|(day, _)| *day == date) {
-            let days = Days { dates: vec![date.to_string()], ..Days::default() };
+        if !self.kept.iter().any(|(day, _)| *day == of_day) {
+            let (date, min_sun_elevation_deg) = (of_day.0.to_string(), of_day.1);
+            let days = Days { dates: vec![date], min_sun_elevation_deg, ..Days::default() };
             let question = SunHoursQuestion { days, ..self.question.clone() };
             let answers = ask::ask(self.scene, &question, &Places::Targets(Arc::clone(&self.targets)), control)?;
-            let column = |name: &str| -> Vec<f64> {
+            let column = |name: &str| -> &[f32] {
                 let found = answers.measures.iter().find(|measure: &&Measure| measure.name == name);
-                found.map(|measure| measure.values.iter().map(|&v| v.into()).collect()).unwrap_or_default()
+                found.map_or(&[], |measure| &measure.values)
             };
-            let (hours, low, high) = (column("sun_hours"), column("hours_low"), column("hours_high"));
-            let rows = hours.iter().zip(&low).zip(&high).map(|((hours, low), high)| [*hours, *low, *high]);
-            self.kept.push((date, rows.collect()));
+            let ends = column("hours_low").iter().zip(column("hours_high"));
+            let rows = column("sun_hours").iter().zip(ends);
+            let rows = rows.map(|(&hours, (&low, &high))| [hours, low, high].map(f64::from)).collect();
+            self.kept.push((of_day, rows));
         }
-        let rows = self.kept.iter().find(|(day, _)| *day == date).map(|(_, rows)| rows);
+        let rows = self.kept.iter().find(|(day, _)| *day == of_day).map(|(_, rows)| rows);
         let row = rows.and_then(|rows| rows.get(window)).filter(|row| row.iter().all(|v| v.is_finite()));
         Ok(row.map(|[hours, low, high]| [(low - hours).min(0.0), (high - hours).max(0.0)]))
     }
@@ -371,6 +387,15 @@ impl SunlightReport {
         page::html(self)
     }
 
+    /// Writes the HTML file, which appears only when it is complete.
+    ///
+    /// # Errors
+    /// [`Error::Io`], and those of [`SunlightReport::to_html`].
+    pub fn write(&self, path: &Path) -> Result<()> {
+        let page = self.to_html()?;
+        atomic::write(path, |file| file.write_all(page.as_bytes()).map_err(Error::io(path)))
+    }
+
     /// The states of the scene, each with the key of its name.
     fn states(&self) -> impl Iterator<Item = (&'static str, &State)> {
         let first = if self.after.is_some() { "before" } else { "now" };
@@ -381,26 +406,4 @@ impl SunlightReport {
     fn last(&self) -> &State {
         self.after.as_ref().unwrap_or(&self.before)
     }
-}
-
-/// Shortest loss that is listed, hours: half a minute. Shorter ones are the rounding of stretches.
-const SHORTEST_LOSS: f32 = 0.5 / 60.0;
-
-/// Stretches of sun that a plan takes away: date, start and end on the clock, and the obstacle.
-fn lost_sun(report: &SunlightReport, window: usize) -> Vec<(Date, f32, f32, SunObstacle)> {
-    let Some(after) = &report.after else { return Vec::new() };
-    let (before, planned) = (&report.before.calendar, &after.calendar);
-    let days = before.schedule.days.iter().zip(before.days[window].iter().zip(&planned.days[window]));
-    let mut lost = Vec::new();
-    for (day, (was, will)) in days {
-        for sun in was.sun() {
-            for shade in will.0.iter().filter(|stretch| stretch.obstacle != SunObstacle::None) {
-                let (start, end) = (sun.start.max(shade.start), sun.end.min(shade.end));
-                if end - start > SHORTEST_LOSS {
-                    lost.push((day.date, start, end, shade.obstacle));
-                }
-            }
-        }
-    }
-    lost
 }

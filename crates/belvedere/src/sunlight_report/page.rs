@@ -1,14 +1,15 @@
 //! The page of a report: HTML that needs no other file and prints on A4.
 
 use super::charts::{LEGEND, color, name_of, sky, strips};
-use super::maps::ShadowMap;
-use super::sentences::{hours_in_words, percent, rule_in_words, sentences, verdict_words};
+use super::numbers::{change, hm, hours_in_words, percent, whole};
+use super::sentences::{BRE, rule_in_words, sentences, verdict_words};
 use super::verdict::RuleFinding;
 use super::words::Words;
-use super::{State, SunlightReport, lost_sun};
+use super::{State, SunlightReport};
 use crate::Result;
 use crate::apps::sun::Date;
 use crate::apps::sun_calendar::{CalendarDay, SunObstacle};
+use crate::apps::targets::Window;
 use crate::figures::{MapLegend, MapMark, MapPicture, map_image, png_bytes};
 use crate::report::clock_time;
 use base64::Engine as _;
@@ -16,39 +17,19 @@ use base64::prelude::BASE64_STANDARD;
 use std::fmt::Write as _;
 
 const STYLE: &str = include_str!("report.css");
+/// Side of a map, pixels.
+const PICTURE_SIDE: f64 = 640.0;
 /// Colours of maps: sun, shade, shade of the plan, freed sun, the plan.
 const MAP_COLORS: [[u8; 3]; 5] = [[250, 240, 205], [118, 128, 150], [203, 62, 50], [104, 176, 120], [146, 98, 160]];
-
-/// A number of things that is small and not negative.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
-pub(super) fn whole(value: f64) -> usize {
-    value as usize
-}
 
 /// Text of HTML.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// Hours as hours and minutes: 3:12.
-fn hm(hours: f64) -> String {
-    if !hours.is_finite() {
-        return "–".to_owned();
-    }
-    let minutes = (hours.abs() * 60.0).round();
-    let sign = if hours < 0.0 && minutes > 0.0 { "−" } else { "" };
-    format!("{sign}{}:{:02}", whole(minutes) / 60, whole(minutes) % 60)
-}
-
-/// A change of hours in minutes, with its sign.
-fn change(before: f64, after: f64) -> String {
-    let minutes = ((after - before) * 60.0).round();
-    match minutes {
-        _ if !minutes.is_finite() => "–".to_owned(),
-        minutes if minutes < 0.0 => format!("−{:.0}", -minutes),
-        minutes if minutes > 0.0 => format!("+{minutes:.0}"),
-        _ => "0".to_owned(),
-    }
+/// Text of HTML as code; nothing for nothing.
+fn code(text: &str) -> String {
+    if text.is_empty() { String::new() } else { format!("<code>{}</code>", escaped(text)) }
 }
 
 /// The whole page.
@@ -83,9 +64,9 @@ pub(super) fn html(report: &SunlightReport) -> Result<String> {
     if !report.params.windows.is_empty() {
         body += &all_rows(report, &words);
     }
-    let (code, title) = (report.params.language.code(), escaped(title));
+    let (language, title) = (report.params.language.code(), escaped(title));
     Ok(format!(
-        "<!DOCTYPE html>\n<html lang='{code}'><head><meta charset='utf-8'>\
+        "<!DOCTYPE html>\n<html lang='{language}'><head><meta charset='utf-8'>\
          <meta name='viewport' content='width=device-width, initial-scale=1'>\
          <title>{title}</title><style>{STYLE}</style></head><body><main>{body}</main></body></html>\n"
     ))
@@ -94,29 +75,17 @@ pub(super) fn html(report: &SunlightReport) -> Result<String> {
 fn window_table(report: &SunlightReport, words: &Words) -> String {
     let days = &report.before.calendar.schedule.days;
     let is_planned = report.after.is_some();
-    let mut head = format!("<th>{}</th><th>{}</th><th>{}</th>", "", words.get("faces"), words.get("height"));
+    let mut head = format!("<th></th><th>{}</th><th>{}</th>", words.get("faces"), words.get("height"));
     for day in days {
         let _ = write!(head, "<th colspan='{}'>{}</th>", if is_planned { 3 } else { 1 }, words.date(day.date));
     }
-    let mut second = "<th></th><th></th><th></th>".to_owned();
-    for _ in days {
-        match is_planned {
-            true => {
-                let names = ["before", "after", "change"].map(|key| {
-                    format!(
-                        "<th>{}</th>",
-                        match key {
-                            "before" => words.get("before"),
-                            "after" => words.get("after"),
-                            _ => words.get("change"),
-                        }
-                    )
-                });
-                second += &names.concat();
-            }
-            false => second += &format!("<th>{}</th>", words.get("sun")),
+    let of_day = match is_planned {
+        true => {
+            format!("<th>{}</th><th>{}</th><th>{}</th>", words.get("before"), words.get("after"), words.get("change"))
         }
-    }
+        false => format!("<th>{}</th>", words.get("sun")),
+    };
+    let second = format!("<th></th><th></th><th></th>{}", of_day.repeat(days.len()));
     let mut rows = String::new();
     for number in 0..report.params.windows.len() {
         let calendar = &report.before.calendar;
@@ -246,7 +215,7 @@ fn area_table(report: &SunlightReport, words: &Words) -> String {
             );
         }
     }
-    let half = match report.area_rule.name.starts_with(super::sentences::BRE) {
+    let half = match report.area_rule.name.starts_with(BRE) {
         true => format!(" {}", words.get("bre-half")),
         false => String::new(),
     };
@@ -289,58 +258,48 @@ fn added_table(report: &SunlightReport, words: &Words) -> String {
 }
 
 /// Colours of the cells of a map: what the plan adds and frees where there is one.
-fn map_colors(before: &ShadowMap, after: Option<&ShadowMap>) -> Vec<Option<[u8; 3]>> {
+fn map_colors(before: &[Option<bool>], after: Option<(&[Option<bool>], &[bool])>) -> Vec<Option<[u8; 3]>> {
     let [sun, shade, added, freed, plan] = MAP_COLORS;
     let of_cell = |(cell, &was): (usize, &Option<bool>)| {
-        let Some(after) = after else { return was.map(|lit| if lit { sun } else { shade }) };
-        if after.is_plan[cell] {
+        let Some((after, is_plan)) = after else { return was.map(|lit| if lit { sun } else { shade }) };
+        if is_plan.get(cell) == Some(&true) {
             return Some(plan);
         }
-        Some(match (was, after.lit[cell]?) {
+        Some(match (was, after[cell]?) {
             (Some(true), false) => added,
             (Some(false), true) => freed,
             (_, true) => sun,
             (_, false) => shade,
         })
     };
-    before.lit.iter().enumerate().map(of_cell).collect()
+    before.iter().enumerate().map(of_cell).collect()
 }
 
 fn maps(report: &SunlightReport, words: &Words) -> Result<String> {
+    let (Some(before), Some(last)) = (&report.before.maps, &report.last().maps) else { return Ok(String::new()) };
+    let (grid, relief) = (&last.grid, &last.relief);
+    let mark = |(number, window): (usize, &Window)| {
+        let place = [window.center[0] - grid.corner[0], grid.corner[1] - window.center[1]].map(|v| v / grid.cell);
+        MapMark { place, view: None, label: (number + 1).to_string() }
+    };
+    let marks: Vec<MapMark> = report.before.calendar.windows.iter().enumerate().map(mark).collect();
+    let factor = whole(PICTURE_SIDE / relief.width().max(relief.height()).max(1) as f64).clamp(1, 8);
     let mut pictures = String::new();
-    for (number, map) in report.before.maps.iter().enumerate() {
-        let after = report.after.as_ref().and_then(|after| after.maps.get(number));
-        let colors = map_colors(map, after);
-        let grid = map.grid;
-        let mark = |(number, window): (usize, &crate::apps::targets::Window)| {
-            let north = grid.corner[1] - window.center[1];
-            let place = [(window.center[0] - grid.corner[0]) / grid.cell, north / grid.cell];
-            MapMark { place, view: None, label: (number + 1).to_string() }
+    for (was, will) in before.lit.iter().zip(&last.lit) {
+        let after = report.after.as_ref().map(|_| (&will.cells[..], &last.is_plan[..]));
+        let colors = map_colors(&was.cells, after);
+        let map = MapPicture {
+            marks: &marks,
+            ..MapPicture::of_colors(relief, grid.cell, None, &colors, "", MapLegend::Colors(&[]))
         };
-        let marks: Vec<MapMark> = report.before.calendar.windows.iter().enumerate().map(mark).collect();
-        let picture = map_image(
-            &MapPicture {
-                relief: &map.relief,
-                cell: grid.cell,
-                place: None,
-                colors: &colors,
-                marks: &marks,
-                mark_name: "",
-                title: "",
-                legend: MapLegend::Colors(&[]),
-            },
-            whole(640.0 / map.relief.width().max(map.relief.height()).max(1) as f64).clamp(1, 8),
-        )?;
+        let picture = map_image(&map, factor)?;
         let data = BASE64_STANDARD.encode(png_bytes(&picture)?);
-        let caption = format!("{}, {}", words.short_date(map.date), clock_time(map.hour));
+        let caption = format!("{}, {}", words.short_date(was.date), clock_time(was.hour));
         let _ = write!(
             pictures,
             "<figure><img alt='{caption}' src='data:image/png;base64,{data}'>{}<figcaption>{caption}</figcaption></figure>",
-            scale_bar(map.relief.width() as f64 * grid.cell)
+            scale_bar(relief.width() as f64 * grid.cell)
         );
-    }
-    if pictures.is_empty() {
-        return Ok(String::new());
     }
     let keys = ["map-sun", "map-shade", "map-added", "map-freed", "map-plan"];
     let count = if report.after.is_some() { 5 } else { 2 };
@@ -424,6 +383,28 @@ fn day_table(report: &SunlightReport, window: usize, words: &Words) -> String {
     format!("<table><thead><tr><th>{}</th><th></th>{rest}</tr></thead><tbody>{rows}</tbody></table>", keys[0])
 }
 
+/// Shortest loss that is listed, hours: half a minute. Shorter ones are the rounding of stretches.
+const SHORTEST_LOSS: f32 = 0.5 / 60.0;
+
+/// Stretches of sun that a plan takes away: date, start and end on the clock, and the obstacle.
+fn lost_sun(report: &SunlightReport, window: usize) -> Vec<(Date, f32, f32, SunObstacle)> {
+    let Some(after) = &report.after else { return Vec::new() };
+    let (before, planned) = (&report.before.calendar, &after.calendar);
+    let days = before.schedule.days.iter().zip(before.days[window].iter().zip(&planned.days[window]));
+    let mut lost = Vec::new();
+    for (day, (was, will)) in days {
+        for sun in was.sun() {
+            for shade in will.0.iter().filter(|stretch| stretch.obstacle != SunObstacle::None) {
+                let (start, end) = (sun.start.max(shade.start), sun.end.min(shade.end));
+                if end - start > SHORTEST_LOSS {
+                    lost.push((day.date, start, end, shade.obstacle));
+                }
+            }
+        }
+    }
+    lost
+}
+
 /// Stretches of sun that the plan takes.
 fn lost_table(report: &SunlightReport, window: usize, words: &Words) -> String {
     let Some(after) = &report.after else { return String::new() };
@@ -458,10 +439,9 @@ fn details(report: &SunlightReport, words: &Words) -> String {
     let points = flown.unwrap_or_default()
         + &words.with("points", &[("count", &words.number(count, 0)), ("density", &words.number(density, 1))]);
     let file = |source: &super::ReportSource| {
-        let hash = if source.sha256.is_empty() {
-            String::new()
-        } else {
-            format!("<br><code>SHA-256 {}</code>", source.sha256)
+        let hash = match source.sha256.is_empty() {
+            true => String::new(),
+            false => format!("<br>{}", code(&format!("SHA-256 {}", source.sha256))),
         };
         let role = match source.role {
             "plan" => words.get("plan"),
@@ -484,7 +464,7 @@ fn details(report: &SunlightReport, words: &Words) -> String {
         (words.get("survey"), points),
         (words.get("files"), files),
         (words.get("program"), format!("Belvedere {}", env!("CARGO_PKG_VERSION"))),
-        (words.get("command"), format!("<code>{}</code>", escaped(&params.command))),
+        (words.get("command"), code(&params.command)),
     ];
     let row = |(name, value): &(&str, String)| format!("<tr><th>{name}</th><td class='text'>{value}</td></tr>");
     let rows: String = rows.iter().filter(|(_, value)| !value.is_empty()).map(row).collect();
@@ -552,14 +532,6 @@ fn all_rows(report: &SunlightReport, words: &Words) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn hours_are_hours_and_minutes() {
-        assert_eq!([3.2, 0.999, -0.5, 0.0, f64::NAN].map(hm), ["3:12", "1:00", "−0:30", "0:00", "–"]);
-        assert_eq!(change(2.0, 1.5), "−30");
-        assert_eq!(change(1.5, 2.0), "+30");
-        assert_eq!(change(1.5, 1.5001), "0");
-    }
 
     #[test]
     fn names_of_others_are_no_markup() {

@@ -1,6 +1,6 @@
 //! The answer of a report in sentences.
 
-use super::page::whole;
+use super::numbers::{hours_in_words, is_unchanged, percent};
 use super::verdict::{RuleFinding, Verdict};
 use super::words::Words;
 use super::{State, SunlightReport};
@@ -12,21 +12,6 @@ pub(super) const BRE: &str = "bre-";
 /// Share of an open space that must have the sun of the rule, or else of the share before (BRE 209:2022, section 3.3).
 const BRE_SHARE: f64 = 0.5;
 const BRE_KEPT: f64 = 0.8;
-
-/// Hours in a sentence: 3 h 12 min.
-pub(super) fn hours_in_words(hours: f64) -> String {
-    let minutes = whole((hours * 60.0).round());
-    match (minutes / 60, minutes % 60) {
-        (0, minutes) => format!("{minutes} min"),
-        (hours, 0) => format!("{hours} h"),
-        (hours, minutes) => format!("{hours} h {minutes} min"),
-    }
-}
-
-/// A share in percent.
-pub(super) fn percent(share: f64) -> String {
-    if share.is_finite() { format!("{:.0}", 100.0 * share) } else { "–".to_owned() }
-}
 
 /// A verdict in the language of the words.
 pub(super) fn verdict_words(verdict: Verdict, words: &Words) -> &'static str {
@@ -41,8 +26,7 @@ pub(super) fn verdict_words(verdict: Verdict, words: &Words) -> &'static str {
 /// A rule in the language of the words, with its name.
 pub(super) fn rule_in_words(rule: &SunRule, report: &SunlightReport, words: &Words) -> String {
     let calendar = &report.before.calendar;
-    let of_days = calendar.schedule.days.first().map(|day| day.date.year());
-    let year = report.params.days.year.or(of_days).unwrap_or_default();
+    let year = report.params.detailed_days().year.unwrap_or_default();
     let dates = rule.days.dates(year, &calendar.site, &calendar.zone).unwrap_or_default();
     let [Some(first), Some(last)] = [dates.first(), dates.last()] else { return rule.description.clone() };
     let hours = hours_in_words(rule.hours);
@@ -75,11 +59,6 @@ pub(super) fn rule_in_words(rule: &SunRule, report: &SunlightReport, words: &Wor
         },
         false => text,
     }
-}
-
-/// Returns true if hours before and after a plan are the same to the minute.
-pub(super) fn is_unchanged(before: f64, after: f64) -> bool {
-    ((after - before) * 60.0).round() == 0.0
 }
 
 /// Returns true if an area meets BRE 209: half of it has the sun of the rule, or 0.8 of what had it before.
@@ -217,11 +196,5 @@ mod tests {
     fn bre_209_is_met_by_half_or_by_four_fifths_of_before() {
         assert!(bre_verdict(0.5, 1.0) && bre_verdict(0.24, 0.3));
         assert!(!bre_verdict(0.49, 0.9) && !bre_verdict(0.1, 0.2));
-    }
-
-    #[test]
-    fn hours_are_words() {
-        assert_eq!([3.2, 2.0, 0.25].map(hours_in_words), ["3 h 12 min", "2 h", "15 min"]);
-        assert!(is_unchanged(1.5, 1.5001) && !is_unchanged(1.5, 1.52));
     }
 }

@@ -11,8 +11,6 @@ pub struct ReportSource {
     pub role: &'static str,
     /// Its name, without folder.
     pub name: String,
-    /// Its size in bytes; 0 where it is not a file of this machine.
-    pub bytes: u64,
     /// Its SHA-256 in hexadecimal digits; empty where it is not a file of this machine.
     pub sha256: String,
 }
@@ -27,7 +25,6 @@ impl ReportSource {
         if !path.is_file() {
             return Ok(Self { role, name, ..Self::default() });
         }
-        let (sha256, bytes) = file_hash(path)?;
-        Ok(Self { role, name, bytes, sha256 })
+        Ok(Self { role, name, sha256: file_hash(path)? })
     }
 }

@@ -10,26 +10,26 @@ const ROUNDING: f64 = 1e-4;
 
 /// A rule at a window or in a room.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RuleFinding {
+pub(super) struct RuleFinding {
     /// Critical day: that with the least sun, or with the most where one day is enough.
-    pub date: Date,
+    pub(super) date: Date,
     /// Row of that day among those of the rule.
-    pub row: usize,
+    pub(super) row: usize,
     /// Hours that count on it.
-    pub hours: f64,
+    pub(super) hours: f64,
     /// Hours on the critical day without trees, which may be another day; `None` where trees are not known.
-    pub without_trees: Option<f64>,
+    pub(super) without_trees: Option<f64>,
     /// Interval of the hours that holds the truth in nine of ten cases; `None` if it is not known.
-    pub interval: Option<[f64; 2]>,
+    pub(super) interval: Option<[f64; 2]>,
     /// Hours that the rule requires.
-    pub required: f64,
+    pub(super) required: f64,
     /// Number of days with enough sun, and of all days.
-    pub days: [usize; 2],
+    pub(super) days: [usize; 2],
 }
 
 /// Verdict on a rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub(super) enum Verdict {
     /// It is met.
     Met,
     /// It is not met.
@@ -103,14 +103,12 @@ impl RuleFinding {
     }
 
     /// Returns true if the hours suffice without trees; `None` where trees are not known.
-    #[must_use]
-    pub fn is_met_without_trees(&self) -> Option<bool> {
+    pub(super) fn is_met_without_trees(&self) -> Option<bool> {
         self.without_trees.map(|hours| hours >= self.required - ROUNDING)
     }
 
     /// The verdict.
-    #[must_use]
-    pub fn verdict(&self) -> Verdict {
+    pub(super) fn verdict(&self) -> Verdict {
         let suffices = |hours: f64| hours >= self.required - ROUNDING;
         let [low, high] = self.interval.unwrap_or([self.hours; 2]);
         match (suffices(self.hours), suffices(low), suffices(high)) {
@@ -124,14 +122,12 @@ impl RuleFinding {
 
 impl Verdict {
     /// Returns true if the hours suffice.
-    #[must_use]
-    pub fn is_met(self) -> bool {
+    pub(super) fn is_met(self) -> bool {
         matches!(self, Self::Met | Self::MetUncertain)
     }
 
     /// Returns true if the interval holds hours that would change it.
-    #[must_use]
-    pub fn is_uncertain(self) -> bool {
+    pub(super) fn is_uncertain(self) -> bool {
         matches!(self, Self::MetUncertain | Self::NotMetUncertain)
     }
 }
