@@ -56,8 +56,11 @@ impl Table {
             return Err(Error::malformed(path, format!("there are two columns {name}; remove or rename one")));
         }
         if let Some(Some((row, text))) = self.not_numbers.get(index) {
+            let has_comma = text.replacen(',', ".", 1).parse::<f64>().is_ok();
+            let advice = if has_comma { "; write decimal points in place of commas" } else { "" };
             let text: String = text.chars().take(40).collect();
-            return Err(Error::malformed(path, format!("row {row}: \"{text}\" in column {name} is not a number")));
+            let what = format!("row {row}: \"{text}\" in column {name} is not a number{advice}");
+            return Err(Error::malformed(path, what));
         }
         Ok(self.columns.get(index).map(Vec::as_slice))
     }
@@ -100,7 +103,7 @@ pub fn read_table<'a>(source: impl Into<Source<'a>>) -> Result<Table> {
             let row = pos.map_or(0, |pos| pos.record());
             Error::malformed(path, format!("row {row} has {len} cells, but the header {expected_len}"))
         }
-        csv::ErrorKind::Utf8 { .. } => Error::malformed(path, "is no UTF-8 text"),
+        csv::ErrorKind::Utf8 { .. } => Error::malformed(path, "is no UTF-8 text; save it as CSV UTF-8"),
         other => Error::malformed(path, format!("cannot be read as a table: {other:?}")),
     };
     let mut reader = csv::ReaderBuilder::new()

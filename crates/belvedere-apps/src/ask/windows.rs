@@ -47,10 +47,17 @@ impl GivenWindows {
     /// Checks the values that do not depend on a scene.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] for a tilt that is not 0 to 180 degrees.
+    /// [`Error::InvalidParameter`] for an azimuth beyond a full circle, and a tilt that is not 0 to 180 degrees.
     pub fn check(&self) -> Result<()> {
         let Self::Each(windows) = self else { return Ok(()) };
         for (number, window) in (1..).zip(windows) {
+            if window.azimuth_deg.abs() > 360.0 {
+                return Err(Error::InvalidParameter {
+                    parameter: Parameter::Window,
+                    value: format!("number {number}, with an azimuth of {} degrees", window.azimuth_deg),
+                    expected: "turned to an azimuth of -360 to 360 degrees, clockwise from north",
+                });
+            }
             if !(0.0..=180.0).contains(&window.tilt_deg) {
                 return Err(Error::InvalidParameter {
                     parameter: Parameter::Window,

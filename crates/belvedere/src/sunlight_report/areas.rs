@@ -6,6 +6,7 @@ use crate::apps::ask::{self, Days, GridCells, Places, Remark, Scene, SunHoursQue
 use crate::apps::sun::{Date, SunSchedule};
 use crate::apps::targets::{CellLevel, Measure, Targets};
 use crate::control::Control;
+use crate::polygon::is_inside;
 use crate::query::{UnprovenAs, VisibilityMatrix};
 use std::sync::Arc;
 
@@ -24,6 +25,8 @@ pub(super) struct AreaState {
     pub(super) hours: f64,
     /// Number of cells on the ground.
     pub(super) cells: usize,
+    /// Share of the area that lies outside of the survey, 0 to 1.
+    pub(super) outside: f64,
     /// Shade that the plan adds on each day in detail; empty for the scene as it is.
     pub(super) added: Vec<AddedShade>,
     targets: Arc<Targets>,
@@ -43,6 +46,16 @@ pub(super) struct AddedShade {
     pub(super) most: (f64, f32),
     /// Sum of lost sun over the area, hours times square metres.
     pub(super) area_hours: f64,
+}
+
+/// Share of an area that does not lie over the cloud, 0 to 1.
+fn share_outside(scene: &Scene, area: &ReportArea, targets: &Targets) -> f64 {
+    let (Some(ground), Some(coverage)) = (targets.ground(), scene.model().coverage()) else { return 0.0 };
+    let grid = ground.grid;
+    let middles = (0..targets.len()).map(|cell| grid.center(cell % grid.width.max(1), cell / grid.width.max(1)));
+    let within: Vec<[f64; 2]> = middles.filter(|middle| is_inside(&area.rings, *middle)).collect();
+    let outside = within.iter().filter(|[x, y]| !coverage.holds_on_map([*x, *y, 0.0])).count();
+    outside as f64 / within.len().max(1) as f64
 }
 
 impl AreaState {
@@ -82,7 +95,8 @@ impl AreaState {
             blockers.visibility_matrix(&targets.positions, &schedule.directions, control)
         })?;
         let (share, hours) = (mean(answers.measures.last()), mean(answers.measures.first()));
-        Ok(Self { share, hours, cells: targets.target_count(), added: Vec::new(), targets, lit })
+        let outside = share_outside(scene, area, &targets);
+        Ok(Self { share, hours, cells: targets.target_count(), outside, added: Vec::new(), targets, lit })
     }
 
     /// Compares this state with the one before, of the same cells: ground that a plan covers has no sun.

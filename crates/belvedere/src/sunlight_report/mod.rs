@@ -35,12 +35,14 @@ use crate::apps::sun_hours::SunRule;
 use crate::apps::targets::{Measure, Targets};
 use crate::cloud::ADJUSTED_GPS_EPOCH;
 use crate::control::Control;
+use crate::crs::CrsKind;
 use crate::io::atomic;
 use crate::query::UnprovenAs;
 use crate::{Error, GpsTimeKind, Parameter, Result};
 use areas::AreaState;
 use charts::SkyView;
 use maps::ShadowMaps;
+use std::collections::BTreeSet;
 use std::io::Write as _;
 use std::path::Path;
 use std::sync::Arc;
@@ -96,6 +98,8 @@ pub struct ReportParams {
 
 /// Sun of a window in one state of the scene.
 struct WindowState {
+    /// True for a window inside an obstacle, or inside the plan.
+    is_inside: bool,
     /// Interval of the hours of each day in detail that holds the truth in nine of ten cases; empty if not known.
     intervals: Vec<[f64; 2]>,
     rule: Option<RuleFinding>,
@@ -126,6 +130,8 @@ pub struct SunlightReport {
     /// First and last day of the survey in UTC, where its pulses have such times.
     flown: Option<[Date; 2]>,
     reference_system: String,
+    /// True if the survey names no reference system, so that metres are assumed.
+    is_without_system: bool,
     /// Warnings and notes on the scene and its windows.
     pub remarks: Vec<Remark>,
 }
@@ -164,6 +170,8 @@ impl ReportParams {
         if days.is_empty() {
             days.dates = DAYS.map(str::to_owned).to_vec();
         }
+        let mut named = BTreeSet::new();
+        days.dates.retain(|date| named.insert(date.clone()));
         days
     }
 
@@ -221,7 +229,10 @@ pub fn sunlight_report(
     let before = State::of(present, params, box_of_maps, &mut remarks, control)?;
     if let Some(number) = before.areas.iter().position(|area| area.cells == 0) {
         let name = params.area_name(number, &words::Words::of(Language::English));
-        return Err(Error::NoPoints { what: format!("{name}: no ground of the scene is in this area") });
+        let what = format!(
+            "{name}: no ground of the scene is in this area; give its corners in the coordinates of the cloud, over the cloud"
+        );
+        return Err(Error::NoPoints { what });
     }
     let mut after = planned.map(|scene| State::of(scene, params, box_of_maps, &mut remarks, control)).transpose()?;
     for (area, was) in after.iter_mut().flat_map(|state| &mut state.areas).zip(&before.areas) {
@@ -237,6 +248,7 @@ pub fn sunlight_report(
         points: [count, count / ((high[0] - low[0]) * (high[1] - low[1]))],
         flown: flown(present),
         reference_system: present.frame().crs.describe(),
+        is_without_system: present.frame().crs.kind == CrsKind::Unknown,
         remarks,
         params: params.clone(),
     })
@@ -282,6 +294,7 @@ impl State {
             }
             _ => None,
         };
+        let blockers = scene.blockers(UnprovenAs::Reported, control)?;
         let mut intervals = Intervals::new(scene, params, &calendar, control)?;
         let counted = of_rule.as_ref().and_then(|found| found.rule.as_ref());
         let min_elevation_deg = counted.map(|rule| rule.min_elevation.to_degrees()).filter(|degrees| *degrees > 0.0);
@@ -294,16 +307,30 @@ impl State {
             if let Some(rule) = &mut rule {
                 rule.widen(intervals.of((rule.date, min_elevation_deg), number, control)?);
             }
-            windows.push(WindowState { intervals: of_days.unwrap_or_default(), rule });
+            let place = calendar.targets.positions[number].map(f64::from);
+            let is_inside = blockers.is_inside_obstacle(place)
+                || blockers.triangles().is_some_and(|triangles| triangles.encloses(place));
+            windows.push(WindowState { is_inside, intervals: of_days.unwrap_or_default(), rule });
         }
-        let of_room = |(_, windows): &(&str, Vec<usize>)| RuleFinding::of_room(of_rule.as_ref()?, windows);
-        let rooms = params.rooms().iter().map(of_room).collect();
+        let mut rooms = Vec::new();
+        for (_, of_room) in params.rooms() {
+            let mut rule = of_rule.as_ref().and_then(|found| RuleFinding::of_room(found, &of_room));
+            if let Some(rule) = &mut rule {
+                // errors of windows add up at worst
+                let mut ends = Some([0.0; 2]);
+                for &window in of_room.iter().filter(|&&window| calendar.targets.is_target(window)) {
+                    let of_window = intervals.of((rule.date, min_elevation_deg), window, control)?;
+                    ends = ends.zip(of_window).map(|(sum, of_window)| [0, 1].map(|end| sum[end] + of_window[end]));
+                }
+                rule.widen(ends);
+            }
+            rooms.push(rule);
+        }
         let mut areas = Vec::with_capacity(params.areas.len());
         for area in &params.areas {
             areas.push(AreaState::of(scene, (area, params), &calendar.schedule, remarks, control)?);
         }
         let maps = maps::shadow_maps(scene, params, &calendar, box_of_maps, control)?;
-        let blockers = scene.blockers(UnprovenAs::Reported, control)?;
         let sky = |window: usize| {
             let place = calendar.targets.positions[window].map(f64::from);
             let azimuth = calendar.windows[window].azimuth;

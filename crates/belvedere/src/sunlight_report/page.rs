@@ -9,6 +9,7 @@ use super::{State, SunlightReport};
 use crate::Result;
 use crate::apps::sun::Date;
 use crate::apps::sun_calendar::{CalendarDay, SunObstacle};
+use crate::apps::sun_hours::NeededDays;
 use crate::apps::targets::Window;
 use crate::figures::{MapLegend, MapMark, MapPicture, map_image, png_bytes};
 use crate::report::clock_time;
@@ -17,6 +18,8 @@ use base64::prelude::BASE64_STANDARD;
 use std::fmt::Write as _;
 
 const STYLE: &str = include_str!("report.css");
+/// Maximum number of windows that are drawn one by one: more make files that browsers open slowly.
+const MAX_DRAWN: usize = 100;
 /// Side of a map, pixels.
 const PICTURE_SIDE: f64 = 640.0;
 /// Colours of maps: sun, shade, shade of the plan, freed sun, the plan.
@@ -47,7 +50,12 @@ pub(super) fn html(report: &SunlightReport) -> Result<String> {
     let answers: String = sentences(report, &words).iter().map(|line| format!("<li>{}</li>", escaped(line))).collect();
     let _ = write!(body, "<h2>{}</h2><ul class='answer'>{answers}</ul>", words.get("answer"));
     if let Some(rule) = report.rule.as_ref().filter(|_| !report.params.windows.is_empty()) {
-        let _ = write!(body, "<p>{}: {}</p>", words.get("rule"), escaped(&rule_in_words(rule, report, &words)));
+        let critical = words.get(match rule.needed {
+            NeededDays::All => "critical-least",
+            NeededDays::Any => "critical-most",
+        });
+        let rule = escaped(&rule_in_words(rule, report, &words));
+        let _ = write!(body, "<p>{}: {rule}. {critical}</p>", words.get("rule"));
     }
     if !report.params.windows.is_empty() {
         body += &window_table(report, &words);
@@ -103,6 +111,9 @@ fn window_table(report: &SunlightReport, words: &Words) -> String {
         for day in 0..days.len() {
             let hours = |state: &State| state.calendar.days[number][day].sun_hours();
             let cell = |state: &State| {
+                if !state.calendar.targets.is_target(number) {
+                    return "<td>–</td>".to_owned();
+                }
                 let hours = hours(state);
                 let ends = state.windows[number].intervals.get(day);
                 let interval = ends.map(|[low, high]| {
@@ -113,7 +124,8 @@ fn window_table(report: &SunlightReport, words: &Words) -> String {
             };
             rows += &cell(&report.before);
             if let Some(after) = &report.after {
-                let difference = change(hours(&report.before), hours(after));
+                let is_known = after.calendar.targets.is_target(number);
+                let difference = if is_known { change(hours(&report.before), hours(after)) } else { "–".to_owned() };
                 let _ = write!(rows, "{}<td class='change'>{difference}</td>", cell(after));
             }
         }
@@ -336,10 +348,14 @@ fn each_window(report: &SunlightReport, words: &Words) -> String {
         words.get("strips-text"),
         words.get("sky-text")
     );
-    for number in 0..report.params.windows.len() {
-        if !report.last().calendar.targets.is_target(number) {
-            continue;
-        }
+    let answered = (0..report.params.windows.len()).filter(|&number| report.last().calendar.targets.is_target(number));
+    let answered: Vec<usize> = answered.collect();
+    if answered.len() > MAX_DRAWN {
+        let of =
+            words.with("first-windows", &[("count", &MAX_DRAWN.to_string()), ("all", &answered.len().to_string())]);
+        let _ = write!(text, "<p>{of}</p>");
+    }
+    for number in answered.into_iter().take(MAX_DRAWN) {
         let name = escaped(&report.params.window_name(number, words));
         let _ = write!(
             text,

@@ -74,10 +74,14 @@ pub(super) fn sentences(report: &SunlightReport, words: &Words) -> Vec<String> {
         all.push(of_all_windows(report, words));
     }
     all.extend((0..last.windows.len()).filter_map(|number| of_window(report, number, words)));
-    for (number, (room, _)) in report.params.rooms().into_iter().enumerate() {
+    // a room with one window has the sun of that window
+    let rooms = report.params.rooms().into_iter().enumerate().filter(|(_, (_, windows))| windows.len() > 1);
+    for (number, (room, windows)) in rooms {
         let rules = report.before.rooms[number].zip(last.rooms[number]);
         let is_planned = report.after.is_some();
-        let name = format!("{}: {room}", words.get("room"));
+        let is_whole = windows.iter().all(|&window| last.calendar.targets.is_target(window));
+        let partly = if is_whole { String::new() } else { format!(" ({})", words.get("room-partly")) };
+        let name = format!("{}: {room}{partly}", words.get("room"));
         all.extend(rules.map(|rules| of_rule(name, rules, is_planned, words)));
     }
     all.extend((0..last.areas.len()).map(|number| of_area(report, number, words)));
@@ -86,26 +90,29 @@ pub(super) fn sentences(report: &SunlightReport, words: &Words) -> Vec<String> {
         let (count, of) = (near.to_string(), last.windows.len().to_string());
         all.push(words.with("near-edge", &[("count", &count), ("all", &of)]));
     }
+    if report.is_without_system {
+        all.push(words.get("no-system").to_owned());
+    }
     all
 }
 
 fn of_all_windows(report: &SunlightReport, words: &Words) -> String {
-    let verdicts = |state: &State| -> Vec<Verdict> {
-        state.windows.iter().filter_map(|window| Some(window.rule?.verdict())).collect()
-    };
-    let met = |state: &State| verdicts(state).iter().filter(|verdict| verdict.is_met()).count().to_string();
-    let uncertain =
-        report.states().flat_map(|(_, state)| verdicts(state)).filter(|verdict| verdict.is_uncertain()).count();
-    let uncertain = match uncertain {
+    let last = report.last();
+    let verdict = |state: &State, number: usize| Some(state.windows[number].rule?.verdict());
+    let count = |counts: &dyn Fn(usize) -> bool| (0..last.windows.len()).filter(|&number| counts(number)).count();
+    let met = |state: &State| count(&|number| verdict(state, number).is_some_and(Verdict::is_met)).to_string();
+    let is_uncertain =
+        |number: usize| report.states().any(|(_, state)| verdict(state, number).is_some_and(Verdict::is_uncertain));
+    let uncertain = match count(&is_uncertain) {
         0 => String::new(),
         count => format!(" ({})", words.with("uncertain-count", &[("count", &count.to_string())])),
     };
+    let answered = count(&|number| verdict(last, number).is_some());
     let key = if report.after.is_some() { "all-met-change" } else { "all-met" };
-    let last = report.last();
     let values = [
         ("met", met(last)),
         ("before", met(&report.before)),
-        ("count", last.windows.len().to_string()),
+        ("count", answered.to_string()),
         ("uncertain", uncertain),
     ];
     words.with(key, &values.each_ref().map(|(name, value)| (*name, value.as_str())))
@@ -130,11 +137,21 @@ fn of_window(report: &SunlightReport, number: usize, words: &Words) -> Option<St
     if !last.calendar.targets.is_target(number) {
         return Some(words.with("no-position", &[("name", &name)]));
     }
+    let inside = match [before, last].map(|state| state.windows[number].is_inside) {
+        [true, _] => format!(" {}", words.get("inside")),
+        [false, true] => format!(" {}", words.get("inside-plan")),
+        [false, false] => String::new(),
+    };
     if let Some(rules) = before.windows[number].rule.zip(last.windows[number].rule) {
-        return Some(of_rule(name, rules, report.after.is_some(), words));
+        return Some(of_rule(name, rules, report.after.is_some(), words) + &inside);
     }
-    let day = last.calendar.schedule.days.first()?.date;
-    let [was, will] = [before, last].map(|state| state.calendar.days[number][0].sun_hours());
+    let hours = |day: usize| [before, last].map(|state| state.calendar.days[number][day].sun_hours());
+    let change = |day: usize| hours(day)[0] - hours(day)[1];
+    // the day on which the plan takes or gives most, else the first
+    let days = &last.calendar.schedule.days;
+    let row = (0..days.len()).rev().max_by(|&a, &b| change(a).abs().total_cmp(&change(b).abs()))?;
+    let day = days[row].date;
+    let [was, will] = hours(row);
     let key = match report.after {
         Some(_) if is_unchanged(was, will) => "window-day-same",
         Some(_) => "window-day-change",
@@ -142,7 +159,7 @@ fn of_window(report: &SunlightReport, number: usize, words: &Words) -> Option<St
     };
     let values =
         [("name", name), ("hours", hours_in_words(will)), ("before", hours_in_words(was)), ("day", words.date(day))];
-    Some(words.with(key, &values.each_ref().map(|(name, value)| (*name, value.as_str()))))
+    Some(words.with(key, &values.each_ref().map(|(name, value)| (*name, value.as_str()))) + &inside)
 }
 
 /// A rule at a window or in a room before and after a plan; the same twice where nothing is planned.
@@ -173,6 +190,9 @@ fn of_area(report: &SunlightReport, number: usize, words: &Words) -> String {
             None => will.share >= BRE_SHARE,
         };
         verdict = format!(". {}", if is_met { words.get("bre-met") } else { words.get("bre-not-met") });
+    }
+    if was.outside > 0.005 {
+        verdict += &format!(" ({})", words.with("area-outside", &[("share", &percent(was.outside))]));
     }
     let covered = 1.0 - will.cells as f64 / was.cells as f64;
     if covered > 0.005 {
