@@ -25,6 +25,11 @@ pub(crate) struct ShadowArguments {
     pub(crate) trees: ThroughTreesArguments,
     #[command(flatten)]
     pub(crate) outputs: SkyOutputs,
+    /// Also write the shadows on a grid as areas (.geojson): one for each sun
+    ///
+    /// Its area, and the time and position of the sun are properties. Light of less than a half counts as shadow.
+    #[arg(long, value_name = "OUT", help_heading = "Result")]
+    pub(crate) outlines: Option<PathBuf>,
     /// Also write an animation of the shadows on a grid: one frame for each sun (.png .apng)
     ///
     /// Browsers play animated PNG files.

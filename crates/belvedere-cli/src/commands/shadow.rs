@@ -3,7 +3,7 @@
 use super::fading::{UNPROVEN_COLOR, fade, faded};
 use super::in_tiles::TypedCells;
 use super::targets::{HighestPoints, TargetOutput};
-use super::{check_output, extension};
+use super::{check_output, extension, warn_of_geojson};
 use crate::arguments::{Global, ShadowArguments, Usage};
 use crate::pipeline;
 use crate::run::CommandContext;
@@ -11,12 +11,16 @@ use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Answers, NamedSun, ShadowResults, Suns, UNCERTAIN, UNPROVEN};
 use belvedere::apps::shadow::Edges;
-use belvedere::apps::targets::Measure;
+use belvedere::apps::targets::{Measure, Targets};
 use belvedere::figures::{MapLegend, MapPicture, Picture, map_picture, write_apng, write_png};
-use belvedere::io::atomic;
+use belvedere::io::{PolygonArea, atomic, outlines, write_geojson_areas};
 use belvedere::query::UnprovenAs;
+use belvedere::raster::Raster;
 use belvedere_tiles::SurveyCells;
+use std::path::Path;
 
+/// Share of the light below which a cell is in shadow.
+const HALF_LIGHT: f32 = 0.5;
 const SHADE_COLOR: [u8; 3] = [38, 52, 96];
 const HALF_COLOR: [u8; 3] = [147, 136, 93];
 const LIT_COLOR: [u8; 3] = [255, 220, 90];
@@ -32,6 +36,7 @@ pub(crate) fn run(arguments: &ShadowArguments, global: &Global) -> Result<Summar
         &arguments.outputs,
         &[
             ("--shell", arguments.giving_way.shell.is_some()),
+            ("--outlines", arguments.outlines.is_some()),
             ("--film", arguments.film.is_some()),
             ("--frames", arguments.frames.is_some()),
         ],
@@ -53,8 +58,38 @@ pub(crate) fn run(arguments: &ShadowArguments, global: &Global) -> Result<Summar
     if shown.relief().is_some() {
         warn_of_other_suns(arguments, maps.suns.len(), &mut run);
     }
+    if let Some(output) = &arguments.outlines {
+        warn_of_geojson(std::slice::from_ref(output), &scene.frame().crs, &mut run.summary);
+        run.stage("writing", 0, |_| write_outlines(output, &answers.found.on.targets, maps.measures))?;
+    }
     films(arguments, &shown, &maps, &run)?;
     Ok(run.finish())
+}
+
+/// Writes the shadow of each sun as an area.
+fn write_outlines(output: &Path, targets: &Targets, suns: &[Measure]) -> belvedere::Result<()> {
+    let Some(ground) = targets.ground() else { return Ok(()) };
+    let (grid, origin) = (ground.grid, targets.frame.origin);
+    let corner = |[column, row]: [usize; 2]| {
+        let [east, south] = [column, row].map(|v| v as f64 * grid.cell);
+        [origin[0] + grid.corner[0] + east, origin[1] + grid.corner[1] - south]
+    };
+    let of_sun = |sun: &Measure| {
+        let shade = sun.values.iter().map(|&light| light < HALF_LIGHT).collect();
+        let polygons = outlines(&Raster::from_values(grid.width, grid.height, shade)?);
+        let cells: usize = polygons.iter().map(|polygon| polygon.cell_count).sum();
+        let mut area = PolygonArea::default();
+        area.properties.insert("sun".to_owned(), sun.name.trim_start_matches("lit_").into());
+        area.properties.insert("area_m2".to_owned(), (cells as f64 * grid.cell * grid.cell).into());
+        for (name, text) in &sun.tags {
+            area.properties.insert(name.to_ascii_lowercase(), text.as_str().into());
+        }
+        area.polygons = polygons.iter().map(|polygon| polygon.rings(corner)).collect();
+        Ok(area)
+    };
+    let areas = suns.iter().map(of_sun).collect::<belvedere::Result<Vec<_>>>()?;
+    write_geojson_areas(output, &areas, &targets.frame.crs)?;
+    Ok(())
 }
 
 /// Warns of a map that shows one of several suns.
@@ -96,8 +131,12 @@ fn check(arguments: &ShadowArguments, question: &ask::ShadowQuestion) -> Result<
     if let Some(film) = &arguments.film {
         check_output("--film", film, &["png", "apng"])?;
     }
-    if (arguments.film.is_some() || arguments.frames.is_some()) && !arguments.places.is_grid() {
-        return Err(Usage("--film and --frames apply only to a grid".to_owned()).into());
+    if let Some(output) = &arguments.outlines {
+        check_output("--outlines", output, &["geojson"])?;
+    }
+    let needs_grid = arguments.film.is_some() || arguments.frames.is_some() || arguments.outlines.is_some();
+    if needs_grid && !arguments.places.is_grid() {
+        return Err(Usage("--film, --frames and --outlines apply only to a grid".to_owned()).into());
     }
     Ok(())
 }

@@ -214,7 +214,8 @@ fn what_cannot_be_is_refused_with_advice() {
 fn a_raster_has_a_band_for_each_sun_named_by_its_time() {
     let place = place();
     let day = "--date 2026-06-21 --zone Europe/Amsterdam --time-step-min 60 --cell 2";
-    let run = place.summary(&format!("shadow {HOUSE} {day} -o day.tif -o day.csv -o day.png"));
+    let outputs = "-o day.tif -o day.csv -o day.png --outlines day.geojson";
+    let run = place.summary(&format!("shadow {HOUSE} {day} {outputs}"));
     let columns: Vec<String> =
         place.text("day.csv").lines().next().unwrap().split(',').skip(3).map(str::to_owned).collect();
     assert!(columns.len() > 5 && columns.iter().all(|name| name.starts_with("lit_20260621_")), "{columns:?}");
@@ -223,6 +224,16 @@ fn a_raster_has_a_band_for_each_sun_named_by_its_time() {
         .chain(raster.further_bands.iter().map(|band| band.name.as_str()))
         .collect();
     assert_eq!(bands, columns);
+    // an area for each sun, as large as its cells
+    let areas: serde_json::Value = serde_json::from_str(&place.text("day.geojson")).unwrap();
+    let areas = areas["features"].as_array().unwrap();
+    assert_eq!(areas.len(), columns.len());
+    for (area, name) in areas.iter().zip(&columns) {
+        let shaded = column(&place, "day.csv", name).iter().filter(|lit| **lit == 0.0).count();
+        assert_eq!(area["properties"]["area_m2"], 4.0 * shaded as f64, "{name}");
+        assert_eq!(area["properties"]["sun"], name.trim_start_matches("lit_"));
+        assert!(area["properties"]["time"].as_str().unwrap().starts_with("2026-06-21T"));
+    }
     // a picture has room for one
     assert!(remarks(&run).iter().any(|remark| remark.contains("day.png") && remark.contains("first of")), "{run}");
 }
