@@ -28,6 +28,7 @@ pub mod sun_hours;
 pub mod survey_plan;
 pub mod survey_reliability;
 pub mod targets;
+pub mod towers;
 pub mod tree_light;
 pub mod viewshed;
 pub mod window_views;

@@ -18,6 +18,7 @@ mod sun;
 mod sunlight;
 mod surroundings;
 mod survey_plan;
+mod towers;
 mod towns;
 mod vegetation;
 mod view;
@@ -55,6 +56,7 @@ pub(crate) use surroundings::{
     MeshTargets, ProtectedViewArguments,
 };
 pub(crate) use survey_plan::SurveyPlanArguments;
+pub(crate) use towers::TowersArguments;
 pub(crate) use towns::{PatternChoice, ScannerChoice, Simulate};
 pub(crate) use vegetation::{LeavesChoice, ThroughTreesArguments, ThroughTreesChoice};
 pub(crate) use view::{NorthArguments, SizeChoice, ViewChoice};
@@ -210,6 +212,8 @@ pub(crate) enum Command {
     LineOfSight(LineOfSightArguments),
     /// Map what observers see, or from where a target is seen
     Viewshed(ViewshedArguments),
+    /// Measure how many metres of wind turbines and masts are visible
+    Towers(TowersArguments),
     /// Measure how much of a landmark observers see
     Landmark(LandmarkArguments),
     /// Map how high one may build without entering the view of a landmark

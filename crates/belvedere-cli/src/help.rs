@@ -47,6 +47,7 @@ const GROUPS: [(&str, &[&str]); 7] = [
             "viewshed",
             "isovist",
             "horizon",
+            "towers",
             "landmark",
             "protected-view",
             "window-views",
@@ -131,7 +132,7 @@ const RARE: &[&str] = &[
 ];
 /// The same of commands with many flags.
 const RARE_IN: &[(&str, &[&str])] = &[
-    ("shadow", &["certain", "film", "location", "self", "target-height"]),
+    ("shadow", &["certain", "film", "location", "outlines", "self", "target-height"]),
     ("sun-hours", &["target-height"]),
     ("irradiance", &["min-cells", "target-height"]),
     ("cameras", &["existing", "pixels", "target-height", "tilt"]),
@@ -158,6 +159,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("query", include_str!("help/query.txt")),
     ("line-of-sight", include_str!("help/line-of-sight.txt")),
     ("viewshed", include_str!("help/viewshed.txt")),
+    ("towers", include_str!("help/towers.txt")),
     ("landmark", include_str!("help/landmark.txt")),
     ("protected-view", include_str!("help/protected-view.txt")),
     ("cameras", include_str!("help/cameras.txt")),

@@ -21,6 +21,7 @@ use obvhs::cwbvh::node::CwBvhNode;
 use search_tree::search_tree;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 use simd128::RaySimd128 as RayPlain;
+use smallvec::SmallVec;
 use walk::{TreeRay, walk};
 
 /// Scalar test of boxes for machines without AVX2.
@@ -100,6 +101,14 @@ pub struct NodeParts {
     pub centers: [[f32; PARTS]; 3],
     /// Half sizes of their boxes, metres, by axis.
     pub half_sizes: [[f32; PARTS]; 3],
+}
+
+/// A part of a node that waits for its visit, with its box.
+struct WaitingBox {
+    key: f64,
+    center: [f64; 3],
+    half: [f64; 3],
+    part: NodePart,
 }
 
 /// Maximum number of parts of a node of a [`RayIndex`].
@@ -231,8 +240,7 @@ impl RayIndex {
     /// Calls `visit` for every row whose box may meet the box between two corners, local metres, in no particular
     /// order.
     pub fn visit_near(&self, low: [f64; 3], high: [f64; 3], mut visit: impl FnMut(usize)) {
-        // what the corners of nodes are rounded by
-        let slack = (0..3).map(|axis| self.center[axis].abs() + self.half_size[axis]).fold(0.0, f64::max) * BOX_PADDING;
+        let slack = self.slack();
         let mut nodes: Vec<u32> = self.root().into_iter().collect();
         while let Some(parts) = nodes.pop().and_then(|node| self.parts(node)) {
             for (child, part) in parts.parts.into_iter().enumerate() {
@@ -250,6 +258,54 @@ impl RayIndex {
                 }
             }
         }
+    }
+
+    /// Visits rows box by box, those with the least `key` first. `key` gets the middle and the half size of a box, local
+    /// metres; where it gives `None`, the rows of the box are passed over. `visit` ends the walk by false. Both get
+    /// `state`.
+    pub(crate) fn visit_nearest_first<S>(
+        &self,
+        state: &mut S,
+        key: impl Fn(&S, [f64; 3], [f64; 3]) -> Option<f64>,
+        mut visit: impl FnMut(&mut S, u32) -> bool,
+    ) {
+        let slack = self.slack();
+        // boxes that wait, the nearest last
+        let mut waiting: SmallVec<[WaitingBox; 64]> = SmallVec::new();
+        let mut open = self.root();
+        loop {
+            if let Some(parts) = open.and_then(|node| self.parts(node)) {
+                let first = waiting.len();
+                for (child, part) in parts.parts.into_iter().enumerate().filter(|(_, part)| *part != NodePart::Nothing)
+                {
+                    let center = std::array::from_fn(|axis| f64::from(parts.centers[axis][child]));
+                    let half = std::array::from_fn(|axis| f64::from(parts.half_sizes[axis][child]) + slack);
+                    if let Some(key) = key(state, center, half) {
+                        waiting.push(WaitingBox { key, center, half, part });
+                    }
+                }
+                waiting[first..].sort_unstable_by(|a, b| b.key.total_cmp(&a.key));
+            }
+            let Some(next) = waiting.pop() else { return };
+            open = None;
+            if key(state, next.center, next.half).is_none() {
+                continue;
+            }
+            match next.part {
+                NodePart::Node(node) => open = Some(node),
+                NodePart::Rows { first, count } => {
+                    if !(first..first + count).all(|row| visit(state, row)) {
+                        return;
+                    }
+                }
+                NodePart::Nothing => {}
+            }
+        }
+    }
+
+    /// Rounding of the corners of nodes, metres.
+    fn slack(&self) -> f64 {
+        (0..3).map(|axis| self.center[axis].abs() + self.half_size[axis]).fold(0.0, f64::max) * BOX_PADDING
     }
 
     /// Returns the origin of the boxes of nodes, local metres.

@@ -41,6 +41,12 @@ impl TriangleTree {
         self.index.order()
     }
 
+    /// The tree of boxes around the triangles.
+    #[must_use]
+    pub fn index(&self) -> &RayIndex {
+        &self.index
+    }
+
     /// The triangles in the order of the tree.
     #[must_use]
     pub fn triangles(&self) -> &[Corners] {

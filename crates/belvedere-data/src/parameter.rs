@@ -58,6 +58,8 @@ parameters! {
     Observer => "observer",
     /// Place from which a page shows the visible parts of the scene.
     Viewpoint => "viewpoint",
+    /// Tower of which visible metres are computed.
+    Tower => "tower",
     /// Azimuths between which an observer sees.
     Azimuth => "azimuth",
     /// Elevations between which an observer sees.

@@ -101,6 +101,7 @@ mod terrain;
 #[cfg(feature = "tiff")]
 mod terrain_in_degrees;
 mod text_rows;
+mod towers;
 mod trajectory;
 mod vpc;
 mod weather;
@@ -159,6 +160,7 @@ pub use table::{Table, TableCells, read_table, write_table};
 #[cfg(feature = "tiff")]
 pub use terrain::read_terrain;
 pub use text_rows::{TextRows, with_columns_read, write_text_rows};
+pub use towers::{TowerRow, read_towers};
 pub use trajectory::{TrajectoryReport, read_trajectory};
 pub use vpc::{CatalogueTile, read_catalogue};
 pub use weather::read_weather;

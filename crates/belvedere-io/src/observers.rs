@@ -233,7 +233,7 @@ pub fn property<'a>(properties: &'a Map<String, Value>, name: &str) -> Option<&'
     properties.get(name).or_else(|| any_case().map(|(_, value)| value))
 }
 
-fn number_of(properties: &Map<String, Value>, name: &str, path: &Path) -> Result<Option<f64>> {
+pub(crate) fn number_of(properties: &Map<String, Value>, name: &str, path: &Path) -> Result<Option<f64>> {
     match property(properties, name) {
         None | Some(Value::Null) => Ok(None),
         Some(Value::Number(number)) => Ok(number.as_f64()),

@@ -27,6 +27,7 @@ mod sun;
 mod survey_plan;
 mod system;
 mod targets;
+mod towers;
 mod trees;
 mod viewshed;
 mod visibility;

@@ -131,6 +131,9 @@ WRONG = {
     "body": (lambda s, c, f: s.heat(weather=f / "weather.csv", date="07-21", body="cat"), "body", "'round'"),
     "wind": (lambda s, c, f: s.heat(weather=f / "weather.csv", date="07-21", wind_factor=9), "wind_factor", "0 to 2"),
     "day of heat": (lambda s, c, f: s.heat(weather=f / "weather.csv"), "period", "days"),
+    "tower without a tip": (lambda s, c, f: s.towers({"x": [1], "y": [1]}), "towers", "tip"),
+    "tower of a kilometre": (
+        lambda s, c, f: s.towers({"x": [154990], "y": [462980], "tip": [1500]}), "towers", "1000 metres"),
     "view": (lambda s, c, f: s.depth_map(), "view", "one of"),
     "route of one corner": (lambda s, c, f: s.comfort(route=[(1, 2)], date="2026-06-21"), "route", "2 at least"),
     "windows without azimuth": (

@@ -11,6 +11,7 @@ GROUPS = {
     "line-of-sight": "Visibility",
     "isovist": "Visibility",
     "horizon": "Visibility",
+    "towers": "Visibility",
     "landmark": "Visibility",
     "protected-view": "Visibility",
     "window-views": "Visibility",
@@ -31,6 +32,7 @@ TITLES = {
     "line-of-sight": "Line of sight",
     "isovist": "Visible space",
     "horizon": "Horizon",
+    "towers": "Visible metres of towers",
     "landmark": "Visibility of a landmark",
     "protected-view": "Protected view",
     "window-views": "Views from windows",
@@ -51,6 +53,7 @@ RARE = ("Lines of sight", "Scene", "Balls", "Global options")
 # Layers that must have a certain geometry; others take any.
 GEOMETRIES = {
     ("line-of-sight", "--pairs"): "line",
+    ("towers", "--towers"): "point",
     ("landmark", "--observers"): "point",
     ("landmark", "--target-polygon"): "polygon",
     ("protected-view", "--observers"): "point",

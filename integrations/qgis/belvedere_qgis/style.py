@@ -41,6 +41,8 @@ EDGES = ((0, "#ffffff00", "reliable"), (1, EDGE, "near the edge of the cloud"))
 RAMPS = {
     ("viewshed", "OUTPUT"): Ramp(VIRIDIS),
     ("viewshed", "HEIGHTS"): Ramp(VIRIDIS),
+    ("towers", "OUTPUT"): Ramp(VIRIDIS),
+    ("towers", "FAR_OUTPUT"): Ramp(VIRIDIS),
     ("landmark", "OUTPUT"): Ramp(VIRIDIS),
     ("cameras", "OUTPUT"): Ramp(VIRIDIS),
     ("shadow", "OUTPUT"): Ramp(DAY, 0.0, 1.0),

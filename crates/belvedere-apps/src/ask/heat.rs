@@ -321,7 +321,8 @@ impl Ask for HeatQuestion {
         let mut light = Light::resolve(&places, &directions, trees, scene, context, control)?;
         let seasons = found.wanted().flat_map(|hour| hour.suns.iter().map(|sun| Some(sun.season)));
         context.add(light.crowns().and_then(|crowns| remark_on_leaves(crowns, crowns.known_factors(seasons))));
-        leave_out_inside(&mut light, context, control)?;
+        let blockers = Arc::clone(&light.blockers);
+        Arc::make_mut(&mut light.targets).leave_out_inside(&blockers, context, control)?;
         let kinds = kinds_of_balls(scene, &ClassMeanings::default(), context)?;
         let cover = self.surfaces.ground;
         let surfaces = SceneSurfaces { scene: &light.blockers, balls, points, kinds: &kinds, cover };
@@ -390,18 +391,6 @@ impl HeatQuestion {
         })?;
         Ok(sums)
     }
-}
-
-/// Leaves out the targets inside obstacles: nobody stands there.
-fn leave_out_inside(light: &mut Light, context: &mut Context, control: &Control<'_>) -> Result<()> {
-    let count = light.targets.target_count();
-    let blockers = Arc::clone(&light.blockers);
-    let targets = Arc::make_mut(&mut light.targets);
-    let inside = control.stage("testing targets", 0, || targets.leave_out_enclosed(&blockers, control))?;
-    context.report.places.targets_inside_obstacle = Some(inside);
-    let so = "are inside an obstacle, and have no answer";
-    context.add(Remark::of_share("targets-inside-obstacle", inside, count, "targets", so).map(Remark::into_note));
-    Ok(())
 }
 
 /// Reports heat in words: the hottest values, and the class of stress that they are.

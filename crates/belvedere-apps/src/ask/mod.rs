@@ -48,6 +48,7 @@ mod sun_position;
 mod survey;
 mod survey_plan;
 mod terrain_heights;
+mod towers;
 mod trees;
 mod viewer;
 mod viewshed;
@@ -93,6 +94,7 @@ pub use sun_position::{SunPositionQuestion, SunStands};
 pub use survey::remarks_on_survey;
 pub use survey_plan::{PlannedStation, SurveyPlanQuestion, SurveyPlanResults};
 pub use terrain_heights::remark_on_terrain;
+pub use towers::{FarTowers, GivenTower, TowersQuestion, TowersResults, TowersSection};
 pub use trees::{ThroughTrees, density_at, remark_on_leaves};
 pub use viewer::{
     remark_on_axis, remark_on_cleared, remark_on_doubt, remark_on_eye, remark_on_faces, remark_on_inside,
@@ -142,6 +144,8 @@ pub enum Question {
     Isovist(IsovistsQuestion),
     /// Places visible from observers, or from which a target is visible.
     Viewshed(ViewshedQuestion),
+    /// Visible metres of towers.
+    Towers(TowersQuestion),
     /// Views of a landmark, with its visible part.
     Landmark(LandmarkQuestion),
     /// Views from windows.
@@ -195,6 +199,7 @@ one_of_all! {
     Horizon: HorizonQuestion,
     Isovist: IsovistsQuestion,
     Viewshed: ViewshedQuestion,
+    Towers: TowersQuestion,
     Landmark: LandmarkQuestion,
     WindowViews: WindowViewsQuestion,
     ProtectedView: ProtectedViewQuestion,

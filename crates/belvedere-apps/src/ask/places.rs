@@ -8,6 +8,7 @@ use crate::edge::{EdgeReport, near_edge};
 use crate::targets::{CellLevel, CellParams, MeshParams, TargetLayout, Targets};
 use crate::viewshed::cell_for;
 use belvedere_core::ground::{Ground, GroundPoints, MapGrid};
+use belvedere_core::query::MedialScene;
 use belvedere_data::control::Control;
 use belvedere_data::polygon::is_inside;
 use belvedere_data::report::percent;
@@ -142,6 +143,23 @@ pub(super) fn leave_out_outside(targets: &mut Targets, scene: &Scene, context: &
     let outside = scene.model().coverage().map_or(0, |coverage| targets.leave_out_outside(&coverage));
     context.report.places.targets_outside_cloud = Some(outside);
     context.add(remark_on_outside(outside, count, "targets"));
+}
+
+impl Targets {
+    /// Leaves out targets inside obstacles, where nobody stands, which is reported and noted.
+    pub(super) fn leave_out_inside(
+        &mut self,
+        blockers: &MedialScene,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<()> {
+        let count = self.target_count();
+        let inside = control.stage("testing targets", 0, || self.leave_out_enclosed(blockers, control))?;
+        context.report.places.targets_inside_obstacle = Some(inside);
+        let so = "are inside an obstacle, and have no answer";
+        context.add(Remark::of_share("targets-inside-obstacle", inside, count, "targets", so).map(Remark::into_note));
+        Ok(())
+    }
 }
 
 fn own_points(scene: &Scene, turned: Turned) -> Result<Targets> {

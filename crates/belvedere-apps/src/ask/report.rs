@@ -18,6 +18,7 @@ use super::sections::{
 };
 use super::single_places::PlaceSection;
 use super::survey_plan::SurveyPlanSection;
+use super::towers::TowersSection;
 use super::viewshed::SeenSection;
 use super::window_views::{ViewsSection, WindowsSection};
 use crate::eyes::EyesReport;
@@ -49,6 +50,9 @@ pub struct Report {
     /// The landmark.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub landmark: Option<LandmarkSection>,
+    /// Views of towers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub towers: Option<TowersSection>,
     /// The ground that cells stand on.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ground: Option<GroundSection>,

@@ -243,6 +243,17 @@ fn sentence(place: &PlaceSection, measures: &[Measure], row: usize) -> String {
     };
     let value = |measure: &Measure| measure.values.get(row).copied().map(f64::from).filter(|value| value.is_finite());
     let named = |name: &str| measures.iter().find(|measure| measure.name == name).and_then(value);
+    if let (Some(metres), Some(share)) = (named("metres"), named("share")) {
+        let mut text = format!("{metres:.0} visible metres of towers ({:.1} %)", 100.0 * share);
+        for (name, what) in [("towers", "towers in part"), ("tips", "tips"), ("hubs", "hubs")] {
+            text += &named(name).filter(|_| metres > 0.0).map_or(String::new(), |count| format!(", {count:.0} {what}"));
+        }
+        text += &named("angle_deg").filter(|_| metres > 0.0).map_or(String::new(), |angle| {
+            format!(", up to {angle:.2}° high, the nearest {:.0} m away", named("nearest_m").unwrap_or(f64::NAN))
+        });
+        let unproven = if named(UNPROVEN) == Some(1.0) { ", unproven" } else { "" };
+        return format!("at {x:.1}, {y:.1} (height {z:.1}{on}): {text}{unproven}");
+    }
     let found = match (named("sun_hours"), named("hours_low"), named("hours_high")) {
         (Some(hours), low, high) => {
             let mut text = format!("{hours:.1} h of sun a day");

@@ -65,7 +65,7 @@ pub(crate) struct FarTerrainArguments {
     pub(crate) horizon: Option<PathBuf>,
 }
 
-#[derive(Args)]
+#[derive(Args, Clone)]
 #[command(next_help_heading = "Targets (one of) [default: cells on the ground]")]
 #[group(multiple = false)]
 pub(crate) struct SkyPlacesChoice {

@@ -43,6 +43,16 @@ const TERRAIN_CELL_M: f64 = 25.0;
 const TERRAIN_CELLS: usize = 480;
 /// Distance of the hills, width up to their crests, and height, metres.
 const HILLS_M: [f64; 3] = [900.0, 2500.0, 260.0];
+/// Towers on the hills: azimuth in degrees and distance from the town in metres, and scheme.
+const TOWERS: [(f64, f64, &str); 5] = [
+    (20.0, 2600.0, "north"),
+    (28.0, 2900.0, "north"),
+    (36.0, 3300.0, "north"),
+    (150.0, 1900.0, "south"),
+    (163.0, 2300.0, "south"),
+];
+/// Heights of the hub and of the tip of a tower, metres.
+const TOWER_M: [f64; 2] = [115.0, 180.0];
 /// Day of the weather, its dew point, °C, and its wind, m/s.
 const HOT_DAY: &str = "2026-07-21";
 const DEW_POINT: f64 = 14.0;
@@ -158,6 +168,7 @@ fn write_town(folder: &Path, scene: &TriangleScene, scan: &Scan) -> Result<()> {
         ("town.obj", scene.to_obj()),
         ("planned.obj", planned),
         ("neighbours.csv", windows_that_face(scene)),
+        ("towers.csv", towers_on_hills(scene)),
     ];
     for (name, text) in texts {
         write_text(&folder.join(name), &text)?;
@@ -223,6 +234,19 @@ fn planned_building(town: &TriangleScene) -> TriangleScene {
     let ground = town.mean_ground_height();
     planned.add_object("planned", &[extruded(&footprint, ground - 1.0, ground + PLANNED_M[2])]);
     planned
+}
+
+/// A table of towers on the hills around the town.
+fn towers_on_hills(town: &TriangleScene) -> String {
+    let Some((low, high)) = town.bounds() else { return String::new() };
+    let [x, y] = [0, 1].map(|axis| f64::midpoint(low[axis], high[axis]));
+    let [hub, tip] = TOWER_M;
+    let row = |(number, (azimuth, distance, scheme)): (usize, (f64, f64, &str))| {
+        let (sin, cos) = azimuth.to_radians().sin_cos();
+        format!("T{},{:.0},{:.0},{hub},{tip},{scheme}\n", number + 1, x + distance * sin, y + distance * cos)
+    };
+    let rows = TOWERS.into_iter().enumerate().map(row);
+    std::iter::once("name,x,y,hub,tip,scheme\n".to_owned()).chain(rows).collect()
 }
 
 /// A table of windows, one in each of the buildings nearest to the planned one, in a wall that faces it and gets sun.

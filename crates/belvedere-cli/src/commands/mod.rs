@@ -43,6 +43,7 @@ mod surfaces;
 mod surroundings;
 mod survey_plan;
 mod targets;
+mod towers;
 mod trajectory;
 mod tree_light;
 mod typed_places;
@@ -89,6 +90,7 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         Command::Query(arguments) => query::run(arguments, global),
         Command::LineOfSight(arguments) => line_of_sight::run(arguments, global),
         Command::Viewshed(arguments) => viewshed::run(arguments, global),
+        Command::Towers(arguments) => towers::run(arguments, global),
         Command::Landmark(arguments) => landmark::run(arguments, global),
         Command::ProtectedView(arguments) => protected_view::run(arguments, global),
         Command::Cameras(arguments) => cameras::run(arguments, global),

@@ -19,6 +19,7 @@ use belvedere::figures::Picture;
 use belvedere::query::UnprovenAs;
 use belvedere::results::UNPROVEN_BAND;
 use belvedere_tiles::SurveyCells;
+pub(super) use results::Sheet;
 use results::{CellSurface, SeenCells, SeenMap, on_points, write_masks};
 use std::path::{Path, PathBuf};
 

@@ -4,7 +4,7 @@ use crate::common::{Workplace, house};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-const COMMANDS: [&str; 35] = [
+const COMMANDS: [&str; 36] = [
     "demo",
     "simulate",
     "info",
@@ -18,6 +18,7 @@ const COMMANDS: [&str; 35] = [
     "query",
     "line-of-sight",
     "viewshed",
+    "towers",
     "landmark",
     "protected-view",
     "cameras",

@@ -51,6 +51,7 @@ mod surface_patches;
 mod surfaces;
 mod surroundings;
 mod survey_plan;
+mod towers;
 mod trajectory;
 mod tree_light;
 mod usage;

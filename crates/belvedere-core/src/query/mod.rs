@@ -1,14 +1,15 @@
 //! Queries: which targets can be seen.
 //!
-//! There are three kinds of queries of a [`MedialScene`]:
+//! There are four kinds of queries of a [`MedialScene`]:
 //!
 //! - a pair of points: [`MedialScene::line_of_sight`] (its first obstacle, its unproven length), with
 //!   [`MedialScene::crossings`], [`MedialScene::min_visible_height`], [`MedialScene::seen_along`],
 //!   [`MedialScene::seen_from_surface`] and [`MedialScene::far_sight_answer`] (one that leaves the cloud) beside it;
+//! - a vertical line: [`MedialScene::vertical_sight`], the visible part of a tower;
 //! - many targets of one viewer: [`MedialScene::visible_from`], or [`MedialScene::visible_in_views`] for pictures;
 //! - many directions at many targets: [`MedialScene::visibility_matrix`].
 //!
-//! Other models of a scene answer the second and the third by the trait [`Visibility`]. [`target_tree`] and
+//! Other models of a scene answer the last two by the trait [`Visibility`]. [`target_tree`] and
 //! [`certified`] hold the parts of these, for repeated queries of the same targets or the same view. A [`Backend`]
 //! settles lines of sight in bulk.
 
@@ -40,6 +41,7 @@ pub mod skyline;
 pub mod surface;
 pub mod target_tree;
 mod triangles;
+mod vertical_line;
 pub mod visibility;
 pub mod visibility_matrix;
 
@@ -66,5 +68,6 @@ pub use segments::{Blocker, Crossing, Enclosure, LineOfSight, Obstruction, merge
 pub use skyline::SkylinePoint;
 pub use surface::{Sides, SurfacePiece, SurfacePieces};
 pub use triangles::BlockingTriangles;
+pub use vertical_line::{HeightSpans, VerticalLine, VerticalSight};
 pub use visibility::{Sight, Viewer, Visibility};
 pub use visibility_matrix::{FreeLines, VisibilityMatrix};

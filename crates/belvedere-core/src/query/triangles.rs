@@ -4,7 +4,7 @@
 use super::{Blocker, Coverage};
 use crate::blocking::{CONTACT, PATCH_DEPTH, Sheet};
 use crate::ground::MapGrid;
-use crate::ray_index::Ray;
+use crate::ray_index::{Ray, RayIndex};
 use crate::triangle_tree::{Corners, TriangleTree};
 use belvedere_data::model::FARTHEST;
 use belvedere_data::raster::Raster;
@@ -311,6 +311,17 @@ impl BlockingTriangles {
         let seen = move |(_, face): &(&Corners, &Face)| !face.sheet.gives_way_to(eye);
         let faces = self.tree.triangles().iter().zip(self.faces.iter()).filter(seen);
         faces.map(|(corners, face)| (*corners, face.blocker))
+    }
+
+    /// The tree of boxes around the triangles.
+    pub(super) fn index(&self) -> &RayIndex {
+        self.tree.index()
+    }
+
+    /// The corners of a triangle of the tree; `None` if it gives way to `eye`.
+    pub(super) fn corners_before(&self, eye: [f64; 3], row: usize) -> Option<&Corners> {
+        self.faces.get(row).filter(|face| !face.sheet.gives_way_to(eye))?;
+        self.tree.triangles().get(row)
     }
 
     /// Lowest and highest corner of all triangles.

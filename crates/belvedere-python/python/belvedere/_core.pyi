@@ -215,6 +215,13 @@ class Scene:
         interval: bool,
         progress: _Progress,
     ) -> tuple[dict[str, npt.NDArray[Any]], list[npt.NDArray[np.float32]], list[dict[str, Any]]]: ...
+    def towers(
+        self,
+        towers: list[dict[str, Any]],
+        looking: dict[str, Any],
+        targets: dict[str, Any],
+        progress: _Progress,
+    ) -> _Results: ...
     def landmark(
         self,
         landmark: dict[str, Any],

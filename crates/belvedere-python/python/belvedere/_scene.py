@@ -27,9 +27,10 @@ from ._raster import escaped
 from ._remarks import warned
 from ._sights import Sights
 from ._sunlight import Sunlight
+from ._towers import Towers
 
 
-class Scene(Sights, Outlook, Sunlight, Energy, Heat, Planning, Documents, Cameras):
+class Scene(Sights, Outlook, Towers, Sunlight, Energy, Heat, Planning, Documents, Cameras):
     """A scene that answers what can be seen: medial balls, cut with the space that laser pulses prove empty.
 
     Parameters

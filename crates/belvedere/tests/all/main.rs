@@ -79,6 +79,7 @@ mod survey_reliability;
 mod tau_balls;
 mod thin_surfaces;
 mod top_surface;
+mod towers;
 mod tree_light;
 mod viewshed;
 mod visibility_matrix;

@@ -196,13 +196,7 @@ impl SeenMap<'_> {
         }
         others.extend(cloud);
         classes.extend(cloud);
-        let mark = |eye: &[f64; 3]| {
-            let place = [(eye[0] - sheet.corner[0]) / sheet.cell, (sheet.corner[1] - eye[1]) / sheet.cell];
-            let size = [sheet.relief.width() as f64, sheet.relief.height() as f64];
-            let is_inside = (0..2).all(|i| (0.0..=size[i]).contains(&place[i]));
-            is_inside.then(|| MapMark { place, ..MapMark::default() })
-        };
-        let marks: Vec<MapMark> = self.eyes.iter().filter_map(mark).collect();
+        let marks = sheet.marks(self.eyes);
         let max = self.greatest();
         let legend = match self.is_of_one {
             true => MapLegend::Colors(&classes),
@@ -217,18 +211,22 @@ impl SeenMap<'_> {
 }
 
 /// Square pixels of a map.
-struct Sheet {
-    relief: Raster<f32>,
-    colors: Vec<Option<[u8; 3]>>,
+pub(crate) struct Sheet {
+    pub(crate) relief: Raster<f32>,
+    pub(crate) colors: Vec<Option<[u8; 3]>>,
     /// Side of a pixel, metres, and the upper left corner, local metres.
-    cell: f64,
+    pub(crate) cell: f64,
     corner: [f64; 2],
-    place: Georeference,
+    pub(crate) place: Georeference,
 }
 
 impl Sheet {
     /// Terrain with a colour for each node that has a height, of which a large map shows some.
-    fn of_terrain(terrain: &ElevationGrid, colors: &[Option<[u8; 3]>], frame: &Frame) -> belvedere::Result<Self> {
+    pub(crate) fn of_terrain(
+        terrain: &ElevationGrid,
+        colors: &[Option<[u8; 3]>],
+        frame: &Frame,
+    ) -> belvedere::Result<Self> {
         let ([west, north], sides) = (terrain.north_west(), terrain.cell());
         let size = [terrain.heights().width(), terrain.heights().height()];
         let extent = [0, 1].map(|i| size[i] as f64 * sides[i]);
@@ -252,6 +250,17 @@ impl Sheet {
             Georeference { column_step: [step, 0.0], row_step: [0.0, -step], ..terrain_georeference(terrain, frame) };
         let corner = [west - sides[0] / 2.0, north + sides[1] / 2.0];
         Ok(Self { relief, colors, cell, corner, place })
+    }
+
+    /// Marks of those places, local metres, that lie on it.
+    pub(crate) fn marks(&self, places: &[[f64; 3]]) -> Vec<MapMark> {
+        let size = [self.relief.width() as f64, self.relief.height() as f64];
+        let mark = |[x, y, _]: &[f64; 3]| {
+            let place = [(x - self.corner[0]) / self.cell, (self.corner[1] - y) / self.cell];
+            let is_inside = (0..2).all(|i| (0.0..=size[i]).contains(&place[i]));
+            is_inside.then(|| MapMark { place, ..MapMark::default() })
+        };
+        places.iter().filter_map(mark).collect()
     }
 }
 

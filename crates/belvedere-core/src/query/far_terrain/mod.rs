@@ -11,6 +11,7 @@ use belvedere_data::ElevationGrid;
 use belvedere_data::horizon::HorizonProfile;
 use belvedere_data::vector::piece_in_box;
 use rayon::prelude::*;
+pub(super) use relief::TerrainGuess;
 use relief::{LineStarts, TerrainHeights};
 pub(super) use rows::hide_behind_terrain;
 use std::f64::consts::FRAC_PI_2;
@@ -95,6 +96,17 @@ impl FarTerrain {
     /// Returns true if the raster rises above a line of sight.
     pub(super) fn blocks_sight(&self, line: &FarLine<'_>) -> bool {
         self.relief.as_ref().is_some_and(|relief| relief.blocks_sight(line))
+    }
+
+    /// Returns the greatest tangent of an elevation, within `tangents`, at which the raster rises above lines from the
+    /// observer of `line` up to its target. The first of `tangents` where it does not rise above that.
+    pub(super) fn highest_before(
+        &self,
+        line: &FarLine<'_>,
+        tangents: [f64; 2],
+        guess: &mut TerrainGuess,
+    ) -> Option<f64> {
+        self.relief.as_ref().map(|relief| relief.highest_before(line, tangents, guess))
     }
 
     /// Returns the elevations of the horizon of `place`, local metres, over the earth of `earth`, radians; −π/2 without

@@ -14,6 +14,10 @@ const MIN_SLOPE: f64 = 1e-14;
 /// eye that lies on it.
 const FOOT: f64 = 0.1;
 
+/// Part of the distance on both sides of a guess that is looked through first: a cell or two of usual rasters where
+/// mountains are.
+const NEAR: f64 = 0.003;
+
 /// Halvings in which the place is found where terrain rises above a line: a patch of a kilometre becomes less than a
 /// nanometre.
 const HALVINGS: usize = 50;
@@ -51,6 +55,11 @@ pub(super) struct Top {
     /// Its distance on the map, metres.
     pub(super) span: f64,
 }
+
+/// Distance on the map at which terrain hid most from the last place, metres, if it hid anything. It saves time for
+/// neighbouring places and changes no result.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in super::super) struct TerrainGuess(Option<f64>);
 
 /// Lines from places in one direction on the map. Distances along them count from each place: there a line lies as far
 /// from that of the middle as its place from the middle.
@@ -111,9 +120,6 @@ impl TerrainHeights {
         let lines = self.lines(&LineStarts { low: place, high: place }, along, earth);
         let mut top = Top { tangent: f64::NEG_INFINITY, span: f64::NAN };
         if let Some(span) = guess {
-            /// Part of the distance on both sides that is looked through first: a cell or two of usual rasters where
-            /// mountains are.
-            const NEAR: f64 = 0.003;
             self.raise(&lines, [span * (1.0 - NEAR), span * (1.0 + NEAR)], &mut top);
         }
         self.raise(&lines, [lines.from[0], f64::INFINITY], &mut top);
@@ -153,6 +159,44 @@ impl TerrainHeights {
         self.first_patch(line).is_some()
     }
 
+    /// Returns the greatest tangent of an elevation between two, at which terrain rises above lines from the observer of
+    /// `line` up to its target: the first of `tangents` where it does not rise above that.
+    pub(super) fn highest_before(&self, line: &FarLine<'_>, tangents: [f64; 2], guess: &mut TerrainGuess) -> f64 {
+        let FarLine { observer: from, along, earth, .. } = *line;
+        let lines = self.lines(&LineStarts { low: from, high: from }, along, earth);
+        let mut top = Top { tangent: tangents[0], span: f64::NAN };
+        let raise = |spans: [f64; 2], top: &mut Top| {
+            let _ = self.descend(&lines, spans, top, &mut |corners, patch, spans, top| {
+                if let Some(found) = lines.top_of_patch(corners, patch, spans)
+                    && found.tangent > top.tangent
+                {
+                    *top = found;
+                }
+                if top.tangent < tangents[1] { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+            });
+        };
+        let pieces = self.pieces_beyond_cloud(line);
+        if let Some(last) = guess.0 {
+            for piece in pieces {
+                raise([piece[0].max(last * (1.0 - NEAR)), piece[1].min(last * (1.0 + NEAR))], &mut top);
+            }
+        }
+        for piece in pieces {
+            if top.tangent < tangents[1] && piece[0] < piece[1] {
+                raise(piece, &mut top);
+            }
+        }
+        *guess = TerrainGuess(Some(top.span).filter(|span| !span.is_nan()));
+        top.tangent.min(tangents[1])
+    }
+
+    /// Distances of a line of sight, from and to, metres, before and behind the box of the cloud.
+    fn pieces_beyond_cloud(&self, line: &FarLine<'_>) -> [[f64; 2]; 2] {
+        let span = line.span;
+        let [enter, leave] = piece_over(self.within, line.observer, line.along, span).unwrap_or([span; 2]);
+        [[FOOT, enter], [leave.max(FOOT), span]]
+    }
+
     /// Returns the horizontal distance from the observer, metres, at which terrain first rises above a line of sight;
     /// `None` if it does not.
     pub(super) fn meets_sight(&self, line: &FarLine<'_>) -> Option<f64> {
@@ -173,13 +217,12 @@ impl TerrainHeights {
     /// Returns the first patch in which terrain rises above a line of sight: its column and row, the interval of
     /// distances of the line over it, and the distance of its highest place.
     fn first_patch(&self, line: &FarLine<'_>) -> Option<([usize; 2], [f64; 2], f64)> {
-        let FarLine { observer: from, along, span, tangent, earth, .. } = *line;
+        let FarLine { observer: from, along, tangent, earth, .. } = *line;
         let lines = self.lines(&LineStarts { low: from, high: from }, along, earth);
         // a target on the surface is not hidden by what is rounded
         let mut limit = Top { tangent: tangent + rounding(tangent), span: 0.0 };
-        let [enter, leave] = piece_over(self.within, from, along, span).unwrap_or([span; 2]);
         let mut first = None;
-        for spans in [[FOOT, enter], [leave.max(FOOT), span]] {
+        for spans in self.pieces_beyond_cloud(line) {
             if spans[0] < spans[1] && first.is_none() {
                 let _ = self.descend(&lines, spans, &mut limit, &mut |corners, patch, spans, limit| match lines
                     .top_of_patch(corners, patch, spans)

@@ -1,0 +1,321 @@
+//! Visible parts of a vertical line, such as a tower: exact for the union of balls, triangles and far terrain.
+
+use super::far_line::FarLine;
+use super::far_terrain::TerrainGuess;
+use super::skyline::cut;
+use super::{BallTree, EarthParams, MedialScene};
+use crate::blocking::Ball;
+use crate::ray_index::RayIndex;
+use belvedere_data::vector::sub;
+use smallvec::SmallVec;
+
+/// Maximum number of obstacles that are tried first for the next eye.
+const MAX_RECENT: usize = 24;
+
+/// Intervals, from and to, sorted and apart.
+pub type HeightSpans = SmallVec<[[f64; 2]; 3]>;
+
+/// A vertical line that eyes look at, local metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VerticalLine {
+    /// Its lower end.
+    pub foot: [f64; 3],
+    /// Its length, metres, above 0.
+    pub height: f64,
+}
+
+/// What eyes see of a vertical line. Obstacles of the last eye are tried first for the next one, which saves most of the
+/// time for neighbouring eyes and changes no result.
+pub struct VerticalSight<'a> {
+    scene: &'a MedialScene,
+    line: VerticalLine,
+    earth: &'a EarthParams,
+    recent: SmallVec<[Obstacle; MAX_RECENT]>,
+    terrain: TerrainGuess,
+}
+
+/// A row of the balls or of the triangles in their trees.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Obstacle {
+    Ball(u32),
+    Triangle(u32),
+}
+
+/// The vertical plane between an eye and a vertical line: distances from the eye along it, and tangents of elevations.
+struct Plane<'a> {
+    /// The line of sight to the upper end.
+    line: FarLine<'a>,
+    /// Fall of places for each square metre of their squared distance, 1/m.
+    fall: f64,
+}
+
+/// Tangents of the elevations between two, and which of them something hides.
+struct Hidden {
+    all: [f64; 2],
+    spans: HeightSpans,
+}
+
+impl MedialScene {
+    /// What eyes see of a vertical line over the earth of `earth`.
+    #[must_use]
+    pub fn vertical_sight<'a>(&'a self, line: VerticalLine, earth: &'a EarthParams) -> VerticalSight<'a> {
+        let (recent, terrain) = (SmallVec::new(), TerrainGuess::default());
+        VerticalSight { scene: self, line, earth, recent, terrain }
+    }
+}
+
+impl<'a> VerticalSight<'a> {
+    /// The visible heights above the foot for `eye`, local metres: intervals from and to, metres. Empty if nothing is
+    /// visible, or if the eye is straight above or below the line.
+    ///
+    /// Each ball, triangle and patch hides one interval of elevations in the vertical plane of the eye and the line, in
+    /// closed form. The result is what their union leaves open. Balls give way to the eye as for every line of sight,
+    /// and those that hold it even so are left out. They do not give way to places of the line: it is an object of its
+    /// own. Pulses are not considered. The earth is a plane for lines within the cloud that
+    /// [`EarthParams::bends`] calls straight.
+    #[must_use]
+    pub fn seen_from(&mut self, eye: [f64; 3]) -> HeightSpans {
+        let Some((plane, mut hidden)) = self.plane(eye) else { return HeightSpans::new() };
+        self.hide_behind_recent(&plane, &mut hidden);
+        if !hidden.is_whole()
+            && let Some(tangent) = self.scene.far_terrain.highest_before(&plane.line, hidden.all, &mut self.terrain)
+        {
+            hidden.add(Some([f64::NEG_INFINITY, tangent]));
+        }
+        if !hidden.is_whole() {
+            let (scene, recent) = (self.scene, &mut self.recent);
+            let mut note = |obstacle: Obstacle| {
+                if recent.len() == MAX_RECENT {
+                    recent.remove(0);
+                }
+                recent.push(obstacle);
+            };
+            // meshes first: they are few and large
+            if let Some(triangles) = scene.triangles() {
+                each_hiding(triangles.index(), &plane, &mut hidden, |row, hidden| {
+                    if hidden.add(plane.hidden_by_triangle(scene, row)) {
+                        note(Obstacle::Triangle(row));
+                    }
+                });
+            }
+            each_hiding(scene.tree().index(), &plane, &mut hidden, |row, hidden| {
+                if hidden.add(plane.hidden_by_ball(scene.tree(), row)) {
+                    note(Obstacle::Ball(row));
+                }
+            });
+        }
+        let height = |tangent: f64| (plane.height_at(tangent) - self.line.foot[2]).clamp(0.0, self.line.height);
+        hidden.open().into_iter().map(|[from, to]| [height(from), height(to)]).collect()
+    }
+
+    /// The vertical plane from `eye` to the line, and the tangents of the line; `None` where there is none.
+    fn plane(&self, eye: [f64; 3]) -> Option<(Plane<'a>, Hidden)> {
+        let VerticalLine { foot, height } = self.line;
+        let top = [foot[0], foot[1], foot[2] + height];
+        let line = FarLine::new(eye, top, self.earth)?;
+        let is_curved =
+            self.earth.bends(eye, top) || [eye, foot].into_iter().any(|end| self.scene.is_on_far_terrain(end));
+        let fall = if is_curved { self.earth.fall_rate() } else { 0.0 };
+        let plane = Plane { line, fall };
+        let all = [foot[2], top[2]].map(|z| plane.tangent(z - eye[2]));
+        (height > 0.0 && all[0] < all[1]).then(|| (plane, Hidden { all, spans: HeightSpans::new() }))
+    }
+
+    fn hide_behind_recent(&mut self, plane: &Plane<'_>, hidden: &mut Hidden) {
+        let scene = self.scene;
+        self.recent.retain(|obstacle| {
+            hidden.add(match *obstacle {
+                Obstacle::Ball(row) => plane.hidden_by_ball(scene.tree(), row),
+                Obstacle::Triangle(row) => plane.hidden_by_triangle(scene, row),
+            })
+        });
+    }
+}
+
+/// Calls `visit` with each row of an index whose box may hide tangents that nothing hides yet, nearest boxes first.
+fn each_hiding(index: &RayIndex, plane: &Plane<'_>, hidden: &mut Hidden, mut visit: impl FnMut(u32, &mut Hidden)) {
+    index.visit_nearest_first(
+        hidden,
+        |hidden, center, half| plane.reach_of_box(hidden, center, half),
+        |hidden, row| {
+            visit(row, hidden);
+            !hidden.is_whole()
+        },
+    );
+}
+
+impl Plane<'_> {
+    /// Tangent of the elevation at which a place of the vertical line appears that lies `rise` metres above the eye.
+    fn tangent(&self, rise: f64) -> f64 {
+        rise / self.line.span - self.fall * self.line.span
+    }
+
+    /// Height on the vertical line, local metres, that appears at a tangent.
+    fn height_at(&self, tangent: f64) -> f64 {
+        self.line.observer[2] + (tangent + self.fall * self.line.span) * self.line.span
+    }
+
+    /// Returns the distances along the plane and to its left of an offset from the eye, metres.
+    fn on_map(&self, [x, y, _]: [f64; 3]) -> [f64; 2] {
+        let [east, north] = self.line.along;
+        [x * east + y * north, y * east - x * north]
+    }
+
+    /// Returns the least distance of a box, metres, if it may hide a tangent that nothing hides yet.
+    #[inline]
+    fn reach_of_box(&self, hidden: &Hidden, center: [f64; 3], half: [f64; 3]) -> Option<f64> {
+        let offset = sub(center, self.line.observer);
+        let [along, beside] = self.on_map(offset);
+        let [east, north] = self.line.along.map(f64::abs);
+        if beside.abs() > half[0] * north + half[1] * east {
+            return None;
+        }
+        let reach = half[0] * east + half[1] * north;
+        let (from, to) = ((along - reach).max(0.0), (along + reach).min(self.line.span));
+        if !(from <= to) {
+            return None;
+        }
+        let (low, high) = (offset[2] - half[2], offset[2] + half[2]);
+        let lowest = low / if low > 0.0 { to } else { from } - self.fall * to;
+        let highest = high / if high > 0.0 { from } else { to } - self.fall * from;
+        // 0 / 0 beside the eye says nothing
+        let lowest = if lowest.is_nan() { f64::NEG_INFINITY } else { lowest };
+        let highest = if highest.is_nan() { f64::INFINITY } else { highest };
+        (!hidden.holds([lowest, highest])).then_some(from)
+    }
+
+    /// The tangents that a ball hides, if any.
+    fn hidden_by_ball(&self, tree: &BallTree, row: u32) -> Option<[f64; 2]> {
+        let (ball, span): (Ball, f64) = (*tree.balls().get(row as usize)?, self.line.span);
+        let offset = sub(ball.center.map(f64::from), self.line.observer);
+        let [along, beside] = self.on_map(offset);
+        let whole = f64::from(ball.radius);
+        if beside * beside >= whole * whole || along + whole <= 0.0 || along - whole >= span {
+            return None;
+        }
+        let (_, radius) = tree.rule().seen_from(ball, self.line.observer)?;
+        let up = offset[2] - self.fall * along * along;
+        let disc = radius * radius - beside * beside;
+        let touch_square = along * along + up * up - disc;
+        if disc <= 0.0 || touch_square <= 0.0 {
+            return None;
+        }
+        let half = disc.sqrt();
+        if along + half <= 0.0 || along - half >= span {
+            return None;
+        }
+        // slopes m of the two tangents: (along m - up)² = disc (1 + m²), without a difference of like numbers
+        let (ahead, product) = (along * along - disc, along * up);
+        let root = half * touch_square.sqrt();
+        let other = up * up - disc;
+        let [minus, plus] = match product >= 0.0 {
+            true => [other / (product + root), (product + root) / ahead],
+            false => [(product - root) / ahead, other / (product - root)],
+        };
+        // a disc over the eye, or below it, has one of them on either side
+        let slopes = match ahead > 0.0 {
+            true => [minus, plus],
+            false if up > 0.0 => [minus, f64::INFINITY],
+            false => [f64::NEG_INFINITY, plus],
+        };
+        // beyond the line the disc ends at it
+        let past = span - along;
+        let of_line = (disc - past * past).max(0.0).sqrt();
+        let end = |slope: f64, side: f64| match touch_square > span * span * (1.0 + slope * slope) {
+            true => (up + side * of_line) / span,
+            false => slope,
+        };
+        Some([end(slopes[0], -1.0), end(slopes[1], 1.0)])
+    }
+
+    /// The tangents that a triangle hides, if any.
+    fn hidden_by_triangle(&self, scene: &MedialScene, row: u32) -> Option<[f64; 2]> {
+        let corners = scene.triangles()?.corners_before(self.line.observer, row as usize)?;
+        let offsets = corners.map(|corner| {
+            let offset = sub(corner, self.line.observer);
+            let along = offset[0].hypot(offset[1]);
+            [offset[0], offset[1], offset[2] - self.fall * along * along]
+        });
+        let [near, far] = cut(&offsets, self.line.along)?;
+        let from = near[0].max(0.0);
+        let to = far[0].min(self.line.span);
+        if !(from <= to) || to <= 0.0 {
+            return None;
+        }
+        let at = |along: f64| match far[0] > near[0] {
+            true => near[1] + (far[1] - near[1]) * (along - near[0]) / (far[0] - near[0]),
+            false => near[1],
+        };
+        let tangent = |along: f64| match along > 0.0 {
+            true => at(along) / along,
+            false => f64::INFINITY.copysign(at(0.0)),
+        };
+        // a wall that stands upright in the plane has both of its heights at one distance
+        let heights = [near, far].map(|place| if place[0] > 0.0 { place[1] / place[0] } else { tangent(0.0) });
+        let ends = match far[0] > near[0] {
+            true => [tangent(from), tangent(to)],
+            false => heights,
+        };
+        Some([ends[0].min(ends[1]), ends[0].max(ends[1])])
+    }
+}
+
+impl Hidden {
+    /// Returns true if nothing is left.
+    fn is_whole(&self) -> bool {
+        matches!(self.spans[..], [span] if span == self.all)
+    }
+
+    /// Returns true if an interval holds nothing that is still open.
+    fn holds(&self, [from, to]: [f64; 2]) -> bool {
+        let [from, to] = [from.max(self.all[0]), to.min(self.all[1])];
+        !(from < to) || self.spans.iter().any(|span| span[0] <= from && to <= span[1])
+    }
+
+    /// Adds an interval; true if it hides something new.
+    fn add(&mut self, span: Option<[f64; 2]>) -> bool {
+        let Some(span) = span.filter(|span| !self.holds(*span)) else { return false };
+        let mut joined = [span[0].max(self.all[0]), span[1].min(self.all[1])];
+        let first = self.spans.partition_point(|other| other[1] < joined[0]);
+        let end = self.spans.partition_point(|other| other[0] <= joined[1]);
+        for other in &self.spans[first..end] {
+            joined = [joined[0].min(other[0]), joined[1].max(other[1])];
+        }
+        self.spans.drain(first..end);
+        self.spans.insert(first, joined);
+        true
+    }
+
+    /// The intervals between those that are hidden.
+    fn open(&self) -> HeightSpans {
+        let mut from = self.all[0];
+        let mut open = HeightSpans::new();
+        for &[start, end] in self.spans.iter().chain([&[self.all[1]; 2]]) {
+            if from < start {
+                open.push([from, start]);
+            }
+            from = from.max(end);
+        }
+        open
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hidden_intervals_join_whatever_their_order() {
+        let spans = [[0.1, 0.2], [0.5, 0.6], [0.2, 0.3], [0.25, 0.55], [-9.0, 0.05], [0.9, 2.0]];
+        for turn in 0..spans.len() {
+            let mut hidden = Hidden { all: [0.0, 1.0], spans: HeightSpans::new() };
+            for i in 0..spans.len() {
+                assert!(hidden.add(Some(spans[(i + turn) % spans.len()])) || i > 0);
+            }
+            assert_eq!(hidden.open().as_slice(), [[0.05, 0.1], [0.6, 0.9]]);
+            assert!(!hidden.add(Some([0.11, 0.59])) && !hidden.add(None) && !hidden.add(Some([1.0, 3.0])));
+            assert!(!hidden.is_whole() && hidden.add(Some([-1.0, 7.0])) && hidden.is_whole());
+            assert!(hidden.open().is_empty());
+        }
+    }
+}

@@ -1,0 +1,148 @@
+"""Questions about towers such as wind turbines and masts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._errors import wrong
+from ._inputs import Progress, check_finite, reporter
+from ._outlook import _looking
+from ._shapes import in_system
+from ._sunlight import _cells
+from ._targets import RastersOrTable, Targets, measures, wanted
+
+
+class Towers:
+    """How much of towers is seen."""
+
+    _core: _core.Scene
+
+    def towers(
+        self,
+        towers: Mapping[str, npt.ArrayLike],
+        *,
+        observer_height: float | None = None,
+        max_distance: float | None = None,
+        targets: Targets = None,
+        cell: float | None = None,
+        surface: bool = False,
+        ground: str | None = None,
+        curvature: str | None = None,
+        refraction: float | None = None,
+        far: bool = False,
+        progress: Progress = None,
+    ) -> RastersOrTable:
+        """Visible metres of towers from places.
+
+        Parameters
+        ----------
+        towers : mapping of str to array_like
+            Columns ``x``, ``y`` and ``tip``, and if known ``base``, ``hub``, ``name`` and ``scheme``; a DataFrame will
+            do. ``tip`` and ``hub`` are metres above the base, a height of the file. Without it a tower stands on the
+            ground of the cloud, or on the terrain of the scene. ``x`` and ``y`` may be latitude and longitude.
+        observer_height : float, optional
+            Height of eyes above the ground, metres; 1.7 if not given.
+        max_distance : float, optional
+            Horizontal distance up to which towers count, metres; no limit if not given.
+        targets, cell, surface, ground
+            As for `shadow`.
+        curvature : {'auto', 'on', 'off'}, optional
+            Whether lines follow the curvature of the earth; those of more than 2 km if not given.
+        refraction : float, optional
+            Share of the curvature that light follows, 0 to below 1; 1/7 if not given.
+        far : bool, optional
+            Whether eyes stand on the cells of the terrain beyond the cloud, in place of `targets`.
+        progress : bool or callable, optional
+
+        Returns
+        -------
+        Rasters or Table
+            ``metres`` and ``share``, visible metres of all towers and their share; ``towers``, ``tips`` and ``hubs``,
+            numbers that are visible, partly or whole; ``most_metres``; ``angle_deg``, the greatest vertical angle of a
+            tower; ``nearest_m``; ``schemes``, a bit for each scheme; ``unproven``.
+
+        Raises
+        ------
+        BelvedereError
+            For towers that lack columns or a foot, hubs above tips, towers far from the scene, and parameters out of
+            range.
+
+        Warns
+        -----
+        BelvedereWarning
+            Where towers stand beyond what is known.
+
+        References
+        ----------
+        docs/methods/towers.md
+
+        Examples
+        --------
+        >>> mast = {"x": [154990.0], "y": [462980.0], "tip": [60.0]}
+        >>> seen = scene.towers(mast, cell=8)
+        >>> list(seen)
+        ['metres', 'share', 'towers', 'tips', 'most_metres', 'angle_deg', 'nearest_m', 'unproven']
+        >>> seen["metres"].unit
+        'm'
+        """
+        check_finite(observer_height=observer_height, max_distance=max_distance, refraction=refraction)
+        looking = _looking(
+            observer_height=observer_height,
+            max_distance=max_distance,
+            ground=ground,
+            curvature=curvature,
+            refraction=refraction,
+            is_far=far,
+        )
+        targets = in_system(targets, "targets", self._core.crs.text)
+        results = self._core.towers(
+            _rows(towers),
+            looking,
+            wanted(targets, None, _cells(cell, None, surface, ground), may_lack_heights=True),
+            reporter(progress),
+        )
+        return measures(results, self._core.crs, targets)
+
+
+def _rows(towers: Mapping[str, npt.ArrayLike]) -> list[dict[str, Any]]:
+    known = ("x", "y", "base", "hub", "tip", "name", "scheme")
+    missing = [name for name in ("x", "y", "tip") if name not in towers]
+    if missing:
+        raise wrong("towers", f"without {', '.join(missing)}", "give x, y and tip, each with a value for each tower")
+    unknown = [str(name) for name in towers if name not in known]
+    if unknown:
+        raise wrong("towers", f"a column '{unknown[0]}'", f"use {', '.join(known)}")
+    columns = {name: np.atleast_1d(np.asarray(towers[name])) for name in known if name in towers}
+    count = len(columns["x"])
+    if {column.shape for column in columns.values()} != {(count,)} or not count:
+        raise wrong("towers", "columns of different lengths, or empty", "give a value for each tower")
+
+    def number(name: str, row: int) -> float | None:
+        value = float(columns[name][row]) if name in columns else np.nan
+        return value if np.isfinite(value) else None
+
+    def text(name: str, row: int) -> str:
+        value = columns[name][row] if name in columns else ""
+        return "" if value is None or value != value else str(value)
+
+    rows = []
+    for row in range(count):
+        x, y, tip = (number(name, row) for name in ("x", "y", "tip"))
+        if x is None or y is None or tip is None:
+            raise wrong("towers", f"row {row} without x, y or tip", "give all three")
+        rows.append(
+            {
+                "place": [x, y],
+                "base": number("base", row),
+                "hub": number("hub", row),
+                "tip": tip,
+                "name": text("name", row) or f"row {row + 1}",
+                "scheme": text("scheme", row),
+            }
+        )
+    return rows

@@ -1,0 +1,47 @@
+"""Visible metres of towers: as the program finds them, and as a closed form has them."""
+
+import belvedere
+import numpy as np
+import pytest
+
+rasterio = pytest.importorskip("rasterio")
+
+TOWERS = {
+    "name": ["near", "far", "north"],
+    "x": [154990.0, 156500.0, 155100.0],
+    "y": [462980.0, 463500.0, 464900.0],
+    "base": [0.0, 5.0, 0.0],
+    "hub": [40.0, 110.0, np.nan],
+    "tip": [60.0, 180.0, 90.0],
+    "scheme": ["a", "b", "b"],
+}
+
+
+def test_towers_are_those_of_the_program(scene, run_program, folder):
+    columns = list(TOWERS.values())
+    rows = ["" if value != value else str(value) for row in zip(*columns, strict=True) for value in row]
+    lines = [",".join(rows[i : i + len(columns)]) for i in range(0, len(rows), len(columns))]
+    (folder / "towers.csv").write_text("\n".join([",".join(TOWERS), *lines]) + "\n")
+    run_program(
+        *("towers", "tile.laz", "--towers", "towers.csv", "--cell", 8, "-o", "towers.tif", "--measures", "towers"),
+    )
+    with pytest.warns(belvedere.BelvedereWarning, match="beyond the cloud"):
+        rasters = scene.towers(TOWERS, cell=8)
+    assert {path.stem for path in (folder / "towers").iterdir()} == set(rasters)
+    for measure, raster in rasters.items():
+        with rasterio.open(folder / "towers" / f"{measure}.tif") as file:
+            theirs = file.read(1)
+            expected = np.where(theirs == file.nodata, np.nan, theirs) if theirs.dtype == np.float32 else theirs
+        assert np.array_equal(raster.values, expected, equal_nan=True), measure
+    metres, share = rasters["metres"].values, rasters["share"].values
+    known = np.isfinite(metres)
+    assert known.sum() > 20 and np.allclose(metres[known], 330 * share[known], atol=1e-3)
+    assert (rasters["schemes"].values[known] <= 3).all() and (rasters["hubs"].values[known] <= 2).all()
+
+
+def test_a_tower_above_an_eye_in_the_air_is_seen_whole(scene):
+    # nothing stands between two places high above the town
+    seen = scene.towers({"x": [155030.0], "y": [463000.0], "base": [80.0], "tip": [50.0]}, targets=[(154980, 463000, 90)])
+    assert seen["metres"] == pytest.approx([50.0]) and seen["nearest_m"] == pytest.approx([50.0])
+    angle = np.degrees(np.arctan2(40, 50) + np.arctan2(10, 50))
+    assert seen["angle_deg"] == pytest.approx([angle], abs=1e-3)
