@@ -91,6 +91,25 @@ fn reports_and_calendars_refuse_what_they_cannot_do() {
     place.refusal(2, &format!("sun-calendar {HOUSE} --windows windows.csv -o c.csv"), &["--date"]);
     place.refusal(2, &format!("sun-calendar {HOUSE} --date 2026-03-21 -o c.csv"), &["--windows"]);
     place.refusal(2, &format!("sun-calendar {HOUSE} --windows windows.csv --date 2026-03-21 -o c.txt"), &["extension"]);
+    let [x, y, z] = at(0.0, 9.0, 1.5);
+    for (row, words) in [
+        (format!("{},{y},{z},180", x + 5000.0), "all outside of the cloud"),
+        (format!("{x},{y},{z},999"), "azimuth of 999 degrees"),
+        (format!("\"{x},5\",{y},{z},180"), "decimal points"),
+    ] {
+        place.write("odd.csv", format!("x,y,z,azimuth\n{row}\n"));
+        for command in ["report", "sun-calendar --date 2026-03-21"] {
+            let (command, more) = command.split_once(' ').unwrap_or((command, ""));
+            let output = if command == "report" { "r.html" } else { "c.csv" };
+            let run = place.run(&format!("{command} {HOUSE} --windows odd.csv {more} -o {output}"));
+            assert!(run.status > 0 && run.stderr.contains(words), "{command} {row}: {}", run.stderr);
+        }
+    }
+    // one of two windows outside counts nowhere
+    place.write("odd.csv", format!("x,y,z,azimuth\n{x},{y},{z},180\n{},{y},{z},180\n", x + 5000.0));
+    let run = place.run(&format!("report {HOUSE} --windows odd.csv --rule 2@03-21 --year 2026 -o one.html"));
+    assert!(run.stdout.contains("Windows that meet the rule: 1 of 1"), "{}", run.stdout);
+    assert!(run.stdout.contains("Window 2: outside the survey, no answer."), "{}", run.stdout);
     let line = corners(&[[-6.0, 8.0], [6.0, 8.0]]);
     place.refusal_with(1, &format!("report {HOUSE} -o r.html"), &["--area", &line], &["area"]);
     assert!(!place.path("r.html").exists() && !place.path("c.csv").exists());
