@@ -1,18 +1,14 @@
 //! The points of a block and its margin, in an order that follows from their positions.
 
-use super::edges::Outline;
-use super::ridges::RidgeLine;
-use super::roof_planes::Roofs;
-use super::walls::WallLine;
-use super::{
-    BLOCK, BuildingSurfaces, Edge, PlaneParams, PointOnSurface, Ridge, RoofPlane, Surface, SurveyPoints, Wall,
-};
+use super::line::clip;
 use belvedere_data::control::Control;
 use belvedere_data::patches::SurfacePatches;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Attributes, Error, Result};
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
+/// Side of the blocks in which surfaces are found, metres.
+pub(super) const BLOCK: f64 = 64.0;
 /// Side of the cells in which points of a block are looked up, metres.
 const CELL: f64 = 2.0;
 /// Class of points on the ground.
@@ -21,6 +17,20 @@ const GROUND: u8 = 2;
 const DECKS: [u8; 2] = [17, 26];
 /// Minimum upward part of the direction to a scanner that flies, as a share.
 const MIN_UP: f64 = 0.3;
+
+/// The points that surfaces are found in. Columns have a row for each point.
+#[derive(Clone, Copy)]
+pub struct SurveyPoints<'a> {
+    /// Measured positions, (N, 3) local metres.
+    pub positions: &'a [[f32; 3]],
+    /// The scanner at each point, (N, 3) local metres, NaN where unknown.
+    pub scanner: &'a [[f32; 3]],
+    /// Return numbers are used where present. Points of class 6 lie on buildings; where there are none, single returns
+    /// of classes 0 and 1 may, if there are points of class 2 below them. Without classes nothing is found.
+    pub attributes: &'a Attributes,
+    /// Origin of the local positions in the reference system, metres.
+    pub origin: [f64; 3],
+}
 
 /// A return as surfaces need it, metres from the corner of the block.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,7 +135,7 @@ pub(super) struct BlockRows {
 }
 
 /// The blocks that hold building points, with their rows.
-pub(super) fn blocks(survey: &SurveyPoints<'_>, params: &PlaneParams, control: &Control<'_>) -> Result<Vec<BlockRows>> {
+pub(super) fn blocks(survey: &SurveyPoints<'_>, margin: f64, control: &Control<'_>) -> Result<Vec<BlockRows>> {
     let expected = survey.positions.len();
     if survey.scanner.len() != expected {
         return Err(Error::LengthMismatch { what: "scanner positions", expected, found: survey.scanner.len() });
@@ -144,8 +154,8 @@ pub(super) fn blocks(survey: &SurveyPoints<'_>, params: &PlaneParams, control: &
         let is_wanted = may_be_building || (is_structure(survey, row) && returns(survey, row) <= 1);
         let [x, y] = [0, 1].map(|axis| f64::from(p[axis]) + survey.origin[axis]);
         let own = [number(x), number(y)];
-        for column in number(x - params.margin)..=number(x + params.margin) {
-            for line in number(y - params.margin)..=number(y + params.margin) {
+        for column in number(x - margin)..=number(x + margin) {
+            for line in number(y - margin)..=number(y + margin) {
                 let (holds, rows) = rows_of.entry([column, line]).or_default();
                 *holds |= is_wanted && own == [column, line];
                 rows.push(short);
@@ -334,8 +344,18 @@ impl Block {
         std::array::from_fn(|i| p[i] + self.corner[i])
     }
 
+    /// The part of a convex polygon in plan within the block.
+    pub(super) fn clipped(&self, polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let mut polygon = polygon.to_vec();
+        for axis in 0..2 {
+            polygon = clip(&polygon, |p| -p[axis]);
+            polygon = clip(&polygon, |p| p[axis] - BLOCK);
+        }
+        polygon
+    }
+
     /// The piece of a line in plan within the block, as ranges from 0 to 1 between two points; `None` outside.
-    fn piece(&self, [a, b]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
+    pub(super) fn piece(&self, [a, b]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
         let mut range = [0.0_f64, 1.0_f64];
         for axis in 0..2 {
             let step = b[axis] - a[axis];
@@ -350,100 +370,6 @@ impl Block {
             range = [range[0].max(s.min(t)), range[1].min(s.max(t))];
         }
         (range[0] < range[1]).then_some(range)
-    }
-
-    /// Gives out planes, edges, ridges and walls as far as they lie in the block.
-    pub(super) fn append_to(
-        &self,
-        roofs: &Roofs,
-        ridges: &[RidgeLine],
-        outlines: &[Outline],
-        walls: &[WallLine],
-        found: &mut BuildingSurfaces,
-    ) {
-        let mut row_of = vec![usize::MAX; roofs.planes.len()];
-        for (number, roof) in roofs.planes.iter().enumerate() {
-            let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-            let mut is_here = false;
-            for &row in &roof.rows {
-                let p = roofs.points[row as usize];
-                is_here |= self.holds([p[0], p[1]]);
-                for axis in 0..3 {
-                    bounds[0][axis] = bounds[0][axis].min(p[axis]);
-                    bounds[1][axis] = bounds[1][axis].max(p[axis]);
-                }
-            }
-            if is_here {
-                row_of[number] = found.outlines.planes.len();
-                let returns = roof.rows.iter().map(|&row| roofs.return_of[row as usize] as usize);
-                self.give_points(returns, Surface::Roof(found.outlines.planes.len()), found);
-                found.outlines.planes.push(RoofPlane {
-                    normal: roof.plane.normal,
-                    center: self.local(roof.center),
-                    bounds: bounds.map(|corner| self.local(corner)),
-                    count: roof.rows.len(),
-                    noise: roof.plane.noise,
-                    sd: roof.sd(),
-                });
-            }
-        }
-        let lifted = |plane: usize, [a, b]: [[f64; 2]; 2], [from, to]: [f64; 2]| {
-            [from, to].map(|share| {
-                let p = [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
-                self.local([p[0], p[1], roofs.planes[plane].plane.height(p)])
-            })
-        };
-        let mut edge_row: BTreeMap<(usize, usize), usize> = BTreeMap::new();
-        for (plane, outline) in outlines.iter().enumerate() {
-            for (number, edge) in outline.edges.iter().enumerate() {
-                let ends = edge.line.end_points();
-                let Some(range) = self.piece(ends).filter(|_| row_of[plane] != usize::MAX) else { continue };
-                edge_row.insert((plane, number), found.outlines.edges.len());
-                found.outlines.edges.push(Edge {
-                    ends: lifted(plane, ends, range),
-                    plane: row_of[plane],
-                    sd: edge.sd,
-                    count: edge.count,
-                    drop: edge.drop,
-                });
-            }
-        }
-        for ridge in ridges {
-            let ends = ridge.line.end_points();
-            let planes = ridge.planes.map(|plane| row_of[plane]);
-            if let Some(range) = self.piece(ends).filter(|_| planes.iter().all(|&row| row != usize::MAX)) {
-                found.outlines.ridges.push(Ridge {
-                    ends: lifted(ridge.planes[0], ends, range),
-                    planes,
-                    is_convex: ridge.is_convex,
-                });
-            }
-        }
-        for wall in walls {
-            let ends = wall.line.end_points();
-            let edge = edge_row.get(&(wall.plane, wall.edge));
-            if let (Some(range), Some(&edge)) = (self.piece(ends), edge) {
-                let ends = lifted(wall.plane, ends, range);
-                let middle = f64::midpoint(ends[0][2], ends[1][2]);
-                self.give_points(wall.rows.iter().copied(), Surface::Wall(found.outlines.walls.len()), found);
-                found.outlines.walls.push(Wall {
-                    ends: ends.map(|p| [p[0], p[1]]),
-                    heights: [wall.bottom, middle],
-                    edge,
-                    count: wall.points.len(),
-                    noise: wall.noise,
-                    sd: wall.sd,
-                    share: wall.share,
-                    eaves: wall.eaves,
-                });
-            }
-        }
-    }
-
-    /// Gives out the returns of the block that lie on a surface.
-    fn give_points(&self, returns: impl Iterator<Item = usize>, surface: Surface, found: &mut BuildingSurfaces) {
-        let here = returns.map(|row| &self.returns[row]).filter(|found| self.holds([found.p[0], found.p[1]]));
-        found.points.extend(here.map(|found| PointOnSurface { row: found.row, surface }));
     }
 }
 

@@ -50,6 +50,18 @@ impl PlanLine {
         self.ends.map(|range| self.at(range, 0.0))
     }
 
+    /// Pieces of about `of` metres that it is cut into.
+    pub(super) fn pieces(&self, of: f64) -> Pieces {
+        let length = self.length();
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "metres of an edge, and saturating"
+        )]
+        let count = ((length / of).ceil().max(1.0) as usize).min(10_000);
+        Pieces { first: self.ends[0], length: length / count as f64, count }
+    }
+
     /// Range on this line at which the other one, without its ends, crosses it; `None` where both run within 15° of
     /// each other.
     pub(super) fn crossing(&self, other: &Self) -> Option<f64> {
@@ -90,6 +102,33 @@ impl PlanLine {
         Some((line, (squares / n).sqrt()))
     }
 }
+
+/// Pieces of equal length of a line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pieces {
+    /// Range at which the first one begins, metres.
+    first: f64,
+    /// Length of each, metres.
+    length: f64,
+    pub(super) count: usize,
+}
+
+impl Pieces {
+    /// Number of the piece of a range.
+    pub(super) fn number(&self, range: f64) -> usize {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the line, and saturating")]
+        let piece = (((range - self.first) / self.length).max(0.0) as usize).min(self.count - 1);
+        piece
+    }
+
+    /// Range at which a piece begins.
+    pub(super) fn start(&self, piece: usize) -> f64 {
+        self.first + piece as f64 * self.length
+    }
+}
+
+/// Area below which a polygon closes nothing, m².
+pub(super) const SLIVER: f64 = 0.005;
 
 /// The part of a convex polygon in plan where `side` is not above zero, of a linear function.
 pub(super) fn clip(polygon: &[[f64; 2]], side: impl Fn([f64; 2]) -> f64) -> Vec<[f64; 2]> {

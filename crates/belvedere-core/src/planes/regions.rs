@@ -1,35 +1,64 @@
 //! Empty space before known surfaces, which balls behind them do not enter.
 
-use super::block::{Block, block_of};
+use super::block::{BLOCK, Block, block_of};
 use super::edges::Outline;
 use super::fit::Plane;
+use super::leaves::Leaf;
 use super::line::PlanLine;
-use super::patches::Leaf;
 use super::roof_planes::Roofs;
-use super::walls::{MIN_EAVES, WallLine};
+use super::walls::WallLine;
 use belvedere_data::Result;
 use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls, NO_TOUCH};
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::{dot, sub, unit};
 use rayon::prelude::*;
 
-/// Distance before a surface at which its region begins, metres: balls stand out over points by as much.
-const MARGIN: f64 = 0.02;
-/// Depth of a region, metres.
-const DEPTH: f64 = 3.0;
-/// Maximum distance before and behind a surface of points whose balls it bounds, metres.
-const BEFORE: f64 = 0.1;
-const BEHIND: f64 = 6.0;
-/// Length of a region beyond the ends of its line, metres.
-const BEYOND: f64 = 0.4;
-/// Maximum height of points above the top of a wall, metres.
-const ABOVE: f64 = 0.5;
-/// Maximum depth of balls of eaves below their roof, metres.
-const EAVES_DEPTH: f64 = 0.15;
-/// Maximum distance beside a piece of a roof of points whose balls it bounds, metres.
-const BESIDE_ROOF: f64 = 3.0;
-/// Side of the cells in which regions are looked up, metres.
-const CELL: f64 = 4.0;
+/// Columns, and rows, of the cells of a block in which regions are looked up.
+const CELLS: usize = 16;
+/// Side of these cells, metres.
+const CELL: f64 = BLOCK / 16.0;
+/// Balls that a thread looks at in one go.
+const CHUNK: usize = 256;
+
+/// Parameters of regions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct RegionParams {
+    /// Distance before a surface at which its region begins, metres. Default 0.02: balls stand out over points by as
+    /// much.
+    pub(super) margin: f64,
+    /// Depth of a region, metres. Default 3.
+    pub(super) depth: f64,
+    /// Maximum distance before a surface of points whose balls it bounds, metres. Default 0.1.
+    pub(super) before: f64,
+    /// Maximum distance behind a surface of points whose balls it bounds, metres. Default 6.
+    pub(super) behind: f64,
+    /// Length of a region beyond the ends of its line, metres. Default 0.4.
+    pub(super) beyond: f64,
+    /// Maximum height of points above the top of a wall, metres. Default 0.5.
+    pub(super) above: f64,
+    /// Maximum depth of balls of eaves below their roof, metres. Default 0.15.
+    pub(super) eaves_depth: f64,
+    /// Maximum distance beside a piece of a roof of points whose balls it bounds, metres. Default 3.
+    pub(super) beside_roof: f64,
+    /// Minimum radius of a capped ball, metres. Default 0.01: smaller ones block nothing that patches do not.
+    pub(super) min_radius: f32,
+}
+
+impl Default for RegionParams {
+    fn default() -> Self {
+        Self {
+            margin: 0.02,
+            depth: 3.0,
+            before: 0.1,
+            behind: 6.0,
+            beyond: 0.4,
+            above: 0.5,
+            eaves_depth: 0.15,
+            beside_roof: 3.0,
+            min_radius: 0.01,
+        }
+    }
+}
 
 /// A convex piece of space before a surface.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,8 +80,8 @@ impl Region {
 #[derive(Clone, Debug, PartialEq)]
 enum Surface {
     /// Upright surface on a line, below a plane: its maximum height above that plane, the height of its foot, and the
-    /// distance before it of points of eaves.
-    Upright { line: PlanLine, top: Plane, above: f64, foot: f64, eaves: f64 },
+    /// distance before it of the points of its eaves, if it has some.
+    Upright { line: PlanLine, top: Plane, above: f64, foot: f64, eaves: Option<f64> },
     /// A convex piece of a plane.
     Roof { polygon: Vec<[f64; 2]>, plane: Plane },
 }
@@ -72,6 +101,7 @@ struct BlockRegions {
 pub struct SurfaceRegions {
     /// Origin of local positions in plan.
     origin: [f64; 2],
+    params: RegionParams,
     /// Sorted by number.
     blocks: Vec<BlockRegions>,
 }
@@ -79,6 +109,7 @@ pub struct SurfaceRegions {
 impl SurfaceRegions {
     pub(super) fn append(&mut self, other: Self) {
         self.origin = other.origin;
+        self.params = other.params;
         self.blocks.extend(other.blocks);
     }
 
@@ -93,7 +124,7 @@ impl SurfaceRegions {
     fn regions_that(&self, p: [f32; 3], counts: impl Fn(&Surface, [f64; 3]) -> bool) -> Vec<Region> {
         let number = block_of(p, self.origin);
         let Ok(place) = self.blocks.binary_search_by_key(&number, |block| block.number) else { return Vec::new() };
-        self.blocks[place].regions(p.map(f64::from), counts)
+        self.blocks[place].regions(p.map(f64::from), &self.params, counts)
     }
 
     /// The greatest radius, at most `radius`, of the ball about `center` that keeps the place where it touches its
@@ -112,7 +143,7 @@ impl SurfaceRegions {
         let Some(inward) = unit(sub(c, p)) else { return radius };
         let touch: [f64; 3] = std::array::from_fn(|i| c[i] - most * inward[i]);
         let reaches_out =
-            |surface: &Surface, corner: [f64; 3]| surface.distance_before(sub(c, corner)) + whole > MARGIN;
+            |surface: &Surface, corner: [f64; 3]| surface.distance_before(sub(c, corner)) + whole > self.params.margin;
         for region in self.regions_that(point, reaches_out) {
             let fits = region.half_spaces.iter().map(|&(normal, offset)| {
                 let (apart, away) = (dot(normal, touch) - offset, 1.0 - dot(normal, inward));
@@ -157,22 +188,15 @@ pub fn cap(
     for &(row, center, radius) in &capped {
         balls.centers[row] = center;
         balls.radii[row] = radius;
-        balls.touch[row] = if radius < MIN_RADIUS { NO_TOUCH } else { LIMIT_TOUCH };
+        balls.touch[row] = if radius < regions.params.min_radius { NO_TOUCH } else { LIMIT_TOUCH };
         balls.separation_angles[row] = f32::NAN;
     }
     Ok(capped.len())
 }
 
-/// Minimum radius of a capped ball, metres: smaller ones block nothing that patches do not.
-const MIN_RADIUS: f32 = 0.01;
-/// Balls that a thread looks at in one go.
-const CHUNK: usize = 256;
-
-const CELLS: usize = 16;
-
 impl BlockRegions {
     /// The regions of a point, local metres, before surfaces that count.
-    fn regions(&self, p: [f64; 3], counts: impl Fn(&Surface, [f64; 3]) -> bool) -> Vec<Region> {
+    fn regions(&self, p: [f64; 3], params: &RegionParams, counts: impl Fn(&Surface, [f64; 3]) -> bool) -> Vec<Region> {
         let p = sub(p, self.corner);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturating, within the block")]
         let [column, row] = [0, 1].map(|axis| ((p[axis] / CELL) as usize).min(CELLS - 1));
@@ -180,7 +204,7 @@ impl BlockRegions {
         let surfaces = near.filter_map(|&number| self.surfaces.get(number as usize));
         let mut found: Vec<Region> = surfaces
             .filter(|surface| counts(surface, self.corner))
-            .filter_map(|surface| surface.region_of(p))
+            .filter_map(|surface| surface.region_of(p, params))
             .collect();
         for (normal, offset) in found.iter_mut().flat_map(|region| &mut region.half_spaces) {
             *offset += dot(*normal, self.corner);
@@ -199,10 +223,10 @@ impl Surface {
     }
 
     /// Box in plan of the points whose balls it may bound.
-    fn bounds(&self) -> [[f64; 2]; 2] {
+    fn bounds(&self, params: &RegionParams) -> [[f64; 2]; 2] {
         let (points, about): (Vec<[f64; 2]>, f64) = match self {
-            Self::Upright { line, .. } => (line.end_points().to_vec(), BEHIND),
-            Self::Roof { polygon, .. } => (polygon.clone(), BESIDE_ROOF),
+            Self::Upright { line, .. } => (line.end_points().to_vec(), params.behind),
+            Self::Roof { polygon, .. } => (polygon.clone(), params.beside_roof),
         };
         let low = [0, 1].map(|axis| points.iter().map(|p| p[axis]).fold(f64::INFINITY, f64::min) - about);
         let high = [0, 1].map(|axis| points.iter().map(|p| p[axis]).fold(f64::NEG_INFINITY, f64::max) + about);
@@ -210,18 +234,20 @@ impl Surface {
     }
 
     /// The region that the ball of a point does not reach into.
-    fn region_of(&self, p: [f64; 3]) -> Option<Region> {
+    fn region_of(&self, p: [f64; 3], params: &RegionParams) -> Option<Region> {
+        let &RegionParams { margin, depth, before, behind, beyond, above: max_above, eaves_depth, .. } = params;
         let plan = |[x, y]: [f64; 2]| [x, y, 0.0];
         match self {
             Self::Upright { line, top, above, foot, eaves } => {
                 let [t, d] = line.of([p[0], p[1]]);
-                let [from, to] = [line.ends[0] - BEYOND, line.ends[1] + BEYOND];
-                let is_of_eaves = *eaves > MIN_EAVES && d <= eaves + EAVES_DEPTH && top.distance_above(p).abs() < 0.3;
+                let [from, to] = [line.ends[0] - beyond, line.ends[1] + beyond];
+                let is_of_eaves =
+                    eaves.is_some_and(|eaves| d <= eaves + eaves_depth && top.distance_above(p).abs() < 0.3);
                 if !(from..=to).contains(&t)
-                    || d < -BEHIND
-                    || (d > BEFORE && !is_of_eaves)
-                    || top.distance_above(p) > above.max(ABOVE)
-                    || p[2] < foot - ABOVE
+                    || d < -behind
+                    || (d > before && !is_of_eaves)
+                    || top.distance_above(p) > above.max(max_above)
+                    || p[2] < foot - max_above
                 {
                     return None;
                 }
@@ -230,8 +256,8 @@ impl Surface {
                 let at = |t: f64, d: f64| plan(line.at(t, d));
                 Some(Region {
                     half_spaces: vec![
-                        (opposite(outward), -dot(outward, at(0.0, MARGIN))),
-                        (outward, dot(outward, at(0.0, DEPTH))),
+                        (opposite(outward), -dot(outward, at(0.0, margin))),
+                        (outward, dot(outward, at(0.0, depth))),
                         (opposite(along), -dot(along, at(from, 0.0))),
                         (along, dot(along, at(to, 0.0))),
                         (top.normal, top.offset + above),
@@ -241,7 +267,7 @@ impl Surface {
             }
             Self::Roof { polygon, plane } => {
                 let above = plane.distance_above(p);
-                if !(-BEHIND..=BEFORE).contains(&above) {
+                if !(-behind..=before).contains(&above) {
                     return None;
                 }
                 let mut half_spaces = Vec::with_capacity(polygon.len() + 2);
@@ -253,13 +279,13 @@ impl Surface {
                         continue;
                     }
                     let out = [y / length, -x / length, 0.0];
-                    if dot(out, p) - dot(out, plan(a)) > BESIDE_ROOF {
+                    if dot(out, p) - dot(out, plan(a)) > params.beside_roof {
                         return None;
                     }
                     half_spaces.push((out, dot(out, plan(a))));
                 }
-                half_spaces.push((plane.normal.map(|v| -v), -(plane.offset + MARGIN)));
-                half_spaces.push((plane.normal, plane.offset + DEPTH));
+                half_spaces.push((plane.normal.map(|v| -v), -(plane.offset + margin)));
+                half_spaces.push((plane.normal, plane.offset + depth));
                 Some(Region { half_spaces })
             }
         }
@@ -273,15 +299,16 @@ pub(super) fn of_block(
     outlines: &[Outline],
     walls: &[WallLine],
     leaves: &[Leaf],
+    params: &RegionParams,
 ) -> SurfaceRegions {
     let mut surfaces = Vec::new();
     for (plane, outline) in outlines.iter().enumerate() {
-        for edge in outline.edges.iter().filter(|edge| edge.is_sure) {
+        for edge in outline.sure_edges() {
             let top = roofs.planes[plane].plane;
             let middle = edge.line.at(f64::midpoint(edge.line.ends[0], edge.line.ends[1]), 0.0);
-            let foot = top.height(middle) - edge.drop - ABOVE;
-            let above = edge.parapet.height + ABOVE;
-            surfaces.push(Surface::Upright { line: edge.line, top, above, foot, eaves: 0.0 });
+            let foot = top.height(middle) - edge.drop - params.above;
+            let above = edge.parapet.height + params.above;
+            surfaces.push(Surface::Upright { line: edge.line, top, above, foot, eaves: None });
         }
     }
     for wall in walls {
@@ -291,9 +318,10 @@ pub(super) fn of_block(
         }
         let top = roofs.planes[wall.plane].plane;
         let middle = edge.line.at(f64::midpoint(edge.line.ends[0], edge.line.ends[1]), 0.0);
-        let foot = wall.bottom.min(top.height(middle) - edge.drop) - ABOVE;
-        let above = if wall.eaves > MIN_EAVES { -EAVES_DEPTH } else { edge.parapet.height + ABOVE };
-        surfaces.push(Surface::Upright { line: wall.line, top, above, foot, eaves: wall.eaves });
+        let foot = wall.bottom.min(top.height(middle) - edge.drop) - params.above;
+        let above = if wall.has_eaves { -params.eaves_depth } else { edge.parapet.height + params.above };
+        let eaves = wall.has_eaves.then_some(wall.eaves);
+        surfaces.push(Surface::Upright { line: wall.line, top, above, foot, eaves });
     }
     for leaf in leaves.iter().filter(|leaf| leaf.is_whole) {
         let plane = roofs.planes[leaf.plane].plane;
@@ -301,7 +329,7 @@ pub(super) fn of_block(
     }
     let mut cells = vec![Vec::new(); CELLS * CELLS];
     for (number, surface) in surfaces.iter().enumerate() {
-        let [low, high] = surface.bounds();
+        let [low, high] = surface.bounds(params);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the block")]
         let cell = |v: f64| (v / CELL).clamp(0.0, CELLS as f64) as usize;
         for row in cell(low[1])..(cell(high[1]) + 1).min(CELLS) {
@@ -313,6 +341,7 @@ pub(super) fn of_block(
     let origin = [0, 1].map(|axis| block.origin[axis]);
     SurfaceRegions {
         origin,
+        params: *params,
         blocks: vec![BlockRegions { number: block.number, corner: block.corner, surfaces, cells }],
     }
 }

@@ -1,17 +1,28 @@
 //! Ridges, hips and valleys: lines in which two planes of a roof meet.
 
-use super::block::Block;
 use super::line::PlanLine;
-use super::roof_planes::{MIN_PAIRS, NONE, Roofs};
+use super::roof_planes::Roofs;
 use belvedere_data::vector::{cross, dot};
 use std::collections::BTreeMap;
 
-/// Cosine of the angle below which two planes have a line of their own: 8°.
-const APART: f64 = 0.990;
-/// Maximum distance of neighbours from the line, on both sides of it, spacings.
-const NEAR_SPACINGS: f64 = 1.2;
-/// Distance from the line within which points show whether it is convex, metres.
-const SIDE: f64 = 3.0;
+/// Parameters of ridges.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct RidgeParams {
+    /// Minimum number of pairs of neighbours on both planes. Default 4.
+    pub(super) min_pairs: usize,
+    /// Cosine of the angle below which two planes have a line of their own. Default 0.99, 8°.
+    pub(super) max_cosine: f64,
+    /// Maximum distance of neighbours from the line, on both sides of it, spacings. Default 1.2.
+    pub(super) near_spacings: f64,
+    /// Distance from the line within which points show whether it is convex, metres. Default 3.
+    pub(super) side: f64,
+}
+
+impl Default for RidgeParams {
+    fn default() -> Self {
+        Self { min_pairs: 4, max_cosine: 0.990, near_spacings: 1.2, side: 3.0 }
+    }
+}
 
 /// A line in which two planes meet, in plan.
 #[derive(Clone, Debug)]
@@ -22,25 +33,26 @@ pub(super) struct RidgeLine {
 }
 
 /// The lines in which planes that touch meet.
-pub(super) fn find(_block: &Block, roofs: &Roofs) -> Vec<RidgeLine> {
+pub(super) fn find(roofs: &Roofs, params: &RidgeParams) -> Vec<RidgeLine> {
     let mut pairs: BTreeMap<[u32; 2], Vec<[f64; 2]>> = BTreeMap::new();
     for (row, near) in roofs.neighbors.iter().enumerate() {
-        let a = roofs.plane_of[row];
-        for &near in near.iter().take_while(|&&near| near != NONE) {
-            let b = roofs.plane_of[near as usize];
-            if a < b && b != NONE {
+        let Some(a) = roofs.plane_of[row] else { continue };
+        for &near in near {
+            if let Some(b) = roofs.plane_of[near as usize].filter(|&b| a < b) {
                 let (p, q) = (roofs.points[row], roofs.points[near as usize]);
                 pairs.entry([a, b]).or_default().push([0, 1].map(|i| f64::midpoint(p[i], q[i])));
             }
         }
     }
-    pairs.into_iter().filter_map(|(planes, middles)| ridge(roofs, planes.map(|p| p as usize), &middles)).collect()
+    let found =
+        |(planes, middles): ([u32; 2], Vec<[f64; 2]>)| ridge(roofs, planes.map(|p| p as usize), &middles, params);
+    pairs.into_iter().filter_map(found).collect()
 }
 
 /// The line in which two planes meet, if enough neighbours on both lie about it.
-fn ridge(roofs: &Roofs, planes: [usize; 2], middles: &[[f64; 2]]) -> Option<RidgeLine> {
+fn ridge(roofs: &Roofs, planes: [usize; 2], middles: &[[f64; 2]], params: &RidgeParams) -> Option<RidgeLine> {
     let [a, b] = planes.map(|plane| &roofs.planes[plane]);
-    if middles.len() < MIN_PAIRS || a.plane.cosine(&b.plane) > APART {
+    if middles.len() < params.min_pairs || a.plane.cosine(&b.plane) > params.max_cosine {
         return None;
     }
     let way = cross(a.plane.normal, b.plane.normal);
@@ -60,7 +72,7 @@ fn ridge(roofs: &Roofs, planes: [usize; 2], middles: &[[f64; 2]]) -> Option<Ridg
     let step = -difference(from) / slope;
     let point = [from[0] + step * across[0], from[1] + step * across[1]];
     let mut line = PlanLine { point, along, ends: [f64::INFINITY, f64::NEG_INFINITY] };
-    let reach = NEAR_SPACINGS * a.spacing.max(b.spacing);
+    let reach = params.near_spacings * a.spacing.max(b.spacing);
     let mut count = 0;
     for &middle in middles {
         let [t, d] = line.of(middle);
@@ -69,15 +81,15 @@ fn ridge(roofs: &Roofs, planes: [usize; 2], middles: &[[f64; 2]]) -> Option<Ridg
             count += 1;
         }
     }
-    if count < MIN_PAIRS || line.length() < a.spacing {
+    if count < params.min_pairs || line.length() < a.spacing {
         return None;
     }
     let below = |own: usize, other: usize| {
         let (mut sum, mut count) = (0.0, 0.0);
         for &row in &roofs.planes[own].rows {
-            let p = roofs.points[row as usize];
+            let p = roofs.points[row];
             let [t, d] = line.of([p[0], p[1]]);
-            if (line.ends[0]..=line.ends[1]).contains(&t) && d.abs() < SIDE {
+            if (line.ends[0]..=line.ends[1]).contains(&t) && d.abs() < params.side {
                 sum += dot(roofs.planes[other].plane.normal, p) - roofs.planes[other].plane.offset;
                 count += 1.0;
             }
@@ -86,4 +98,12 @@ fn ridge(roofs: &Roofs, planes: [usize; 2], middles: &[[f64; 2]]) -> Option<Ridg
     };
     let is_convex = below(planes[0], planes[1]) && below(planes[1], planes[0]);
     Some(RidgeLine { line, planes, is_convex })
+}
+
+/// The convex ridges of a plane, and the planes beyond.
+pub(super) fn convex(ridges: &[RidgeLine], plane: usize) -> impl Iterator<Item = (&RidgeLine, usize)> {
+    ridges
+        .iter()
+        .filter(move |ridge| ridge.is_convex && ridge.planes.contains(&plane))
+        .map(move |ridge| (ridge, if ridge.planes[0] == plane { ridge.planes[1] } else { ridge.planes[0] }))
 }

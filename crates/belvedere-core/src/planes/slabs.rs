@@ -5,10 +5,10 @@
 
 use super::block::{Block, Return};
 use super::fit::Plane;
-use super::line::clip;
-use super::patches::{Leaf, fan};
+use super::leaves::Leaf;
+use super::patches::{Patch, fan};
 use super::roof_planes::Roofs;
-use super::{BLOCK, BuildingSurfaces, PatchKind};
+use belvedere_data::patches::PatchKind;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
@@ -40,6 +40,21 @@ pub struct SlabParams {
     pub open_radius: [f64; 2],
     /// Points that may lie there all the same: posts, goods. Default 1.
     pub max_below: usize,
+    /// Side of the cells of which pulses must run below a share, metres. Default 1.
+    pub(super) cell: f64,
+    /// Length of the steps along a pulse below a slab, metres in plan. Default 0.25.
+    pub(super) step: f64,
+    /// Minimum depth below the top of a slab, beyond its thickness, of points that are no part of it, metres. Default
+    /// 0.2.
+    pub(super) below: f64,
+    /// Maximum height of points of a slab above its plane, metres, if their noise is less. Default 0.1.
+    pub(super) above: f64,
+    /// Share of the points of a plane with the class of bridge decks that makes it a slab without any pulse below it.
+    /// Default 0.5.
+    pub(super) deck_share: f64,
+    /// Gap about a place that never lies below a slab, radians. Default 3.2: hardly more than the π of one below its
+    /// outermost points.
+    pub(super) max_gap: f64,
 }
 
 impl Default for SlabParams {
@@ -54,20 +69,15 @@ impl Default for SlabParams {
             widest_gap: 2.7,
             open_radius: [1.5, 2.8],
             max_below: 1,
+            cell: 1.0,
+            step: 0.25,
+            below: 0.2,
+            above: 0.1,
+            deck_share: 0.5,
+            max_gap: 3.2,
         }
     }
 }
-
-/// Side of the cells of which pulses must run below a share, metres.
-const CELL: f64 = 1.0;
-/// Steps along a pulse below a slab, metres in plan.
-const STEP: f64 = 0.25;
-/// Minimum depth below the top of a slab, beyond its thickness, of points that are no part of it, metres.
-const BELOW: f64 = 0.2;
-/// Maximum height of points of a slab above its plane, metres, if their noise is less.
-const ABOVE: f64 = 0.1;
-/// Share of the points of a plane with the class of bridge decks that makes it a slab without any pulse below it.
-const DECK_SHARE: f64 = 0.5;
 
 /// Flags the planes that are slabs.
 pub(super) fn find(block: &Block, roofs: &Roofs, params: &SlabParams) -> Vec<bool> {
@@ -109,18 +119,18 @@ fn is_slab(block: &Block, roofs: &Roofs, number: usize, params: &SlabParams) -> 
     if roof.plane.normal[2] < params.min_up || roof.plane.noise > params.max_noise {
         return false;
     }
-    let of_rows = || roof.rows.iter().map(|&row| &block.returns[roofs.return_of[row as usize] as usize]);
-    if of_rows().filter(|found| found.is_deck).count() as f64 >= DECK_SHARE * roof.rows.len() as f64 {
+    let of_rows = || roofs.returns_of(roof).map(|row| &block.returns[row]);
+    if of_rows().filter(|found| found.is_deck).count() as f64 >= params.deck_share * roof.rows.len() as f64 {
         return true;
     }
     let [around, open] =
         [params.around, params.open_radius].map(|[metres, spacings]| metres.max(spacings * roof.spacing));
     let own = PlanIndex::new(of_rows().map(|found| found.p), around);
-    let cells: BTreeSet<[i64; 2]> = of_rows().map(|found| cell([found.p[0], found.p[1]], CELL)).collect();
+    let cells: BTreeSet<[i64; 2]> = of_rows().map(|found| cell([found.p[0], found.p[1]], params.cell)).collect();
     let [low, high] = bounds(of_rows());
     let mut walls = Vec::new();
     block.each_in([low[0] - open, low[1] - open], [high[0] + open, high[1] + open], |_, found| {
-        if found.is_solid() && roof.plane.distance_above(found.p) < -params.thickness - BELOW {
+        if found.is_solid() && roof.plane.distance_above(found.p) < -params.thickness - params.below {
             walls.push(found.p);
         }
     });
@@ -132,8 +142,8 @@ fn is_slab(block: &Block, roofs: &Roofs, number: usize, params: &SlabParams) -> 
     let mut proven: BTreeSet<[i64; 2]> = BTreeSet::new();
     let shift = block.max_shift(high[2]);
     block.each_in([low[0] - shift, low[1] - shift], [high[0] + shift, high[1] + shift], |_, pulse| {
-        each_below(&roof.plane, pulse, params.depths, |place| {
-            let at = cell([place[0], place[1]], CELL);
+        each_below(&roof.plane, pulse, params, |place| {
+            let at = cell([place[0], place[1]], params.cell);
             if cells.contains(&at) && !proven.contains(&at) && proves(place) {
                 proven.insert(at);
             }
@@ -153,7 +163,8 @@ fn bounds<'a>(returns: impl Iterator<Item = &'a Return>) -> [[f64; 3]; 2] {
 }
 
 /// Calls `visit` with places along a pulse at these depths below a plane, a step apart.
-fn each_below(plane: &Plane, pulse: &Return, depths: [f64; 2], mut visit: impl FnMut([f64; 3])) {
+fn each_below(plane: &Plane, pulse: &Return, params: &SlabParams, mut visit: impl FnMut([f64; 3])) {
+    let depths = params.depths;
     let [x, y] = pulse.lean;
     // how much nearer to the plane for each metre up
     let nearer = plane.normal[0] * x + plane.normal[1] * y + plane.normal[2];
@@ -164,7 +175,7 @@ fn each_below(plane: &Plane, pulse: &Return, depths: [f64; 2], mut visit: impl F
     let [from, to] = [((depth - depths[1]) / nearer).max(0.0), (depth - depths[0]) / nearer];
     let length = (to - from) * x.hypot(y);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some metres, and saturating")]
-    let steps = (length / STEP).ceil().clamp(1.0, 1000.0) as u32;
+    let steps = (length / params.step).ceil().clamp(1.0, 1000.0) as u32;
     for step in 0..=steps {
         let up = from + (to - from) * f64::from(step) / f64::from(steps);
         visit([pulse.p[0] + up * x, pulse.p[1] + up * y, pulse.p[2] + up]);
@@ -181,11 +192,8 @@ fn is_within(own: &PlanIndex, place: [f64; 3], around: f64, params: &SlabParams)
     let (Some(&first), Some(&last)) = (angles.first(), angles.last()) else { return false };
     let width = angles.windows(2).map(|pair| pair[1] - pair[0]).fold(first + TAU - last, f64::max);
     let between = (TAU - width) / angles.len() as f64;
-    width < WIDEST_OF_ALL && width - 2.0 * between < params.widest_gap
+    width < params.max_gap && width - 2.0 * between < params.widest_gap
 }
-
-/// Gap about a place that never lies below a slab, radians: hardly more than the π of one below its outermost points.
-const WIDEST_OF_ALL: f64 = 3.2;
 
 /// Sheets that close a slab: both, or the underside of one that is closed as a roof already.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -194,49 +202,58 @@ pub(super) enum Sheets {
     Underside,
 }
 
-/// Gives out the sheets of slabs within the block, and the returns that lie on them.
-pub(super) fn append_to(
+/// Slabs as far as they lie in the block.
+pub(super) struct Slabs {
+    /// Triangles of their sheets.
+    pub(super) patches: Vec<Patch>,
+    /// Number of slabs.
+    pub(super) count: usize,
+    /// Rows in the survey of the points on them. A point may occur twice.
+    pub(super) rows: Vec<u32>,
+}
+
+/// Closes slabs within the block.
+pub(super) fn close(
     block: &Block,
-    (roofs, are_slabs): (&Roofs, &[bool]),
+    roofs: &Roofs,
+    are_slabs: &[bool],
     leaves: &[Leaf],
     sheets: Sheets,
     params: &SlabParams,
-    found: &mut BuildingSurfaces,
-) {
-    for leaf in leaves.iter().filter(|leaf| are_slabs[leaf.plane]) {
-        let mut polygon = leaf.polygon.clone();
-        for axis in 0..2 {
-            polygon = clip(&polygon, |p| -p[axis]);
-            polygon = clip(&polygon, |p| p[axis] - BLOCK);
-        }
+) -> Slabs {
+    let sheets_of = |leaf: &Leaf| {
+        let polygon = block.clipped(&leaf.polygon);
         let plane = &roofs.planes[leaf.plane].plane;
         let sheet = |below: f64| polygon.iter().map(move |&[x, y]| [x, y, plane.height([x, y]) - below]);
-        if sheets == Sheets::Both {
-            let top: Vec<[f64; 3]> = sheet(0.0).collect();
-            fan(block, &top, PatchKind::Slab, found);
-        }
+        let top: Vec<[f64; 3]> = if sheets == Sheets::Both { sheet(0.0).collect() } else { Vec::new() };
         // counter-clockwise seen from below
         let underside: Vec<[f64; 3]> = sheet(params.thickness).rev().collect();
-        fan(block, &underside, PatchKind::Slab, found);
-    }
-    for (number, roof) in roofs.planes.iter().enumerate().filter(|(number, _)| are_slabs[*number]) {
-        let mut is_here = false;
-        let own: Vec<&Leaf> = leaves.iter().filter(|leaf| leaf.plane == number).collect();
-        let rows = roof.rows.iter().map(|&row| &block.returns[roofs.return_of[row as usize] as usize]);
-        let [low, high] = bounds(rows);
-        let reach = roof.spacing;
-        block.each_in([0, 1].map(|i| low[i] - reach), [0, 1].map(|i| high[i] + reach), |row, at| {
-            let place = [at.p[0], at.p[1]];
-            let above = roof.plane.distance_above(at.p);
-            let is_near = || {
-                let heights = -params.thickness - BELOW..=ABOVE.max(3.0 * roofs.noise);
-                at.is_solid() && heights.contains(&above) && own.iter().any(|leaf| leaf.holds(place))
-            };
-            if block.holds(place) && (roofs.plane_of_return[row] as usize == number || is_near()) {
-                is_here = true;
-                found.slab_rows.push(at.row);
-            }
-        });
-        found.slabs += usize::from(is_here);
-    }
+        [top, underside].into_iter().flat_map(|corners| fan(block, &corners, PatchKind::Slab))
+    };
+    let patches = leaves.iter().filter(|leaf| are_slabs[leaf.plane]).flat_map(sheets_of).collect();
+    let slabs = (0..roofs.planes.len()).filter(|&number| are_slabs[number]);
+    let rows: Vec<Vec<u32>> = slabs.map(|number| rows_of(block, roofs, number, leaves, params)).collect();
+    Slabs { patches, count: rows.iter().filter(|rows| !rows.is_empty()).count(), rows: rows.concat() }
+}
+
+/// Returns the rows in the survey of the points of the block that lie on a slab.
+fn rows_of(block: &Block, roofs: &Roofs, number: usize, leaves: &[Leaf], params: &SlabParams) -> Vec<u32> {
+    let roof = &roofs.planes[number];
+    let own: Vec<&Leaf> = leaves.iter().filter(|leaf| leaf.plane == number).collect();
+    let [low, high] = bounds(roofs.returns_of(roof).map(|row| &block.returns[row]));
+    let reach = roof.spacing;
+    let mut rows = Vec::new();
+    block.each_in([0, 1].map(|i| low[i] - reach), [0, 1].map(|i| high[i] + reach), |row, at| {
+        let place = [at.p[0], at.p[1]];
+        let above = roof.plane.distance_above(at.p);
+        let is_near = || {
+            let heights = -params.thickness - params.below..=params.above.max(3.0 * roofs.noise);
+            at.is_solid() && heights.contains(&above) && own.iter().any(|leaf| leaf.holds(place))
+        };
+        let is_own = roofs.plane_of_return[row].is_some_and(|plane| plane as usize == number);
+        if block.holds(place) && (is_own || is_near()) {
+            rows.push(at.row);
+        }
+    });
+    rows
 }

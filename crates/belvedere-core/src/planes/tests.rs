@@ -3,6 +3,9 @@
 #![expect(clippy::cast_possible_truncation, reason = "positions of small scenes")]
 
 use super::*;
+use belvedere_data::Attributes;
+use belvedere_data::control::Control;
+use belvedere_data::patches::PatchKind;
 use belvedere_data::random::uniform;
 use belvedere_data::vector::{cross, dot, length, sub};
 
