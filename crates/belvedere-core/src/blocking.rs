@@ -17,7 +17,7 @@
 //! Peters, Ledoux & Biljecki 2015, section 3 (balls that block, and the cone of [`Profile::PaperCone`]). Bias and shell
 //! are this project's.
 
-use belvedere_data::model::FARTHEST;
+use belvedere_data::frame::FARTHEST;
 use belvedere_data::vector::{dot, length, sub, to_f32};
 use belvedere_data::{Error, Parameter, Result};
 

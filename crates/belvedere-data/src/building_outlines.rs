@@ -1,6 +1,6 @@
 //! Planes of roofs, and the lines on which surfaces of buildings end.
 
-use crate::model::{FARTHEST, is_near_f64};
+use crate::frame::{FARTHEST, is_near_f64};
 use crate::polygon::PolygonIndex;
 use crate::vector::{dot, sub};
 use crate::{Error, Parameter, Result};

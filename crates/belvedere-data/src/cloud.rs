@@ -1,9 +1,9 @@
 //! Point clouds: f32 positions relative to an f64 origin, with the attributes a laser file carries as columns.
 
-use crate::vector::to_f32;
 use std::path::PathBuf;
 
 use crate::crs::Crs;
+pub use crate::frame::to_local;
 use crate::frame::{Bounds, Frame};
 use crate::sky_region::SkyRegion;
 use crate::{Error, Parameter, Result};
@@ -287,12 +287,6 @@ impl PointCloud {
         }
         Ok(())
     }
-}
-
-/// `coordinates − origin`, subtracted in f64.
-#[must_use]
-pub fn to_local(coordinates: [f64; 3], origin: [f64; 3]) -> [f32; 3] {
-    std::array::from_fn(|i| to_f32(coordinates[i] - origin[i]))
 }
 
 /// Middle of the bounding box of the finite `coordinates`, rounded to whole metres so that it prints short; zero if

@@ -1,7 +1,27 @@
 //! Frames of local coordinates, and boxes of them.
 
-use crate::cloud::to_local;
 use crate::crs::Crs;
+use crate::vector::to_f32;
+
+/// Maximum distance from the origin of anything in a scene, and maximum radius of a ball, metres. Larger values are
+/// damage: readers leave out points that are 1000 km away, and squares of much larger numbers leave the range of f32.
+pub const FARTHEST: f32 = 1e7;
+
+/// Returns true if a scene can hold a local position.
+pub(crate) fn is_near(position: [f32; 3]) -> bool {
+    position.iter().all(|v| v.abs() <= FARTHEST)
+}
+
+/// [`is_near`] for positions in double precision.
+pub(crate) fn is_near_f64(position: [f64; 3]) -> bool {
+    position.iter().all(|v| v.abs() <= f64::from(FARTHEST))
+}
+
+/// `coordinates − origin`, subtracted in f64.
+#[must_use]
+pub fn to_local(coordinates: [f64; 3], origin: [f64; 3]) -> [f32; 3] {
+    std::array::from_fn(|i| to_f32(coordinates[i] - origin[i]))
+}
 
 /// The local coordinates of a scene: metres, x east, y north, z up, counted from an origin in a reference system.
 ///

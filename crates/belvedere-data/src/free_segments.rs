@@ -1,6 +1,6 @@
 //! Pulses as columns of numbers: the pieces of lines that they prove empty.
 
-use crate::model::{FARTHEST, is_near};
+use crate::frame::{FARTHEST, is_near};
 use crate::{Error, Parameter, Result};
 
 /// Ways that a pulse may go: along three axes, to both sides.

@@ -2,26 +2,12 @@
 
 use crate::balls::MedialBalls;
 use crate::building_outlines::BuildingOutlines;
-use crate::frame::{Bounds, Frame};
+use crate::frame::{Bounds, FARTHEST, Frame, is_near};
 use crate::free_segments::FreeSegmentColumns;
 use crate::medium::ExtinctionVoxels;
 use crate::patches::SurfacePatches;
 use crate::{Error, Parameter, Result};
 use std::collections::BTreeMap;
-
-/// Maximum distance from the origin of anything in a scene, and maximum radius of a ball, metres. Larger values are
-/// damage: readers leave out points that are 1000 km away, and squares of much larger numbers leave the range of f32.
-pub const FARTHEST: f32 = 1e7;
-
-/// Returns true if a scene can hold a local position.
-pub(crate) fn is_near(position: [f32; 3]) -> bool {
-    position.iter().all(|v| v.abs() <= FARTHEST)
-}
-
-/// [`is_near`] for positions in double precision.
-pub(crate) fn is_near_f64(position: [f64; 3]) -> bool {
-    position.iter().all(|v| v.abs() <= f64::from(FARTHEST))
-}
 
 /// The plain data of a scene model: the contents of a ball file.
 ///

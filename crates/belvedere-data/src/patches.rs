@@ -1,6 +1,6 @@
 //! Planar patches of surfaces that are known from the survey better than from single points.
 
-use crate::model::{FARTHEST, is_near};
+use crate::frame::{FARTHEST, is_near};
 use crate::polygon::PolygonIndex;
 use crate::vector::{cross, length, sub, to_f32};
 use crate::{Error, Parameter, Result};

@@ -5,7 +5,7 @@ use crate::device::{Device, DeviceKind};
 use belvedere_core::query::{Ball, BallTree, Viewers};
 use belvedere_core::ray_index::{NODE_WORDS, RayIndex};
 use belvedere_data::control::Control;
-use belvedere_data::model::FARTHEST;
+use belvedere_data::frame::FARTHEST;
 use belvedere_data::vector::{dot, to_f32};
 use belvedere_data::{Error, Result};
 use bytemuck::cast_slice;

@@ -53,7 +53,7 @@ impl std::fmt::Debug for BallTree {
 
 impl BallTree {
     /// Orders `balls` into a tree. Those that are not bounded, or whose centre or radius is beyond
-    /// [`FARTHEST`](belvedere_data::model::FARTHEST), are left out.
+    /// [`FARTHEST`](belvedere_data::frame::FARTHEST), are left out.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] for columns of unequal length, those of

@@ -6,7 +6,7 @@ use crate::blocking::{CONTACT, PATCH_DEPTH, Sheet};
 use crate::ground::MapGrid;
 use crate::ray_index::{Ray, RayIndex};
 use crate::triangle_tree::{Corners, TriangleTree};
-use belvedere_data::model::FARTHEST;
+use belvedere_data::frame::FARTHEST;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::{cross, dot, sub, to_f32, unit};
 use belvedere_data::{Error, Mesh, Parameter, Result, SurfacePatches};
