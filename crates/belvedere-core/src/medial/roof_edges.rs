@@ -8,7 +8,7 @@ use super::cells::cell;
 use super::kinds::Kind;
 use super::marking_rule::{MarkingRule, Phase};
 use super::marks::{Marks, cuts_of};
-use super::roof_tops::RoofTops;
+use super::roof_tops::{MIN_UP, RoofTops};
 use super::survey::Survey;
 use super::thin_surfaces::{Gap, widest_gap};
 use crate::neighbors::NeighborIndex;
@@ -18,8 +18,6 @@ use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::{dot, sub};
 use rayon::prelude::*;
 
-/// Minimum upward part of the normal of a roof: 60° of slope.
-pub(super) const MIN_UP: f32 = 0.5;
 /// Maximum depth of neighbours below a point of the same roof, metres.
 const SAME_ROOF: f32 = 0.6;
 /// Minimum horizontal distance of neighbours that give a direction, metres: above noise.
@@ -77,7 +75,7 @@ impl MarkingRule for RoofEdgeParams {
 
     fn marks(&self, survey: &Survey<'_>, balls: &MedialBalls, control: &Control<'_>) -> Result<Marks> {
         let edges = RoofEdges::find(survey, self, control)?;
-        let tops = RoofTops::new(survey.oriented, &survey.highest);
+        let tops = RoofTops::new(survey.oriented, &survey.highest, self.penetration, self.min_radius);
         let (positions, normals) = (survey.positions(), survey.oriented.normals());
         let cuts = cuts_of(balls, self.min_radius, control, |row| {
             let (point, normal) = (positions[row], normals[row]);
@@ -88,7 +86,7 @@ impl MarkingRule for RoofEdgeParams {
                 balls.centers[row]
             };
             let is_usable = radius > self.min_radius;
-            if is_usable { tops.radius((center, radius), point[2], normal[2], self) } else { radius }
+            if is_usable { tops.radius(center, radius, point[2], normal[2]) } else { radius }
         })?;
         Ok(Marks { counts: vec![("balls_cut_at_roof_edges", cuts.len())], cuts, ..Marks::default() })
     }

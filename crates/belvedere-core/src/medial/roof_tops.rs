@@ -4,9 +4,11 @@
 //! below it then bulge out of it, as far as the next pulse.
 
 use super::cells::{Cells, cell};
-use super::roof_edges::{MIN_UP, RoofEdgeParams};
 use crate::normals::OrientedCloud;
 use rayon::prelude::*;
+
+/// Minimum upward part of the normal of a roof: 60° of slope.
+pub(super) const MIN_UP: f32 = 0.5;
 
 /// Heights of the highest points in cells of the map.
 pub(super) struct RoofTops<'a> {
@@ -16,30 +18,36 @@ pub(super) struct RoofTops<'a> {
     near: Cells<f32>,
     /// Heights of points on roofs and on level ground.
     level: Cells<f32>,
+    /// Maximum height of a ball above the top of a roof, metres.
+    penetration: f32,
+    /// Radius below which balls are not cut, metres.
+    min_radius: f32,
 }
 
 impl<'a> RoofTops<'a> {
     /// Collects the roof tops of `oriented`; `all` are the heights that [`super::cells::highest`] returns.
-    pub(super) fn new(oriented: &OrientedCloud, all: &'a Cells<f32>) -> Self {
+    pub(super) fn new(oriented: &OrientedCloud, all: &'a Cells<f32>, penetration: f32, min_radius: f32) -> Self {
         let points = oriented.positions().par_iter().zip(oriented.normals());
         let level = points.filter(|(_, normal)| normal[2] >= MIN_UP).map(|(&p, _)| (cell(p), p[2]));
-        Self { all, near: all.with_neighbors(f32::max), level: Cells::new(level.collect(), f32::max) }
+        let level = Cells::new(level.collect(), f32::max);
+        Self { all, near: all.with_neighbors(f32::max), level, penetration, min_radius }
     }
 
     /// Returns the remaining radius of a ball at a point of height `z`, with an outward normal whose upward part is
     /// `up`. A ball is cut where it rises above every point over its whole width. The top of the building is known only
     /// if the highest of these points lies on a roof; other balls are unchanged.
-    pub(super) fn radius(&self, (center, radius): ([f32; 3], f32), z: f32, up: f32, params: &RoofEdgeParams) -> f32 {
-        let top = if up < 1.0 { self.roof_height(center, radius, params.penetration) } else { None };
+    pub(super) fn radius(&self, center: [f32; 3], radius: f32, z: f32, up: f32) -> f32 {
+        let top = if up < 1.0 { self.roof_height(center, radius) } else { None };
         let Some(top) = top else { return radius };
         // the ball of radius r at this point ends r (1 - up) above it
-        let left = (top + params.penetration - z) / (1.0 - up);
-        radius.min(left.max(params.min_radius))
+        let left = (top + self.penetration - z) / (1.0 - up);
+        radius.min(left.max(self.min_radius))
     }
 
     /// Returns the height of the roof over a ball: that of the highest point over its whole width. `None` if the ball
-    /// does not rise above that, or if that point is more than `tolerance` metres above every roof.
-    fn roof_height(&self, center: [f32; 3], radius: f32, tolerance: f32) -> Option<f32> {
+    /// does not rise above that, or if that point is higher above every roof than a ball may be.
+    fn roof_height(&self, center: [f32; 3], radius: f32) -> Option<f32> {
+        let tolerance = self.penetration;
         let is_below = |highest: f32| highest >= center[2] + radius - tolerance;
         // most balls lie below the points about their middle
         if self.near.get(cell(center)).is_some_and(is_below) {
@@ -59,6 +67,9 @@ mod tests {
     use crate::medial::marks::{self, cuts_of};
     use belvedere_data::balls::MedialBalls;
     use belvedere_data::control::Control;
+
+    const PENETRATION: f32 = 0.05;
+    const MIN_RADIUS: f32 = 0.5;
 
     /// A wall from the ground to a height of 9 m, and points 0.25 m apart on the roof behind it from `from` metres
     /// behind it on.
@@ -89,11 +100,11 @@ mod tests {
     }
 
     fn cut(oriented: &OrientedCloud, balls: &mut MedialBalls) -> usize {
-        let (all, params) = (highest(oriented.positions()), RoofEdgeParams::default());
-        let tops = RoofTops::new(oriented, &all);
+        let all = highest(oriented.positions());
+        let tops = RoofTops::new(oriented, &all, PENETRATION, MIN_RADIUS);
         let (positions, normals) = (oriented.positions(), oriented.normals());
-        let cuts = cuts_of(balls, params.min_radius, &Control::none(), |row| {
-            tops.radius((balls.centers[row], balls.radii[row]), positions[row][2], normals[row][2], &params)
+        let cuts = cuts_of(balls, MIN_RADIUS, &Control::none(), |row| {
+            tops.radius(balls.centers[row], balls.radii[row], positions[row][2], normals[row][2])
         })
         .unwrap();
         marks::cut(balls, oriented, &cuts);
@@ -105,10 +116,9 @@ mod tests {
         let oriented = building(4.0);
         let mut found = balls(&oriented);
         assert!(cut(&oriented, &mut found) > 0);
-        let params = RoofEdgeParams::default();
         for (center, radius) in found.centers.iter().zip(&found.radii) {
             // what is no larger than the least radius is not cut
-            let most = if *radius > params.min_radius { 9.0 + params.penetration } else { 9.0 + 2.0 * radius };
+            let most = if *radius > MIN_RADIUS { 9.0 + PENETRATION } else { 9.0 + 2.0 * radius };
             assert!(center[2] + radius < most + 1e-4, "{center:?} {radius}");
         }
     }

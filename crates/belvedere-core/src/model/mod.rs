@@ -32,9 +32,8 @@ pub use findings::{DatedSurvey, SurveyChange, SurveyFindings};
 pub use flight_days::FlightDays;
 pub use params::{BallParams, ModelParams, OrientBy, StripHeights};
 pub use prepare::OrientedSurvey;
-pub use report::{BallsReport, BlockedPulses, BuildReport, NormalsReport, PulsesReport};
+pub use report::{BallsReport, BlockedPulses, BuildReport, NormalsReport, PulsesReport, SurfacesReport};
 pub use statistics::SurveyStatistics;
-pub use surfaces::SurfacesReport;
 pub use terrain::{TerrainReport, check_terrain};
 
 use crate::medial::{MedialBalls, PULSE_TOUCH, vegetation_of_transmission};

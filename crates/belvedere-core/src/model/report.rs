@@ -1,7 +1,6 @@
 //! Report of the stages from a cloud to a scene model.
 
 use super::findings::SurveyFindings;
-use super::surfaces::SurfacesReport;
 use crate::clean::CleanReport;
 use crate::medial::{CarvedReport, ShrinkReport};
 use crate::normals::{OrientReport, Orientation};
@@ -35,6 +34,27 @@ pub struct BuildReport {
     /// Findings about the survey beside these.
     #[serde(skip_serializing_if = "SurveyFindings::is_empty")]
     pub survey: SurveyFindings,
+}
+
+/// Counts of the surfaces of buildings.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct SurfacesReport {
+    /// Planes of roofs, in each block of 64 m that they reach into.
+    pub roof_planes: usize,
+    /// Straight edges of roofs, in pieces that end at blocks.
+    pub roof_edges: usize,
+    /// Ridges, hips and valleys.
+    pub ridges: usize,
+    /// Walls below edges.
+    pub walls: usize,
+    /// Triangles that close all these.
+    pub triangles: usize,
+    /// Balls that are smaller because they reached out of a surface.
+    pub balls_capped: usize,
+    /// Slabs (decks, canopies, balconies, bridges), in each block of 64 m that they reach into.
+    pub slabs: usize,
+    /// Balls left out because two sheets close their slab.
+    pub balls_of_slabs: usize,
 }
 
 /// Report of moving points onto the surface around which they scatter.

@@ -1,34 +1,13 @@
 //! Surfaces of buildings that many points show: patches close them, and balls do not reach out of them.
 
 use super::prepare::{CarvingInput, OrientedSurvey};
+use super::report::SurfacesReport;
 use crate::medial::MedialBalls;
 use crate::planes::{BuildingOutlines, BuildingSurfaces, PlaneParams, SurveyPoints, cap, find};
 use belvedere_data::balls::NO_TOUCH;
 use belvedere_data::control::Control;
 use belvedere_data::patches::SurfacePatches;
 use belvedere_data::{Frame, Result};
-use serde::Serialize;
-
-/// Counts of the surfaces of buildings.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct SurfacesReport {
-    /// Planes of roofs, in each block of 64 m that they reach into.
-    pub roof_planes: usize,
-    /// Straight edges of roofs, in pieces that end at blocks.
-    pub roof_edges: usize,
-    /// Ridges, hips and valleys.
-    pub ridges: usize,
-    /// Walls below edges.
-    pub walls: usize,
-    /// Triangles that close all these.
-    pub triangles: usize,
-    /// Balls that are smaller because they reached out of a surface.
-    pub balls_capped: usize,
-    /// Slabs (decks, canopies, balconies, bridges), in each block of 64 m that they reach into.
-    pub slabs: usize,
-    /// Balls left out because two sheets close their slab.
-    pub balls_of_slabs: usize,
-}
 
 impl OrientedSurvey {
     /// Finds the surfaces of the buildings, with rows of points as in the cloud as it was given. `None` for a survey

@@ -1,10 +1,62 @@
 //! The path of a scanner along a flight line, from estimates for its parts.
 
-use super::scanner_report::FoundBy;
 use belvedere_data::PointCloud;
 use belvedere_data::cloud::to_local;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+
+/// Source of the scanner position of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FoundBy {
+    /// A pose in the file.
+    Pose,
+    /// A position that was given.
+    Position,
+    /// Stations that were given.
+    Station,
+    /// A trajectory that was given.
+    Trajectory,
+    /// Pulses with several returns.
+    Returns,
+    /// Scan angles.
+    ScanAngle,
+    /// A search for the stations of tripods in the points.
+    StationSearch,
+    /// Assumption that pulses fall straight down.
+    Assumed,
+}
+
+impl FoundBy {
+    /// The means in words.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pose => "poses in the file",
+            Self::Position => "the position given",
+            Self::Station => "the stations given",
+            Self::Trajectory => "trajectory",
+            Self::Returns => "pulses with several returns",
+            Self::ScanAngle => "scan angles",
+            Self::StationSearch => "stations found in the data",
+            Self::Assumed => "nothing: pulses are assumed to be vertical",
+        }
+    }
+
+    /// Key of the percentage of points whose scanner it found.
+    pub(super) fn key(self) -> &'static str {
+        match self {
+            Self::Pose => "poses_in_the_file_percent",
+            Self::Position => "position_given_percent",
+            Self::Station => "stations_given_percent",
+            Self::Trajectory => "trajectory_percent",
+            Self::Returns => "pulses_with_several_returns_percent",
+            Self::ScanAngle => "scan_angles_percent",
+            Self::StationSearch => "stations_found_percent",
+            Self::Assumed => "assumed_percent",
+        }
+    }
+}
 
 /// Path of the scanner along a flight line, with the times at which it is known.
 ///

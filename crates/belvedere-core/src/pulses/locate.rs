@@ -8,8 +8,8 @@ use super::flight_parts::{
     AngleVerdict, HeightOffset, PartVerdict, ScanAngleParams, ScanAnglePart, SensorEstimateParams,
 };
 use super::group::{Pulses, group};
-use super::line_path::position_on;
-use super::scanner_report::{FoundBy, FoundStation, ScannerReport};
+use super::line_path::{FoundBy, position_on};
+use super::scanner_report::{FoundStation, ScannerReport};
 use super::time_offset::{TimeOffset, time_offset};
 use super::vertical::{VerticalParams, vertical_pulses};
 use belvedere_data::cloud::to_local;

@@ -33,10 +33,10 @@ pub use free_segments::{FreeSegmentColumns, FreeSegmentParams, FreeSegmentReport
 pub(crate) use free_segments::{GAP_M, come_from_the_ground, lower_ends};
 pub use group::{PulseReport, Pulses, group};
 pub(crate) use line_path::positions_on_paths;
-pub use line_path::{LinePath, Stretch};
+pub use line_path::{FoundBy, LinePath, Stretch};
 pub use locate::{LocateParams, Means, locate};
 pub use path_samples::path_samples;
-pub use scanner_report::{FlightLine, FoundBy, FoundStation, ScannerReport, TypicalFlight};
+pub use scanner_report::{FlightLine, FoundStation, ScannerReport, TypicalFlight};
 pub use sensor_positions::{SensorPositions, SensorReport};
 pub use time_offset::TimeOffset;
 pub(crate) use vertical::MIN_ASSUMED_SHARE;

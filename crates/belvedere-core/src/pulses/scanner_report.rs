@@ -2,65 +2,12 @@
 
 use super::flight_parts::{HeightOffset, ScanAnglePart, SensorPart};
 use super::group::PulseReport;
-use super::line_path::LinePath;
+use super::line_path::{FoundBy, LinePath};
 use super::time_offset::TimeOffset;
 use belvedere_data::report::{percent, rounded};
 use belvedere_data::trajectory::ClockOffset;
-use serde::{Deserialize, Serialize, Serializer, ser::SerializeMap};
+use serde::{Serialize, Serializer, ser::SerializeMap};
 use std::collections::BTreeMap;
-
-/// Source of the scanner position of a point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum FoundBy {
-    /// A pose in the file.
-    Pose,
-    /// A position that was given.
-    Position,
-    /// Stations that were given.
-    Station,
-    /// A trajectory that was given.
-    Trajectory,
-    /// Pulses with several returns.
-    Returns,
-    /// Scan angles.
-    ScanAngle,
-    /// A search for the stations of tripods in the points.
-    StationSearch,
-    /// Assumption that pulses fall straight down.
-    Assumed,
-}
-
-impl FoundBy {
-    /// The means in words.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Pose => "poses in the file",
-            Self::Position => "the position given",
-            Self::Station => "the stations given",
-            Self::Trajectory => "trajectory",
-            Self::Returns => "pulses with several returns",
-            Self::ScanAngle => "scan angles",
-            Self::StationSearch => "stations found in the data",
-            Self::Assumed => "nothing: pulses are assumed to be vertical",
-        }
-    }
-
-    /// Key of the percentage of points whose scanner it found.
-    fn key(self) -> &'static str {
-        match self {
-            Self::Pose => "poses_in_the_file_percent",
-            Self::Position => "position_given_percent",
-            Self::Station => "stations_given_percent",
-            Self::Trajectory => "trajectory_percent",
-            Self::Returns => "pulses_with_several_returns_percent",
-            Self::ScanAngle => "scan_angles_percent",
-            Self::StationSearch => "stations_found_percent",
-            Self::Assumed => "assumed_percent",
-        }
-    }
-}
 
 /// Report of [`locate`](super::locate).
 ///

@@ -25,10 +25,25 @@ use crate::ray_index::Ray;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
 use rayon::prelude::*;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+use simd128::BeamSimd128 as BeamPlain;
 use sweep::TreeSweep;
+
+/// Scalar kernels for machines without AVX2.
+#[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
+type BeamPlain = lanes::BeamScalar<false>;
 
 /// Targets of a subtree that one thread answers.
 const SHARE: usize = 4096;
+
+/// Calls `visit` with the places of the targets below `node` that no ball blocks.
+fn search(sweep: &TreeSweep<'_>, node: usize, visit: &mut impl FnMut(usize)) {
+    #[cfg(target_arch = "x86_64")]
+    if avx2::search(sweep, node, visit) {
+        return;
+    }
+    sweep.search::<BeamPlain>(node, visit);
+}
 
 impl MedialScene {
     /// Returns the answer for each target, in the order given. Answers equal those of [`super::Visibility::visible`],
@@ -61,7 +76,7 @@ impl MedialScene {
                             *seen = self.sees(viewer, targets.positions()[place], settled.line(place, 0));
                         }
                     }
-                    None => sweep.run(subtree, &mut |place| seen[place - first] = true),
+                    None => search(&sweep, subtree, &mut |place| seen[place - first] = true),
                 }
                 places
                     .map(|place| {
@@ -99,7 +114,7 @@ impl MedialScene {
     ) -> Result<()> {
         let sweep = TreeSweep::new(self, viewer, targets, control)?;
         if !targets.nodes.is_empty() && !is_eye_outside(self, viewer) {
-            sweep.run(0, &mut |place| {
+            search(&sweep, 0, &mut |place| {
                 if !self.is_hidden_otherwise(viewer, targets.positions()[place]) {
                     visit(place);
                 }

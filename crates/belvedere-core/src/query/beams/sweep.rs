@@ -2,11 +2,7 @@
 
 use super::beam::{Apex, Beam};
 use super::blockers::{BallBlock, BeamBlock, Blocks, IndexNode, LANES, NodeBlock};
-#[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
-use super::lanes::BeamScalar;
 use super::lanes::{HalfLine, Kernels, LaneBits, LaneColumns};
-#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-use super::simd128::BeamSimd128 as BeamPlain;
 use crate::blocking::{Ball, Profile};
 use crate::query::target_tree::{LEAF, TargetNode, TargetTree};
 use crate::query::{MedialScene, Viewer};
@@ -15,10 +11,6 @@ use belvedere_data::control::Control;
 use belvedere_data::vector::{dot, sub, to_f32};
 use belvedere_data::{Error, Result};
 use std::ops::Range;
-
-/// Scalar kernels for machines without AVX2.
-#[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
-type BeamPlain = BeamScalar<false>;
 
 /// Maximum rounding error of f32 in the test of a beam, as a share of the largest coordinate: a dozen roundings of
 /// 6e-8, fewer where products are fused. Sides of boxes are rounded twice more; boxes are padded by at least as much
@@ -89,16 +81,7 @@ impl<'a> TreeSweep<'a> {
         })
     }
 
-    /// Calls `visit` with the places of the targets below `node` that no ball blocks.
-    pub(super) fn run(&self, node: usize, visit: &mut impl FnMut(usize)) {
-        #[cfg(target_arch = "x86_64")]
-        if super::avx2::search(self, node, visit) {
-            return;
-        }
-        self.search::<BeamPlain>(node, visit);
-    }
-
-    /// Calls `visit` as [`TreeSweep::run`] does, with the kernels `K`. All that it calls is inlined, so that it can be
+    /// Calls `visit` with the places of the targets below `node` that no ball blocks, with the kernels `K`. All that it calls is inlined, so that it can be
     /// compiled for other instructions.
     #[inline(always)]
     pub(super) fn search<K: Kernels>(&self, node: usize, visit: &mut impl FnMut(usize)) {
