@@ -1,6 +1,5 @@
 //! Points and bounds that a hierarchy or a catalogue announces for a file, against the header of the file.
 
-use super::las::are_given;
 use super::las_header::LasHeader;
 use belvedere_data::contradiction::{ANNOUNCED_BOUNDS, ANNOUNCED_POINTS, FoundContradiction};
 
@@ -66,6 +65,11 @@ impl Announced {
         }
         found
     }
+}
+
+/// Returns true if the bounds of a header are set.
+pub(super) fn are_given(bounds: &[[f64; 2]; 3]) -> bool {
+    bounds.iter().all(|[low, high]| low <= high) && bounds.as_flattened().iter().any(|&v| v != 0.0)
 }
 
 impl LasHeader {

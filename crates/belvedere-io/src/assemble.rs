@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::file_part::{Coordinates, FilePart, unquantise};
+use super::coordinates::{Coordinates, unquantise};
+use super::file_part::FilePart;
 use super::read_options::{DistantFiles, ReadOptions, RowNumbers};
 use super::read_report::ReadReport;
 use belvedere_data::Frame;

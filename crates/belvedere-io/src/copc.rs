@@ -14,7 +14,7 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::las_header::{COPC, LasHeader};
-use super::laz;
+use super::laz::{self, ChunkPlace};
 use super::octree::OctreeCube;
 use super::read_options::FileBox;
 use super::source::{SourceReader, web_address};
@@ -26,14 +26,6 @@ const ENTRY_BYTES: u64 = 32;
 const SMALL_HIERARCHY: u64 = 1 << 18;
 /// Maximum distance of points outside the cell of their node, in steps of the coordinates: the rounding of writers.
 const ROOM_STEPS: f64 = 10.0;
-
-/// Position of a chunk in its file, as stated there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct ChunkPlace {
-    pub(super) start: u64,
-    pub(super) bytes: u64,
-    pub(super) points: u64,
-}
 
 /// The octree of a file.
 struct CopcOctree {

@@ -10,15 +10,17 @@ use std::path::{Path, PathBuf};
 use ::las::point::Format;
 use ::las::{PointData, PointDataBuilder, Transform, Vector};
 
-use super::copc::{self, ChunkPlace, CopcNodes};
-use super::file_part::{Coordinates, FilePart};
+use super::announced::are_given;
+use super::coordinates::Coordinates;
+use super::copc::{self, CopcNodes};
+use super::file_part::FilePart;
 use super::gps_epoch::GpsEpoch;
 use super::las_columns::{LasColumns, UnreadFields};
 use super::las_extra::{ExtraField, ExtraNormals, find_columns, find_extra_normals};
 use super::las_header::{COPC, LasHeader, RecordSize, read_header};
 use super::las_records;
 use super::las_system::{find_crs, unnamed_degrees};
-use super::laz::{self, LazFields, LazReader, NeededChunks, is_chunked};
+use super::laz::{self, ChunkPlace, LazFields, LazReader, NeededChunks, is_chunked};
 use super::read_options::{FileBox, PassedOver, Reading, RowNumbers, Selection};
 use super::source::{Input, Source, SourceReader, web_address};
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
@@ -277,7 +279,7 @@ pub(super) fn read(source: Source<'_>, reading: &Reading<'_>) -> Result<FilePart
         }
     }
     points.gps_epoch.contradictions().for_each(|found| part.contradict(found));
-    points.passed_over.report(&mut part);
+    part.leave_out_passed(points.passed_over);
     part.other_attributes.extend(points.unread.in_words());
     check_bounds(part, points.bounds, points.scale)
 }
@@ -285,11 +287,6 @@ pub(super) fn read(source: Source<'_>, reading: &Reading<'_>) -> Result<FilePart
 /// Returns the maximum distance of points with coordinates in steps of `scale` outside the bounds of their header.
 fn room(scale: [f64; 3]) -> [f64; 3] {
     scale.map(|scale| (10.0 * scale.abs()).max(MIN_ROOM))
-}
-
-/// Returns true if the bounds of a header are set.
-pub(super) fn are_given(bounds: &[[f64; 2]; 3]) -> bool {
-    bounds.iter().all(|[low, high]| low <= high) && bounds.as_flattened().iter().any(|&v| v != 0.0)
 }
 
 /// Compares the points of a file with the bounds of its header, which follow from the same scale and offset. Notes

@@ -4,7 +4,7 @@ use ::las::PointData;
 use ::las::point::Format;
 use belvedere_data::vector::to_f32;
 
-use super::file_part::Coordinates;
+use super::coordinates::Coordinates;
 use super::las_extra::{ExtraField, ExtraNormals};
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 

@@ -7,7 +7,8 @@ use ::las::point::Format;
 use ::las::{Builder, PointData, PointDataBuilder, Transform, Vector, Vlr};
 use rayon::prelude::*;
 
-use super::file_part::{Coordinates, FilePart};
+use super::coordinates::Coordinates;
+use super::file_part::FilePart;
 use super::las::{Batches, LasFile};
 use super::las_columns::LasColumns;
 use super::las_extra::{ExtraDescription, descriptions};

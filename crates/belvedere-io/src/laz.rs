@@ -10,7 +10,6 @@ use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
 
-use super::copc::ChunkPlace;
 use super::source::{ReadSeek, SourceReader};
 
 use ::laz::laszip::{ChunkTable, ChunkTableEntry, CompressorType, LazItemType};
@@ -18,6 +17,14 @@ use ::laz::{DecompressionSelection, LasZipError, LazVlr};
 
 use super::las_header::LasHeader;
 use belvedere_data::{Error, Result};
+
+/// Position of a chunk in its file, as stated there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct ChunkPlace {
+    pub(super) start: u64,
+    pub(super) bytes: u64,
+    pub(super) points: u64,
+}
 
 /// A chunk that would decompress to more bytes than this is no chunk that any writer makes (50 000 points are usual).
 const MAX_CHUNK_BYTES: u64 = 1 << 30;

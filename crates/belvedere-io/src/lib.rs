@@ -22,6 +22,7 @@ mod cityjson;
 mod cloud_batches;
 pub mod colors;
 mod columns;
+mod coordinates;
 #[cfg(feature = "las")]
 mod copc;
 #[cfg(feature = "e57")]
@@ -156,10 +157,10 @@ pub use read_report::{FileReport, LeftOut, ReadReport};
 pub use secrets::{hidden, hidden_text};
 pub use source::{OpenSource, ReadSeek, Source, SystemBeside, web_address};
 pub use stations::read_stations;
-pub use table::{Table, TableCells, read_table, write_table};
+pub use table::{Table, TableCells, read_table, with_columns_read, write_table, write_text_rows};
 #[cfg(feature = "tiff")]
 pub use terrain::read_terrain;
-pub use text_rows::{TextRows, with_columns_read, write_text_rows};
+pub use text_rows::TextRows;
 pub use towers::{TowerRow, read_towers};
 pub use trajectory::{TrajectoryReport, read_trajectory};
 pub use vpc::{CatalogueTile, read_catalogue};

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use npyz::{NpyFile, Order};
 
-use super::file_part::{Coordinates, FilePart};
+use super::coordinates::Coordinates;
+use super::file_part::FilePart;
 use super::npy_header::read_header;
 use super::source::Input;
 use belvedere_data::{Error, Result};

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use std::path::Path;
 
-use super::file_part::{Coordinates, FilePart};
+use super::coordinates::Coordinates;
 
 /// Interval between checks for cancellation of readers that go point by point: a few milliseconds of points.
 const POINTS_PER_CHECK: u64 = 1 << 14;
@@ -336,12 +336,14 @@ impl PassedOver {
         self.outside = self.outside.saturating_add(usize::try_from(count).unwrap_or(usize::MAX));
     }
 
-    /// Counts them in the report of `part`.
-    pub(super) fn report(self, part: &mut FilePart) {
-        part.leave_out(self.outside, "outside the box to read");
-        part.leave_out(self.other_class, "of a class that is not read");
-        part.leave_out(self.other_line, "of a flight line that is not read");
-        part.leave_out(self.other_date, "of a date that is not read");
+    /// Their numbers, each with the reason.
+    pub(super) fn counts(self) -> [(usize, &'static str); 4] {
+        [
+            (self.outside, "outside the box to read"),
+            (self.other_class, "of a class that is not read"),
+            (self.other_line, "of a flight line that is not read"),
+            (self.other_date, "of a date that is not read"),
+        ]
     }
 }
 

@@ -1,6 +1,7 @@
 //! Points that come one by one with named numbers, as in text, PLY, PCD and E57 files.
 
-use super::file_part::{Coordinates, FilePart, to_u8, to_u16};
+use super::coordinates::Coordinates;
+use super::file_part::{FilePart, to_u8, to_u16};
 use super::read_options::RowNumbers;
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 use belvedere_data::contradiction::COLUMN_TWICE;
