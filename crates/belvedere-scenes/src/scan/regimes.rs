@@ -2,14 +2,15 @@
 
 use crate::room::furnished_rooms;
 use crate::scan::Scan;
-use crate::scan::airborne::{AirborneParams, scan_airborne};
+use crate::scan::airborne::scan_airborne;
 use crate::scan::beam::BeamParams;
+use crate::scan::flight::AirborneParams;
 use crate::scan::mobile::{MobileParams, scan_mobile};
 use crate::scan::order::PointOrder;
 use crate::scan::scan_pattern::{MirrorMotion, ScanPattern};
 use crate::scan::terrestrial::{Stations, TerrestrialParams, scan_terrestrial};
 use crate::scene::TriangleScene;
-use crate::town::roofs::RoofDetails;
+use crate::town::site::RoofDetails;
 use crate::town::trees::CrownMaterial;
 use crate::town::{TownParams, town};
 

@@ -5,8 +5,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use rayon::prelude::*;
 
 use crate::random::Random;
-use crate::scan::airborne::saturating_count;
 use crate::scan::beam::{Axis, BeamParams};
+use crate::scan::flight::saturating_count;
 use crate::scan::recording::{Recorder, Shot};
 use crate::scan::stations::free_stations;
 use crate::scan::{Scan, SensorPath};

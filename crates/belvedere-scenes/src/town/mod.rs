@@ -18,7 +18,7 @@ use std::f64::consts::FRAC_PI_4;
 use crate::random::Random;
 use crate::scene::TriangleScene;
 use crate::town::plan::{BlockRectangle, TownLayout};
-use crate::town::roofs::RoofDetails;
+use crate::town::site::RoofDetails;
 use crate::town::site::{Clearance, TownSite};
 use crate::town::terrain::Terrain;
 use crate::town::trees::CrownMaterial;

@@ -1,6 +1,6 @@
 //! Kinds of towns by name.
 
-use crate::town::roofs::RoofDetails;
+use crate::town::site::RoofDetails;
 use crate::town::trees::CrownMaterial;
 use crate::town::{BlockPlan, StreetTrees, TownParams};
 

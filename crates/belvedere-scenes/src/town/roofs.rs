@@ -6,27 +6,6 @@ use crate::solids::{Overhang, PlanPlacement, extruded, parapet};
 use crate::town::buildings::{RoofShape, chimney};
 use crate::town::site::TownSite;
 
-/// Chances of roof details, 0 to 1 for each building.
-///
-/// The seed decides which buildings have them. A greater chance adds buildings and changes no other. Walls, streets and
-/// parked cars stay in place, as far as eaves leave room.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RoofDetails {
-    /// Chance of eaves of 0.3 to 0.6 m below sloped roofs, with verges of 0.2 m at gables without a neighbouring house.
-    pub eaves: f64,
-    /// Chance of parapets 0.25 m thick and 0.3 to 1 m high around flat roofs, except on sheds.
-    pub parapets: f64,
-    /// Chance of one to three boxes of 0.6 to 1.8 m, for lifts and air, on flat roofs of more than 50 m².
-    pub boxes: f64,
-    /// Chance of a chimney on houses that are built without one.
-    pub chimneys: f64,
-}
-
-impl RoofDetails {
-    /// Roofs without any of these details.
-    pub const PLAIN: Self = Self { eaves: 0.0, parapets: 0.0, boxes: 0.0, chimneys: 0.0 };
-}
-
 /// Overhang of eaves and of verges beyond the walls, metres.
 ///
 /// # Source
