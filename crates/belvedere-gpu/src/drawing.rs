@@ -1,7 +1,7 @@
 //! Depth maps and bounds of depth of a backend: the pixels drawn by the device, joined with those left to the CPU.
 
-use crate::backend::{GpuState, Ready};
 use crate::depth::{Candidate, DevicePicture, Drawn, PlacedBalls, place};
+use crate::gpu_state::{GpuState, Ready};
 use belvedere_core::depth::{
     BallDepth, BoundsParams, DepthBounds, DepthMap, ItemBuffer, NO_BALL, Profile, depth_bounds, depth_map,
 };

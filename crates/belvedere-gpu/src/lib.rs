@@ -31,7 +31,9 @@ mod backend;
 mod depth;
 mod device;
 mod drawing;
+mod gpu_state;
 mod lines;
 
-pub use backend::{Choice, Gpu};
+pub use backend::Gpu;
 pub use device::{DeviceInfo, DeviceKind, devices};
+pub use gpu_state::Choice;
