@@ -37,11 +37,11 @@ mod scene_text;
 #[cfg(feature = "server")]
 mod server;
 mod session;
+mod shell_words;
 mod target_points;
 
 pub use export::{ExportParams, ExportReport, export};
 pub use loading::{Loading, are_results};
-pub use plans::quoted;
 pub use reading::{LengthUnit, ReadingChoice, UpAxisChoice};
 pub use replies::Refusal;
 pub use results::PointsOf;
@@ -49,3 +49,4 @@ pub use scene_text::SceneText;
 #[cfg(feature = "server")]
 pub use server::{PageServer, ViewerParams};
 pub use session::Session;
+pub use shell_words::quoted;

@@ -3,6 +3,7 @@
 use crate::replies::Refusal;
 use crate::scene::PageScene;
 use crate::scene_text::SceneText;
+use crate::shell_words::quoted;
 use belvedere::control::Control;
 use belvedere::io::{Source, read_mesh_in};
 use belvedere::model::{ClearReport, ClearedArea};
@@ -207,15 +208,6 @@ impl Seek for WatchedBytes<'_> {
     }
 }
 
-/// A word as a shell takes it for one.
-pub fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-/=:,+@%".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        return word.to_owned();
-    }
-    format!("'{}'", word.replace('\'', "'\\''"))
-}
-
 fn check(corners: &[[f64; 2]]) -> Result<(), Refusal> {
     if corners.len() < 3 || !corners.as_flattened().iter().all(|v| v.is_finite()) {
         return Err(Refusal::Unanswerable("A building or an area needs at least three corners.".to_owned()));
@@ -305,13 +297,5 @@ mod tests {
         let (is_loaded, left) = load(100);
         assert!(is_loaded && left < 95, "{left}");
         assert_eq!(plans.lock_kept().meshes.len(), 1);
-    }
-
-    #[test]
-    fn words_are_quoted_only_where_a_shell_would_part_them() {
-        assert_eq!(quoted("demo/town.laz"), "demo/town.laz");
-        assert_eq!(quoted("my town.laz"), "'my town.laz'");
-        assert_eq!(quoted("it's"), "'it'\\''s'");
-        assert_eq!(quoted(""), "''");
     }
 }

@@ -1,6 +1,6 @@
 //! Choice of the up axis and the unit of a cloud that does not name them, made on the page.
 
-use crate::plans::quoted;
+use crate::shell_words::quoted;
 use serde::{Deserialize, Serialize};
 
 /// The choice for files that name neither. By default z is up, and the unit is that of the files, or metres.

@@ -1,13 +1,13 @@
 //! The planes of all roofs of a scene, found once.
 
-use crate::scene::PageScene;
-use belvedere::Result;
 use belvedere::apps::irradiance::{
     CLEAR_SKY_YEAR, ClearSky, Grouping, IrradianceParams, RadiationSource, SeasonRadiation, period_seasons,
 };
 use belvedere::apps::roof_planes::{RoofPlane, RoofPlaneParams, roof_planes, roof_points};
+use belvedere::apps::sun::Site;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid};
+use belvedere::{Bounds, PointCloud, Result};
 
 /// Cells of the ground that roofs are separated from, metres: those of the command line.
 const GROUND_CELL: f64 = 1.0;
@@ -23,9 +23,8 @@ pub(crate) struct RoofPlanes {
 }
 
 impl RoofPlanes {
-    pub(crate) fn of(scene: &PageScene, control: &Control<'_>) -> Result<Self> {
-        let cloud = scene.cloud()?;
-        let (low, high) = scene.model().bounds().on_map();
+    pub(crate) fn new(cloud: &PointCloud, bounds: &Bounds, site: &Site, control: &Control<'_>) -> Result<Self> {
+        let (low, high) = bounds.on_map();
         let grid = MapGrid::covering(low, high, GROUND_CELL, [cloud.frame.origin[0], cloud.frame.origin[1]])?;
         let (ground, _) = Ground::of_cloud(cloud, grid, &GroundParams::default(), control)?;
         let (rows, _) = roof_points(cloud, &ground)?;
@@ -33,7 +32,7 @@ impl RoofPlanes {
         let planes = roof_planes(&points, &RoofPlaneParams::default(), control)?;
         let source = RadiationSource::ClearSky { clear_sky: ClearSky::default(), year: CLEAR_SKY_YEAR };
         let params = IrradianceParams::default().with_grouping(Grouping::Months);
-        let (seasons, _) = period_seasons(&source, &scene.site()?, None, &params, control)?;
+        let (seasons, _) = period_seasons(&source, site, None, &params, control)?;
         Ok(Self { planes, points, seasons })
     }
 

@@ -239,7 +239,7 @@ impl PageScene {
 
     /// The planes of roofs.
     pub(crate) fn roofs(&self, control: &Control<'_>) -> Result<Arc<RoofPlanes>> {
-        self.roofs.get(|| RoofPlanes::of(self, control))
+        self.roofs.get(|| RoofPlanes::new(self.cloud()?, &self.model().bounds(), &self.site()?, control))
     }
 
     /// Returns the location of the scene on earth.
