@@ -2,7 +2,7 @@
 
 use crate::cleared::{ClassedPoint, ClearedSurface, classed};
 use crate::grid::TileId;
-use crate::ground_cells::{GroundSquares, ground_cells};
+use crate::ground_cells::{EDGE_CELLS, GroundSquares, ground_cells};
 use crate::how_sure::PartialEvidence;
 use crate::lines::AreaLines;
 use crate::obstacles::{ObstacleSearch, rule};
@@ -37,8 +37,6 @@ use belvedere::{PointCloud, Result};
 use rayon::prelude::*;
 use std::path::Path;
 
-/// Number of cells around a tile that the surface of its cells depends on.
-pub(crate) const EDGE_CELLS: usize = 2;
 /// Number of targets that a thread takes at once.
 const CHUNK: usize = 1024;
 

@@ -1,6 +1,6 @@
 //! Sides of the cells of results: one for all, with finer or coarser exceptions for single results.
 
-use crate::question::TileQuestion;
+use crate::question::{TileQuestion, Topic};
 use belvedere::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -12,43 +12,6 @@ const LARGEST: f64 = 64.0;
 /// Minimum and maximum side of a tile, metres.
 pub(crate) const MIN_TILE: f64 = 16.0;
 const LARGEST_TILE: f64 = 8192.0;
-
-/// Topic of a result. Results on the same topic have cells of the same size.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Topic {
-    /// Shadow of one sun.
-    Shadow,
-    /// Hours of sun.
-    SunHours,
-    /// Rules of sunlight.
-    Rule,
-    /// Energy of sun and sky.
-    Irradiance,
-    /// Sky view factor.
-    SkyView,
-    /// Viewsheds of observers.
-    Viewshed,
-}
-
-impl Topic {
-    /// All topics.
-    pub const ALL: [Self; 6] =
-        [Self::Shadow, Self::SunHours, Self::Rule, Self::Irradiance, Self::SkyView, Self::Viewshed];
-
-    /// Returns the word for the topic on the command line.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Shadow => "shadow",
-            Self::SunHours => "sun-hours",
-            Self::Rule => "rule",
-            Self::Irradiance => "irradiance",
-            Self::SkyView => "sky-view",
-            Self::Viewshed => "viewshed",
-        }
-    }
-}
 
 /// Sides of the cells of results, metres: whole numbers of sixty-fourths up to 64.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -4,8 +4,7 @@
 //! it. Each block is computed by itself, with all points of the eight blocks around it. A point or a ball therefore has
 //! the same result in all tiles that meet it.
 
-use crate::grid::{CELL, MapArea, TileId, block_area, block_of};
-use crate::ground_cells;
+use crate::grid::{CELL, MapArea, block_area, block_of};
 use crate::plan::Plan;
 use crate::window;
 use belvedere::control::Control;
@@ -88,16 +87,6 @@ impl Plan {
         let reach = SurfaceParams::reach(cell);
         let reach = if self.is_on_ground() { reach.max(MAX_GAP_FROM_RETURNS) } else { reach };
         if self.cleared.is_empty() { reach } else { reach.max(Clearing::REACH + cell) }
-    }
-
-    /// Returns a lower bound of the heights of cells of side `cell` on a tile, local metres.
-    pub(crate) fn lowest_of_cells(&self, tile: TileId, cell: f64) -> f64 {
-        let core = self.grid().core(tile);
-        let around = core.widened(self.reach(cell));
-        // Closed ground is interpolated between points of all blocks around.
-        let around = if self.cleared.is_empty() { around } else { around.joined(&core.in_blocks().widened(CELL)) };
-        let around = if self.is_on_ground() { around.joined(&ground_cells::area_around(&core)) } else { around };
-        self.blocks_in(&around).map(|block| f64::from(block.heights[0])).fold(f64::INFINITY, f64::min)
     }
 }
 

@@ -1,9 +1,8 @@
 //! Cells on the ground. Ground is found in squares that are the same for all tiles, so that tiles make no difference. A
 //! kept survey keeps the ground with its balls.
 
-use crate::answer::EDGE_CELLS;
 use crate::cleared::{ClearedSurface, classed};
-use crate::grid::{MapArea, TileId, square_area, square_at};
+use crate::grid::{CELL, MapArea, TileId, square_area, square_at};
 use crate::inputs::hash;
 use crate::plan::Plan;
 use crate::window;
@@ -19,6 +18,9 @@ use belvedere::raster::Raster;
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
+
+/// Number of cells around a tile that the surface of its cells depends on.
+pub(crate) const EDGE_CELLS: usize = 2;
 
 /// Side of a square, metres.
 const SQUARE: f64 = 256.0;
@@ -242,6 +244,16 @@ fn of_square(
 }
 
 impl Plan {
+    /// Returns a lower bound of the heights of cells of side `cell` on a tile, local metres.
+    pub(crate) fn lowest_of_cells(&self, tile: TileId, cell: f64) -> f64 {
+        let core = self.grid().core(tile);
+        let around = core.widened(self.reach(cell));
+        // Closed ground is interpolated between points of all blocks around.
+        let around = if self.cleared.is_empty() { around } else { around.joined(&core.in_blocks().widened(CELL)) };
+        let around = if self.is_on_ground() { around.joined(&area_around(&core)) } else { around };
+        self.blocks_in(&around).map(|block| f64::from(block.heights[0])).fold(f64::INFINITY, f64::min)
+    }
+
     /// Returns true if cells lie on the ground instead of on the surface.
     pub(crate) fn is_on_ground(&self) -> bool {
         self.targets.level == CellLevel::Ground

@@ -4,9 +4,9 @@ use crate::cleared::{ClassedPoint, classed, clear_balls, left_crowns};
 use crate::grid::{MapArea, TOP_SIDE, TileId, square_at};
 use crate::patches;
 use crate::plan::Plan;
-use crate::proof;
 use crate::record::{Stamp, TileOutcome, TileRecord};
 use crate::stage::Stage;
+use crate::tile_pulses;
 use crate::window;
 use belvedere::control::Control;
 use belvedere::io::{atomic, write_balls};
@@ -61,7 +61,7 @@ fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Cont
     drop(all);
     clear_balls(plan, &core, &mut balls, &mut transmission, &own_points, control)?;
     let patches = patches::of_tile(&parts.patches, &core, &plan.cleared);
-    let own_pulses = |pulses: &FreeSegmentColumns| proof::of_tile(pulses, &core);
+    let own_pulses = |pulses: &FreeSegmentColumns| tile_pulses::of_tile(pulses, &core);
     let pulses = parts.pulses.as_ref().filter(|_| plan.proves).map(own_pulses);
     // Outlines in the margin belong to other tiles.
     let outlines = BuildingOutlines::default();

@@ -4,19 +4,17 @@ use crate::cell_sizes::CellSizes;
 use crate::grid::{MapArea, TileGrid, TileId, block_area};
 use crate::inputs::{InputFile, PointColumns, bytes_of_file, hash};
 use crate::planned::{Others, SideFile, added_meshes, far_terrain};
-use crate::question::TileQuestion;
+use crate::question::{BALLS, TileQuestion};
 use crate::sealed::{is_sound, sealed};
-use crate::stage::Stage;
 use crate::survey::SurveyBlock;
-use crate::window;
 use belvedere::apps::ask::scene::Whereabouts;
 use belvedere::apps::ask::{Context, GridCells, Remark, density_at, remark_on_leaves, remark_on_terrain};
-use belvedere::apps::targets::{CellLevel, CellParams, grid_around, set_on_ground};
+use belvedere::apps::targets::{CellLevel, CellParams};
 use belvedere::apps::tree_light::CrownLight;
 use belvedere::apps::viewshed::cell_for;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
-use belvedere::ground::{Ground, GroundParams, GroundPoints};
+use belvedere::ground::GroundPoints;
 use belvedere::io::{Insistence, atomic};
 use belvedere::model::{ClearedArea, ModelParams, SurveyStatistics};
 use belvedere::query::Coverage;
@@ -32,8 +30,6 @@ use std::sync::Arc;
 
 /// Version of the layout of plans and records.
 pub(crate) const LAYOUT: u32 = 13;
-/// Margin around the grid of a place within which points are read for its ground, metres.
-const GROUND_AROUND: f64 = 32.0;
 /// Plan: input files, tiles and statistics of the whole survey. The same files and parameters give the same plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
@@ -204,14 +200,6 @@ impl Plan {
     /// True if the survey has measured pulses that prove lines of sight free.
     pub(crate) fn can_prove(&self) -> bool {
         self.statistics.carves && !self.statistics.are_pulses_assumed() && self.cleared.is_empty()
-    }
-
-    /// Returns the name of the plan in records of a stage.
-    pub(crate) fn name_for(&self, stage: Stage<'_>) -> &str {
-        match stage {
-            Stage::Balls => &self.survey_name,
-            Stage::Answer(_) => &self.name,
-        }
     }
 
     /// Returns this plan with other cells for all results. `cells` gives their side, their level, the kind of ground
@@ -455,30 +443,6 @@ impl Plan {
     pub(crate) fn kind_of(&self, question: &TileQuestion) -> ResultKind {
         question.kind(self.trees.is_some_and(|trees| trees.gives_shares()))
     }
-
-    /// Sets places on the map, local metres, on the ground. Each place without a height gets `height` metres above the
-    /// ground.
-    ///
-    /// # Errors
-    /// [`Error::InvalidParameter`] for a place without ground, those of reading the files and of [`Ground::of_cloud`].
-    pub fn set_on_ground(&self, places: &mut [[f64; 3]], height: f64, control: &Control<'_>) -> Result<()> {
-        let origin = self.frame.origin;
-        for place in places {
-            let Some(grid) = grid_around([*place], origin)? else { continue };
-            let corner = [grid.corner[0], grid.corner[1] - grid.cell * grid.height as f64];
-            let area = MapArea { low: corner, high: [corner[0] + grid.cell * grid.width as f64, grid.corner[1]] };
-            let cloud = window::read(self, &area.widened(GROUND_AROUND), control)?;
-            let ground = match Ground::of_cloud(&cloud, grid, &GroundParams::default(), control) {
-                Err(error) if !window::is_nothing(&error) => return Err(error),
-                ground => ground.ok(),
-            };
-            let unknown = ground.map(|(ground, _)| set_on_ground([(&mut *place, height)], &ground));
-            if unknown.is_none_or(|unknown| !unknown.is_empty()) {
-                return Err(without_ground(format!("{:.2}, {:.2}", place[0] + origin[0], place[1] + origin[1])));
-            }
-        }
-        Ok(())
-    }
 }
 
 impl PlanFrame {
@@ -505,14 +469,9 @@ fn is_false(value: &bool) -> bool {
     !value
 }
 
-pub(crate) fn without_ground(value: String) -> Error {
-    let expected = "a place of the survey with ground, or with its height as a third coordinate";
-    Error::InvalidParameter { parameter: Parameter::Observer, value, expected }
-}
-
 /// Refuses questions with the same folder of results, and folders that do not lie below the folder of the run.
 fn check_names(questions: &[TileQuestion]) -> Result<()> {
-    let mut names = BTreeSet::from([Stage::Balls.name()]);
+    let mut names = BTreeSet::from([BALLS]);
     for name in questions.iter().map(TileQuestion::name) {
         let is_plain = |c: char| c.is_alphanumeric() || "_-+.".contains(c);
         let refused =

@@ -8,6 +8,7 @@
 use crate::grid::{CELL, MapArea, TileId, block_area, square_at};
 use crate::obstacles::ObstacleSearch;
 use crate::plan::Plan;
+use crate::tile_pulses::in_order;
 use belvedere::control::Control;
 use belvedere::pulses::{FreeSegmentColumns, ends_of_pulse};
 use belvedere::query::{Evidence, Proof, ProofParams, nearness_of};
@@ -50,13 +51,6 @@ pub(crate) fn nearness(places: &PointCloud) -> f64 {
     let numbers = places.attributes.return_number.as_deref();
     let is_first = |(row, _): &(usize, &[f32; 3])| numbers.is_none_or(|numbers| numbers[*row] <= 1);
     nearness_of(places.positions.iter().enumerate().filter(is_first).map(|(_, &p)| p))
-}
-
-/// Returns the pulses that end in a tile, in an order that does not depend on their index.
-pub(crate) fn of_tile(pulses: &FreeSegmentColumns, core: &MapArea) -> FreeSegmentColumns {
-    let is_own = |(_, start): &(u32, &[f32; 3])| core.holds([start[0].into(), start[1].into()]);
-    let rows: Vec<u32> = (0..).zip(&pulses.starts).filter(is_own).map(|(row, _)| row).collect();
-    in_order(pulses.select(&rows))
 }
 
 /// True if a piece of a line passes over an area.
@@ -259,23 +253,4 @@ impl PulsesOfBlocks {
         let rows = pairs.chunk_by(|a, b| a.0 == b.0).map(of_block).collect();
         Self { pulses, rows }
     }
-}
-
-/// Sorts pulses by their numbers.
-fn in_order(pulses: FreeSegmentColumns) -> FreeSegmentColumns {
-    let key = |row: u32| {
-        let row = row as usize;
-        let start = pulses.starts.get(row).map(|start| start.map(f32::to_bits));
-        let length = pulses.lengths.get(row).map(|length| length.to_bits());
-        (start, pulses.slopes.get(row), length, pulses.ways.get(row))
-    };
-    #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
-    let mut rows: Vec<u32> = (0..pulses.starts.len() as u32).collect();
-    // The pulses of one tile are sorted already.
-    if rows.is_sorted_by(|&a, &b| key(a) <= key(b)) {
-        return pulses;
-    }
-    // Pulses of several tiles form as many sorted runs.
-    rows.par_sort_by(|&a, &b| key(a).cmp(&key(b)));
-    pulses.select(&rows)
 }

@@ -1,14 +1,9 @@
 //! Questions about a city.
 
-use crate::cell_sizes::Topic;
-use crate::plan::Plan;
 use crate::planned::SideFile;
-use belvedere::apps::ask::scene::Whereabouts;
 use belvedere::apps::ask::{self, Context, SkyParts, SunHoursQuestion};
-use belvedere::apps::irradiance::{
-    self, ClearSky, Grouping, IrradianceParams, RadiationSource, SeasonRadiation, period_seasons,
-};
-use belvedere::apps::shadow::{self, Edges, ShadowSun};
+use belvedere::apps::irradiance::{self, ClearSky, IrradianceParams, RadiationSource, SeasonRadiation, period_seasons};
+use belvedere::apps::shadow::{self, ShadowSun};
 use belvedere::apps::sky_view::{self, SkyDirections};
 use belvedere::apps::sum_errors::{INTERVAL_MEASURES, Intervals};
 use belvedere::apps::sun::Site;
@@ -17,11 +12,50 @@ use belvedere::apps::tree_light::{CrownLight, Season};
 use belvedere::apps::viewshed::{Observer, SightLimits};
 use belvedere::control::Control;
 use belvedere::io::{BandLabel, Source, read_weather};
-use belvedere::query::{Certainty, EarthParams, UnprovenAs};
+use belvedere::query::Certainty;
 use belvedere::results::{ResultKind, UNPROVEN_BAND, viewshed_words};
 use belvedere::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+
+/// Folder of the balls of a run, which no question may have.
+pub(crate) const BALLS: &str = "balls";
+
+/// Topic of a result. Results on the same topic have cells of the same size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Topic {
+    /// Shadow of one sun.
+    Shadow,
+    /// Hours of sun.
+    SunHours,
+    /// Rules of sunlight.
+    Rule,
+    /// Energy of sun and sky.
+    Irradiance,
+    /// Sky view factor.
+    SkyView,
+    /// Viewsheds of observers.
+    Viewshed,
+}
+
+impl Topic {
+    /// All topics.
+    pub const ALL: [Self; 6] =
+        [Self::Shadow, Self::SunHours, Self::Rule, Self::Irradiance, Self::SkyView, Self::Viewshed];
+
+    /// Returns the word for the topic on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Shadow => "shadow",
+            Self::SunHours => "sun-hours",
+            Self::Rule => "rule",
+            Self::Irradiance => "irradiance",
+            Self::SkyView => "sky-view",
+            Self::Viewshed => "viewshed",
+        }
+    }
+}
 
 /// Question with an answer for each cell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -194,128 +228,6 @@ impl TileRadiation {
 }
 
 impl TileQuestion {
-    /// Returns the questions about tiles for a question about the survey of `plan`, one for each result. Figures and
-    /// remarks go into `context`.
-    ///
-    /// # Errors
-    /// [`Error::InvalidParameter`] for impossible parameters, and for a question that tiles do not answer. Also those
-    /// of [`Plan::set_on_ground`].
-    pub fn of(
-        question: &ask::Question,
-        (plan, whereabouts): (&Plan, &Whereabouts<'_>),
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Vec<Self>> {
-        question.check()?;
-        if let Some(what) = Self::not_in_tiles(question) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Questions,
-                value: format!("with {what}"),
-                expected: "without: runs in tiles do not give them",
-            });
-        }
-        match question {
-            ask::Question::Shadow(shadow) => {
-                let suns = shadow.suns.resolve(&shadow.place, whereabouts, context)?;
-                Ok(Self::of_suns(&suns, &shadow.how_sure))
-            }
-            ask::Question::SunHours(hours) => {
-                let site = hours.place.site_at(whereabouts, context, None)?;
-                let mut questions = Vec::new();
-                if !hours.days.is_empty() {
-                    let days = SunHoursQuestion { rules: Vec::new(), ..hours.clone() };
-                    questions.push(Self::SunHours { site, days });
-                }
-                for (text, (column, _)) in hours.rules.iter().zip(ask::rules(&hours.rules)?) {
-                    let days = ask::Days { dates: Vec::new(), between: None, ..hours.days.clone() };
-                    let days = SunHoursQuestion { days, rules: vec![text.clone()], interval: false, ..hours.clone() };
-                    questions.push(Self::SunRule { name: column.to_owned(), site, days });
-                }
-                Ok(questions)
-            }
-            ask::Question::SkyView(view) => Ok(vec![Self::SkyView { sky: view.sky, interval: view.interval }]),
-            ask::Question::Irradiance(energy) => {
-                let station = energy.radiation.weather().map(|weather| [weather.latitude, weather.longitude]);
-                let site = energy.place.site_at(whereabouts, context, station)?;
-                let radiation = match &energy.radiation {
-                    ask::Radiation::Weather { file, parts, .. } => {
-                        TileRadiation::Weather { file: SideFile::new(Path::new(file))?, parts: *parts }
-                    }
-                    ask::Radiation::ClearSky { clear_sky, year } => {
-                        TileRadiation::ClearSky { clear_sky: *clear_sky, year: *year }
-                    }
-                };
-                Ok(vec![Self::Irradiance { site, radiation, params: energy.params, interval: energy.interval }])
-            }
-            ask::Question::Viewshed(view) => {
-                let mut eyes = Vec::new();
-                for (mut eye, height) in view.standing() {
-                    plan.set_on_ground(std::slice::from_mut(&mut eye), height, control)?;
-                    eyes.push(eye);
-                }
-                let seen = Self::Viewshed { eyes, max_distance: view.limits.max_distance, is_reverse: view.reverse };
-                Ok(seen.with_probability(&view.how_sure))
-            }
-            _ => Err(Error::InvalidParameter {
-                parameter: Parameter::Questions,
-                value: "another".to_owned(),
-                expected: "shadow, sun hours, rules of sunlight, sky view, irradiance or viewsheds",
-            }),
-        }
-    }
-
-    /// Returns this question, followed by the question about its probability if that is wanted.
-    fn with_probability(self, how_sure: &ask::HowSure) -> Vec<Self> {
-        let is_of_several = self.is_of_several();
-        let likely = how_sure.is_wanted().then(|| Self::Probability {
-            name: format!("{}_probability", self.name()),
-            of: Box::new(self.clone()),
-            certain: how_sure.certain.filter(|_| is_of_several),
-        });
-        [self].into_iter().chain(likely).collect()
-    }
-
-    /// Returns the questions about shadows of suns.
-    pub(crate) fn of_suns<'a>(suns: impl IntoIterator<Item = &'a ask::NamedSun>, how_sure: &ask::HowSure) -> Vec<Self> {
-        let question = |sun: &ask::NamedSun| Self::Shadow {
-            name: format!("shadow_{}", sun.label),
-            to_sun: sun.sun.to_sun,
-            season: sun.sun.season,
-        };
-        suns.into_iter().map(question).flat_map(|sun| sun.with_probability(how_sure)).collect()
-    }
-
-    /// Returns the first part of a question that tiles do not support; `None` if they support all of it.
-    #[must_use]
-    pub fn not_in_tiles(question: &ask::Question) -> Option<&'static str> {
-        let counts = |unproven: Option<UnprovenAs>| unproven.is_some_and(|choice| choice != UnprovenAs::Reported);
-        let parts: &[(&str, bool)] = match question {
-            ask::Question::Shadow(shadow) => &[
-                ("soft edges", shadow.edges == Edges::Soft),
-                ("unproven light that counts as lit or as blocked", counts(shadow.unproven)),
-            ],
-            ask::Question::Viewshed(view) => {
-                let limits = &view.limits;
-                let is_turned = [limits.azimuth_range_deg, limits.elevation_range_deg].iter().any(Option::is_some);
-                let has_own = view.observers.iter().any(|one| one.limits != ask::ViewLimits::default());
-                &[
-                    ("ranges of azimuth or elevation, or a least distance", is_turned || limits.min_distance.is_some()),
-                    ("limits of single observers", has_own),
-                    ("another curvature or refraction", view.earth != EarthParams::default()),
-                    ("unproven views that count as visible or as blocked", counts(view.unproven)),
-                    ("targets other than cells", view.targets != [ask::ViewshedTargets::Cells]),
-                    ("masks of observers", view.masks),
-                    ("heights that are seen", view.max_height.is_some()),
-                ]
-            }
-            ask::Question::Irradiance(energy) => {
-                &[("roof planes", energy.roofs.is_some()), ("months", energy.params.grouping != Grouping::Whole)]
-            }
-            _ => &[],
-        };
-        parts.iter().find(|(_, is_wanted)| *is_wanted).map(|(what, _)| *what)
-    }
-
     /// Returns the name of the folder of its results.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -358,7 +270,7 @@ impl TileQuestion {
     }
 
     /// True if the question has several observers.
-    fn is_of_several(&self) -> bool {
+    pub(crate) fn is_of_several(&self) -> bool {
         matches!(self, Self::Viewshed { eyes, .. } if eyes.len() > 1)
     }
 

@@ -145,7 +145,7 @@ impl TileRecord {
         }
         let bytes = bytes_of_file(&path).ok()?;
         let record: Self = is_sound(&bytes).then(|| serde_json::from_slice(&bytes).ok())??;
-        (record.plan == plan.name_for(stage)).then_some(record)
+        (record.plan == stage.plan_name(plan)).then_some(record)
     }
 
     /// Returns true if the tile does not need another run.
@@ -175,7 +175,7 @@ impl TileRecord {
 
     pub(crate) fn write(&self, plan: &Plan, run: &Path, stage: Stage<'_>, tile: TileId) -> Result<()> {
         let path = stage.record(plan, run, tile);
-        let record = Self { plan: plan.name_for(stage).to_owned(), ..self.clone() };
+        let record = Self { plan: stage.plan_name(plan).to_owned(), ..self.clone() };
         let text = sealed(&record).map_err(|e| Error::malformed(&path, format!("cannot be written: {e}")))?;
         atomic::write(&path, |file| file.write_all(text.as_bytes()).map_err(Error::io(&path)))
     }

@@ -2,7 +2,7 @@
 
 use crate::grid::TileId;
 use crate::plan::Plan;
-use crate::question::TileQuestion;
+use crate::question::{BALLS, TileQuestion};
 use std::path::{Path, PathBuf};
 
 /// Step of the run of a tile.
@@ -19,8 +19,16 @@ impl Stage<'_> {
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
-            Self::Balls => "balls",
+            Self::Balls => BALLS,
             Self::Answer(question) => question.name(),
+        }
+    }
+
+    /// Returns the name of the plan in its records.
+    pub(crate) fn plan_name<'p>(&self, plan: &'p Plan) -> &'p str {
+        match self {
+            Self::Balls => &plan.survey_name,
+            Self::Answer(_) => &plan.name,
         }
     }
 

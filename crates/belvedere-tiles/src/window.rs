@@ -4,12 +4,17 @@ use crate::columns::append;
 use crate::grid::{MapArea, block_area, block_of};
 use crate::plan::Plan;
 use crate::survey::is_counted;
+use belvedere::apps::targets::{grid_around, set_on_ground};
 use belvedere::control::Control;
+use belvedere::ground::{Ground, GroundParams};
 use belvedere::io::{Insistence, ReadOptions, Within, read_batches};
 use belvedere::weather::CalendarDay;
-use belvedere::{Error, Frame, PointCloud, Result};
+use belvedere::{Error, Frame, Parameter, PointCloud, Result};
 use std::collections::HashMap;
 use std::path::PathBuf;
+
+/// Margin around the grid of a place within which points are read for its ground, metres.
+const GROUND_AROUND: f64 = 32.0;
 
 /// Reads the points of the plan's files within `area`, in the order of the files and of their points.
 ///
@@ -94,4 +99,35 @@ pub(crate) fn options(
 /// Returns true if the error only means an empty tile, which is no failure.
 pub(crate) fn is_nothing(error: &Error) -> bool {
     matches!(error, Error::NoPoints { .. } | Error::NoSurface { .. })
+}
+
+impl Plan {
+    /// Sets places on the map, local metres, on the ground. Each place without a height gets `height` metres above the
+    /// ground.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a place without ground, those of reading the files and of [`Ground::of_cloud`].
+    pub fn set_on_ground(&self, places: &mut [[f64; 3]], height: f64, control: &Control<'_>) -> Result<()> {
+        let origin = self.frame.origin;
+        for place in places {
+            let Some(grid) = grid_around([*place], origin)? else { continue };
+            let corner = [grid.corner[0], grid.corner[1] - grid.cell * grid.height as f64];
+            let area = MapArea { low: corner, high: [corner[0] + grid.cell * grid.width as f64, grid.corner[1]] };
+            let cloud = read(self, &area.widened(GROUND_AROUND), control)?;
+            let ground = match Ground::of_cloud(&cloud, grid, &GroundParams::default(), control) {
+                Err(error) if !is_nothing(&error) => return Err(error),
+                ground => ground.ok(),
+            };
+            let unknown = ground.map(|(ground, _)| set_on_ground([(&mut *place, height)], &ground));
+            if unknown.is_none_or(|unknown| !unknown.is_empty()) {
+                return Err(without_ground(format!("{:.2}, {:.2}", place[0] + origin[0], place[1] + origin[1])));
+            }
+        }
+        Ok(())
+    }
+}
+
+pub(crate) fn without_ground(value: String) -> Error {
+    let expected = "a place of the survey with ground, or with its height as a third coordinate";
+    Error::InvalidParameter { parameter: Parameter::Observer, value, expected }
 }
