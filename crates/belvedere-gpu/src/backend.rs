@@ -241,7 +241,7 @@ impl OnDevice {
 mod tests {
     use super::*;
     use crate::device::{DeviceKind, devices};
-    use crate::gpu_state::{WORTH_A_DEVICE, is_worth_drawing};
+    use crate::gpu_state::is_worth_drawing;
 
     #[test]
     fn large_pictures_alone_are_drawn_on_a_device_that_nobody_chose() {
