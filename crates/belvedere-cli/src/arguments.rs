@@ -35,7 +35,7 @@ pub(crate) use city::{CellFor, City, CityMerge, CityPlan, CityRun, CityStatus, C
 pub(crate) use difference::DifferenceArguments;
 pub(crate) use envelope::{ComfortArguments, CornersArgument, EnvelopeArguments};
 pub(crate) use heat::HeatArguments;
-pub(crate) use irradiance::{ClearSkyChoice, IrradianceArguments, RadiationModel};
+pub(crate) use irradiance::{ClearSkyChoice, IrradianceArguments, PvArguments, RadiationModel};
 pub(crate) use numbers::{Numbers, Rectangle};
 use numbers::{above_zero, at_least_one, at_most, finite, height, known_crs, length, location, rectangle};
 pub(crate) use observers::{

@@ -134,7 +134,18 @@ const RARE: &[&str] = &[
 const RARE_IN: &[(&str, &[&str])] = &[
     ("shadow", &["certain", "film", "location", "outlines", "self", "target-height"]),
     ("sun-hours", &["target-height"]),
-    ("irradiance", &["min-cells", "target-height"]),
+    (
+        "irradiance",
+        &[
+            "dc-ac-ratio",
+            "inverter-efficiency",
+            "min-cells",
+            "module-efficiency",
+            "system-losses",
+            "target-height",
+            "temperature-coefficient",
+        ],
+    ),
     ("cameras", &["existing", "pixels", "target-height", "tilt"]),
     ("comfort", &["directions"]),
     ("plan", &["clear-sky", "crs", "directions", "max-distance", "observer-height", "through-trees"]),

@@ -194,6 +194,16 @@ parameters! {
     RoofLength => "length for roof planes",
     /// Angles and areas that make roof planes.
     RoofAngle => "angle or area for roof planes",
+    /// Power of a square metre of solar panels.
+    ModuleEfficiency => "module efficiency",
+    /// Change of the power of solar panels with their temperature.
+    TemperatureCoefficient => "temperature coefficient",
+    /// Share of the direct current that a photovoltaic system loses.
+    SystemLosses => "system losses",
+    /// Efficiency of an inverter.
+    InverterEfficiency => "inverter efficiency",
+    /// Power of solar panels for each power of their inverter.
+    DcAcRatio => "ratio of direct to alternating power",
     /// Rings of a parcel.
     Parcel => "parcel",
     /// Place that keeps its sun.

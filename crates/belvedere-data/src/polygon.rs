@@ -3,6 +3,28 @@
 use crate::{Error, Parameter};
 use std::ops::{ControlFlow, Range};
 
+/// Outline of a building on the map.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Footprint {
+    /// Name of the building.
+    pub name: String,
+    /// Polygons, each an outer ring and its holes; they may overlap.
+    pub polygons: Vec<Vec<Vec<[f64; 2]>>>,
+}
+
+impl Footprint {
+    /// Returns the lowest and the highest corner of the box around it; infinite without a corner.
+    #[must_use]
+    pub fn bounds(&self) -> [[f64; 2]; 2] {
+        let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        for corner in self.polygons.iter().flatten().flatten() {
+            bounds[0] = [0, 1].map(|axis| bounds[0][axis].min(corner[axis]));
+            bounds[1] = [0, 1].map(|axis| bounds[1][axis].max(corner[axis]));
+        }
+        bounds
+    }
+}
+
 /// Returns true if a place lies within an outline and outside its holes, by odd crossings over all rings, which may be
 /// closed or not.
 #[must_use]

@@ -32,6 +32,7 @@ mod e57_counts;
 #[cfg(feature = "las")]
 mod ept;
 mod file_part;
+mod footprints;
 mod geojson;
 mod geojson_read;
 #[cfg(feature = "tiff")]
@@ -127,6 +128,7 @@ pub use cityjson::{LevelOfDetail, read_cityjson};
 pub use cloud_batches::{CloudBatch, CloudBatches, read_batches};
 pub use colors::{class_color, in_shadow, ramp, ramp_colors};
 pub use columns::{ExtraColumn, ExtraValues, WriteReport};
+pub use footprints::read_footprints;
 pub use geojson::{GeojsonCoordinates, PathLine, PolygonArea, Spot, write_geojson, write_geojson_areas};
 pub use geojson_read::{FeatureShape, GeojsonFeature, read_geojson};
 #[cfg(feature = "tiff")]

@@ -8,14 +8,16 @@ use crate::scene::PyScene;
 use crate::targets::{RequestedTargets, TargetResults, ground_points, put_to_scene};
 use crate::trees::Through;
 use crate::work::run;
+use belvedere::Frame;
 use belvedere::apps::ask::{self, Roofs, SunPlace};
 use belvedere::apps::irradiance::{
-    BirdParams, CLEAR_SKY_YEAR, ClearSky, Grouping, IrradianceParams, PARTS, SkyModel, Surroundings, roof_columns,
+    BirdParams, CLEAR_SKY_YEAR, ClearSky, Grouping, IrradianceParams, PARTS, PvSystem, RoofColumn, RoofValues,
+    SkyModel, Surroundings, building_columns, hour_columns, plane_hours, roof_columns,
 };
-use belvedere::io::read_weather;
+use belvedere::io::{read_footprints, read_weather};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList};
 use std::sync::Arc;
 
 /// Source and summation of radiation; missing keywords have the library's defaults.
@@ -107,35 +109,102 @@ impl RadiationKeywords {
     }
 }
 
-/// Names and values, the number of cells of each plane, and remarks.
-type RoofColumns<'py> = (Vec<(&'static str, Bound<'py, PyAny>)>, Vec<usize>, Vec<Bound<'py, PyDict>>);
+/// Planes of roofs, their buildings, and panels on them; missing keywords have the library's defaults.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct RoofKeywords {
+    min_area: Option<f64>,
+    panel: Option<f64>,
+    min_cells: Option<usize>,
+    ground: Option<String>,
+    /// A path, or the name and bytes of a file.
+    footprints: Option<PyInput>,
+    module_efficiency: Option<f64>,
+    temperature_coefficient: Option<f64>,
+    system_losses: Option<f64>,
+    inverter_efficiency: Option<f64>,
+    dc_ac_ratio: Option<f64>,
+    hourly: bool,
+}
+
+impl RoofKeywords {
+    fn chosen(&self, frame: &Frame) -> PyResult<Roofs> {
+        let usual = PvSystem::default();
+        let system = usual
+            .with_module_efficiency(self.module_efficiency.unwrap_or(usual.module_efficiency))
+            .with_temperature_coefficient(self.temperature_coefficient.unwrap_or(usual.temperature_coefficient))
+            .with_system_losses(self.system_losses.unwrap_or(usual.system_losses))
+            .with_inverter_efficiency(self.inverter_efficiency.unwrap_or(usual.inverter_efficiency))
+            .with_dc_ac_ratio(self.dc_ac_ratio.unwrap_or(usual.dc_ac_ratio));
+        system.validate().map_err(exception)?;
+        let footprints = self.footprints.as_ref().map(|file| read_footprints(file.source(), frame)).transpose();
+        Ok(Roofs {
+            min_area: self.min_area,
+            panel: self.panel,
+            min_cells: self.min_cells,
+            system,
+            footprints: footprints.map_err(exception)?.map(Arc::new),
+            ground: ground_points(self.ground.as_deref())?,
+        })
+    }
+}
+
+/// Names and values of columns.
+type NamedColumns<'py> = Vec<(String, Bound<'py, PyAny>)>;
+
+fn to_python<'py>(py: Python<'py>, columns: Vec<RoofColumn>) -> PyResult<NamedColumns<'py>> {
+    let values = |values: RoofValues| match values {
+        RoofValues::Real(values, _) => Ok::<_, PyErr>(to_1d(py, values).into_any()),
+        // numbers count from 1
+        RoofValues::Whole(values) => {
+            let values = values.into_iter().map(|v| v.and_then(|v| i64::try_from(v).ok()).unwrap_or(0)).collect();
+            Ok(to_1d::<i64>(py, values).into_any())
+        }
+        RoofValues::Words(words) => Ok(PyList::new(py, words)?.into_any()),
+    };
+    columns.into_iter().map(|column| Ok((column.name, values(column.values)?))).collect()
+}
+
+/// Columns of planes and of buildings, those of the hours of each plane if they are wanted, and remarks.
+type RoofColumns<'py> = (NamedColumns<'py>, NamedColumns<'py>, Vec<NamedColumns<'py>>, Vec<Bound<'py, PyDict>>);
 
 #[pymethods]
 impl PyScene {
-    /// The columns of the planes of roofs, with the middle of each first, and the number of cells of each.
-    #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
+    /// The columns of the planes of roofs, of their buildings and of their hours.
     fn roof_planes<'py>(
         &self,
         py: Python<'py>,
         radiation: RadiationKeywords,
-        min_area: Option<f64>,
-        panel: Option<f64>,
-        min_cells: Option<usize>,
-        ground: Option<&str>,
+        roofs: RoofKeywords,
         trees: Through,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<RoofColumns<'py>> {
-        let roofs = Roofs { min_area, panel, min_cells, ground: ground_points(ground)? };
-        let question = radiation.question(&trees, Some(roofs))?;
         let scene = Arc::clone(&self.0);
+        let chosen = roofs.chosen(scene.frame())?;
+        let system = chosen.system;
+        let question = radiation.question(&trees, Some(chosen))?;
         let of_work = Arc::clone(&scene);
-        let answers = run(py, progress, move |control| ask::ask(&of_work, &question, &ask::Places::Scene, control))?;
+        let is_hourly = roofs.hourly;
+        let (answers, hours) = run(py, progress, move |control| {
+            let answers = ask::ask(&of_work, &question, &ask::Places::Scene, control)?;
+            let hours = match &answers.found.roofs {
+                Some(found) if is_hourly => found
+                    .planes
+                    .iter()
+                    .zip(&found.energies)
+                    .map(|(plane, energy)| plane_hours(plane, energy, &found.rows, &system))
+                    .collect::<belvedere::Result<Vec<_>>>()?,
+                _ => Vec::new(),
+            };
+            Ok((answers, hours))
+        })?;
         let remarks = remarks_of(py, &answers.remarks)?;
-        let Some(roofs) = &answers.found.roofs else { return Ok((Vec::new(), Vec::new(), remarks)) };
-        let cells = roofs.energies.iter().map(|energy| energy.cell_count).collect();
-        let columns = roof_columns(&roofs.planes, &roofs.energies, scene.frame(), &answers.found.site);
-        let columns = columns.into_iter().map(|column| (column.name, to_1d(py, column.values).into_any()));
-        Ok((columns.collect(), cells, remarks))
+        let Some(found) = &answers.found.roofs else { return Ok((Vec::new(), Vec::new(), Vec::new(), remarks)) };
+        let planes = roof_columns(found.as_rows(), scene.frame(), &answers.found.site);
+        let buildings = building_columns(found.as_rows());
+        let hours = hours.iter().zip(&found.yields);
+        let hours = hours.map(|(hours, own)| to_python(py, hour_columns(&found.rows, hours, own.peak_power)));
+        Ok((to_python(py, planes)?, to_python(py, buildings)?, hours.collect::<PyResult<_>>()?, remarks))
     }
 
     fn irradiance<'py>(

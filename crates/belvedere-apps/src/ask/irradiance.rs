@@ -2,24 +2,26 @@
 
 use super::how_sure::{check_interval, check_interval_scene};
 use super::scene::Whereabouts;
-use super::sections::{LinesSection, MeasuresSection, PlacesReport, RadiationSection, RoofsSection};
+use super::sections::{LinesSection, MeasuresSection, PlacesReport, PvSection, RadiationSection, RoofsSection};
 use super::sun::SunPlace;
 use super::sun_and_sky::{Light, OnTargets};
 use super::trees::remark_on_leaves;
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::irradiance::{
-    ClearSky, IrradianceParams, PeriodReport, RadiationSource, RoofIrradiation, RoofsReport, SeasonRadiation,
-    Surroundings, clock_contradiction, look_count, period_seasons, roof_irradiation, season_irradiation,
+    ASSUMED_TEMPERATURE, ASSUMED_WIND, ClearSky, IrradianceParams, PeriodReport, PeriodRow, PeriodRows, PlaneYield,
+    PvSystem, RadiationSource, RoofIrradiation, RoofRows, RoofsReport, SeasonRadiation, Surroundings,
+    clock_contradiction, look_count, period_seasons, roof_irradiation, roof_yields, season_irradiation,
 };
-use crate::roof_planes::{GROUND_CELL, RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
+use crate::roof_planes::{Buildings, GROUND_CELL, RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
 use crate::rows::Obstacles;
 use crate::sum_errors::Intervals;
 use crate::sun::Site;
 use crate::targets::Measure;
-use crate::tree_light::{CrownLight, TreeLight};
+use crate::tree_light::CrownLight;
 use belvedere_core::ground::{GroundPoints, MapGrid};
 use belvedere_core::query::{MedialScene, UnprovenAs};
 use belvedere_data::control::Control;
+use belvedere_data::polygon::Footprint;
 use belvedere_data::report::rounded;
 use belvedere_data::weather::Weather;
 use belvedere_data::{Error, Parameter, Result};
@@ -92,7 +94,7 @@ impl PartialEq for Radiation {
 }
 
 /// Planes of roofs.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Roofs {
     /// Smallest area of a plane, square metres; `None` for the default of [`RoofPlaneParams`].
@@ -102,6 +104,11 @@ pub struct Roofs {
     /// Minimum number of cells of a plane that is listed; smaller ones are counted. `None` for 10: the panels of the
     /// smallest plant that is worth its inverter.
     pub min_cells: Option<usize>,
+    /// Photovoltaic system on them.
+    pub system: PvSystem,
+    /// Outlines of buildings, local metres; `None` if planes that touch are a building.
+    #[serde(skip)]
+    pub footprints: Option<Arc<Vec<Footprint>>>,
     /// Source of ground points.
     #[serde(skip)]
     pub ground: GroundPoints,
@@ -109,7 +116,8 @@ pub struct Roofs {
 
 impl Default for Roofs {
     fn default() -> Self {
-        Self { min_area: None, panel: None, min_cells: None, ground: GroundPoints::Auto }
+        let system = PvSystem::default();
+        Self { min_area: None, panel: None, min_cells: None, system, footprints: None, ground: GroundPoints::Auto }
     }
 }
 
@@ -129,10 +137,27 @@ pub struct IrradianceResults {
 pub struct RoofsResults {
     /// The planes.
     pub planes: Vec<RoofPlane>,
+    /// The building of each.
+    pub buildings: Buildings,
     /// The energy of each.
     pub energies: Vec<RoofIrradiation>,
+    /// The electricity of each.
+    pub yields: Vec<PlaneYield>,
+    /// Radiation row by row.
+    pub rows: PeriodRows,
+    /// Source of the radiation, for people.
+    pub radiation: String,
     /// Sums of them.
     pub report: RoofsReport,
+}
+
+impl RoofsResults {
+    /// Returns the rows of tables of planes and of buildings.
+    #[must_use]
+    pub fn as_rows(&self) -> RoofRows<'_> {
+        let Self { planes, buildings, energies, yields, radiation, .. } = self;
+        RoofRows { planes, buildings, energies, yields, radiation }
+    }
 }
 
 impl Radiation {
@@ -148,6 +173,21 @@ impl Radiation {
             }),
             Self::ClearSky { clear_sky, year } => Ok(RadiationSource::ClearSky { clear_sky: *clear_sky, year: *year }),
         }
+    }
+
+    /// Returns the source in words, such as "EPW; delft.epw" or "clear sky of Haurwitz; 2026", without commas, which part
+    /// the cells of tables.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let text = match self {
+            Self::Weather { file, weather, .. } => {
+                let name = std::path::Path::new(file).file_name().map(|name| name.to_string_lossy());
+                let format = weather.as_ref().map_or("weather", |weather| weather.format);
+                format!("{format}, {}", name.unwrap_or_default())
+            }
+            Self::ClearSky { clear_sky, year } => format!("{clear_sky}, {year}"),
+        };
+        text.replace(", ", "; ")
     }
 
     /// The rows of weather, once they were read.
@@ -253,8 +293,8 @@ impl Roofs {
         usual.with_min_area(self.min_area.unwrap_or(usual.min_area)).with_cell(self.panel.unwrap_or(usual.cell))
     }
 
-    /// The planes of a scene that are listed.
-    fn find(&self, scene: &Scene, context: &mut Context, control: &Control<'_>) -> Result<Vec<RoofPlane>> {
+    /// The planes of a scene that are listed, and their buildings.
+    fn find(&self, scene: &Scene, context: &mut Context, control: &Control<'_>) -> Result<(Vec<RoofPlane>, Buildings)> {
         let (low, high) = scene.model().bounds().on_map();
         let [x, y, _] = scene.frame().origin;
         let known = scene.ground(MapGrid::covering(low, high, GROUND_CELL, [x, y])?, self.ground, control)?;
@@ -263,8 +303,17 @@ impl Roofs {
         let places: Vec<[f32; 3]> = rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
         let planes = control.stage("detecting roof planes", 0, || roof_planes(&places, &self.params(), control))?;
         let min_cells = self.min_cells.unwrap_or(MIN_CELLS);
-        let (listed, small): (Vec<RoofPlane>, Vec<RoofPlane>) =
-            planes.into_iter().partition(|plane| plane.cells.count() >= min_cells);
+        let is_listed = |plane: &RoofPlane| plane.cells.count() >= min_cells;
+        // small planes join large ones to a building
+        let buildings = match &self.footprints {
+            None => Buildings::of_touching(&planes).of_kept(planes.iter().map(is_listed)),
+            Some(footprints) => {
+                let large: Vec<RoofPlane> = planes.iter().filter(|plane| is_listed(plane)).cloned().collect();
+                Buildings::of_footprints(&large, footprints)
+            }
+        };
+        remark_on_buildings(&buildings, context);
+        let (listed, small): (Vec<RoofPlane>, Vec<RoofPlane>) = planes.into_iter().partition(is_listed);
         let small_area = rounded(small.iter().map(|plane| plane.area).sum(), 1);
         context.report.roofs = Some(RoofsSection {
             source: match from {
@@ -274,6 +323,7 @@ impl Roofs {
             points: places.len(),
             points_on_planes: listed.iter().chain(&small).map(|plane| plane.points.len()).sum(),
             planes: listed.len(),
+            buildings: buildings.count(),
             area_m2: rounded(listed.iter().map(|plane| plane.area).sum(), 1),
             small_planes: small.len(),
             small_planes_area_m2: small_area,
@@ -286,8 +336,18 @@ impl Roofs {
             let remark = Remark::note("small-roof-planes", text).with("count", count as f64).with("area_m2", area);
             context.add(Some(remark));
         }
-        Ok(listed)
+        Ok((listed, buildings))
     }
+}
+
+/// Adds remarks on planes that footprints do not hold well.
+fn remark_on_buildings(buildings: &Buildings, context: &mut Context) {
+    let count = buildings.of_plane.len();
+    let outside = buildings.of_plane.iter().filter(|number| number.is_none()).count();
+    let so = "of roofs lie in no footprint, and belong to no building";
+    context.add(Remark::of_share("planes-outside-footprints", outside, count, "planes", so));
+    let so = "of roofs reach over several footprints, and count for the one with most of them";
+    context.add(Remark::of_share("planes-over-footprints", buildings.reaching_over, count, "planes", so));
 }
 
 impl Ask for IrradianceQuestion {
@@ -296,6 +356,7 @@ impl Ask for IrradianceQuestion {
     fn check(&self) -> Result<()> {
         self.params.validate()?;
         check_interval(self.interval, &self.trees)?;
+        self.roofs.as_ref().map_or(Ok(()), |roofs| roofs.system.validate())?;
         self.place.check().map(|_| ())
     }
 
@@ -340,8 +401,12 @@ impl Ask for IrradianceQuestion {
             }
         };
         let roofs = match planes {
-            Some(planes) => {
-                Some(roofs_found((planes, intervals), (&blockers, trees.as_ref()), &seasons, context, control)?)
+            Some((planes, buildings)) => {
+                let obstacles = Obstacles { scene: &blockers, trees: trees.as_ref() };
+                let energies = control.stage("testing sun and sky", planes.len(), || {
+                    roof_irradiation(obstacles, &planes, &seasons, intervals, control)
+                })?;
+                Some(self.roofs_found((planes, buildings, energies), &site, crowns, context, control)?)
             }
             None => None,
         };
@@ -360,19 +425,66 @@ pub(super) fn summarise(measures: &[Measure], places: &str, context: &mut Contex
     }
 }
 
-fn roofs_found(
-    (planes, intervals): (Vec<RoofPlane>, Intervals),
-    (scene, trees): (&MedialScene, Option<&TreeLight>),
-    seasons: &[SeasonRadiation],
-    context: &mut Context,
-    control: &Control<'_>,
-) -> Result<RoofsResults> {
-    let obstacles = Obstacles { scene, trees };
-    let energies = control.stage("testing sun and sky", planes.len(), || {
-        roof_irradiation(obstacles, &planes, seasons, intervals, control)
-    })?;
-    let report = RoofsReport::new(&planes, &energies);
-    let area: f64 = planes.iter().map(|plane| plane.area).sum();
-    context.headline(format!("{} roof planes, {area:.0} m²", planes.len()));
-    Ok(RoofsResults { planes, energies, report })
+impl IrradianceQuestion {
+    /// The electricity of planes of roofs, with what is reported of them.
+    fn roofs_found(
+        &self,
+        (planes, buildings, energies): (Vec<RoofPlane>, Buildings, Vec<RoofIrradiation>),
+        site: &Site,
+        crowns: Option<CrownLight>,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<RoofsResults> {
+        let system = self.roofs.as_ref().map(|roofs| roofs.system).unwrap_or_default();
+        let source = self.radiation.source()?;
+        let (rows, yields) = control.stage("computing yields", planes.len(), || {
+            let rows = PeriodRows::gather(&source, site, crowns, &self.params, control)?;
+            let yields = roof_yields(&planes, &energies, &rows, &system, control)?;
+            Ok((rows, yields))
+        })?;
+        remark_on_air(&rows.rows, context);
+        context.report.photovoltaics = Some(PvSection::of(&system));
+        let report = RoofsReport::new(&planes, &energies, &yields);
+        let area: f64 = planes.iter().map(|plane| plane.area).sum();
+        let on = match buildings.count() {
+            0 => String::new(),
+            1 => " on 1 building".to_owned(),
+            count => format!(" on {count} buildings"),
+        };
+        context.headline(format!("{} roof planes{on}, {area:.0} m²", planes.len()));
+        if !planes.is_empty() {
+            context.headline(format!(
+                "panels of {:.1} kWp give {} to {} MWh of alternating current {}",
+                report.peak_power_kwp,
+                report.string_ac_mwh,
+                report.ac_mwh,
+                self.radiation.period_in_words()
+            ));
+        }
+        let radiation = self.radiation.in_words();
+        Ok(RoofsResults { planes, buildings, energies, yields, rows, radiation, report })
+    }
+}
+
+impl Radiation {
+    fn period_in_words(&self) -> String {
+        match self.weather().map(|weather| (weather.period_remark(), weather.hours())) {
+            None => "in a year without clouds".to_owned(),
+            Some((None, _)) => "a year".to_owned(),
+            Some((Some(_), hours)) => format!("in {hours:.0} hours of weather"),
+        }
+    }
+}
+
+/// Adds remarks on air that is assumed.
+fn remark_on_air(rows: &[PeriodRow], context: &mut Context) {
+    let missing = |known: &dyn Fn(&PeriodRow) -> bool| rows.iter().filter(|row| !known(row)).count();
+    let (temperatures, winds) = (missing(&|row| row.temperature.is_some()), missing(&|row| row.wind_speed.is_some()));
+    for (key, count, what) in [
+        ("air-assumed", temperatures, format!("have no air temperature: {ASSUMED_TEMPERATURE} °C is assumed")),
+        ("wind-assumed", winds, format!("have no wind: {ASSUMED_WIND} m/s is assumed")),
+    ] {
+        let what = format!("of the radiation {what} for the yield of panels");
+        context.add(Remark::of_share(key, count, rows.len(), "rows", &what).map(Remark::into_note));
+    }
 }

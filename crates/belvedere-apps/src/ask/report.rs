@@ -13,7 +13,7 @@ use super::north::NorthReport;
 use super::observers::ObserversSection;
 use super::protected_view::ProtectedViewSection;
 use super::sections::{
-    GroundSection, LinesSection, LocationSection, MeasuresSection, NamedValues, PeriodSection, PlacesReport,
+    GroundSection, LinesSection, LocationSection, MeasuresSection, NamedValues, PeriodSection, PlacesReport, PvSection,
     RadiationSection, RoofsSection, SunSection, TreesSection,
 };
 use super::single_places::PlaceSection;
@@ -59,6 +59,9 @@ pub struct Report {
     /// Roofs that were found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub roofs: Option<RoofsSection>,
+    /// Photovoltaic system on them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub photovoltaics: Option<PvSection>,
     /// The windows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub windows: Option<WindowsSection>,

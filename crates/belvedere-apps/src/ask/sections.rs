@@ -2,6 +2,7 @@
 
 use super::scene::KnownGround;
 use crate::edge::EdgeReport;
+use crate::irradiance::PvSystem;
 use crate::sun::{Date, DayParams, Site, SiteFrom, SunSchedule, Zone};
 use crate::targets::{Measure, MeasureStatistics, Targets};
 use crate::tree_light::{CrownLight, Transmissivity};
@@ -212,9 +213,25 @@ pub struct RoofsSection {
     pub(super) points: usize,
     pub(super) points_on_planes: usize,
     pub(super) planes: usize,
+    pub(super) buildings: usize,
     pub(super) area_m2: f64,
     pub(super) small_planes: usize,
     pub(super) small_planes_area_m2: f64,
+}
+
+/// Photovoltaic system of a yield.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PvSection {
+    model: &'static str,
+    mounting: &'static str,
+    #[serde(flatten)]
+    system: PvSystem,
+}
+
+impl PvSection {
+    pub(super) fn of(system: &PvSystem) -> Self {
+        Self { model: "PVWatts", mounting: "close to the roof", system: *system }
+    }
 }
 
 /// Obstacles to lines of sight.

@@ -4,6 +4,7 @@ use super::atmosphere::extraterrestrial;
 use super::clear_sky::ClearSky;
 use super::erbs::complete;
 use super::period::Instant;
+use super::period_rows::{hour_around, row_of_step};
 use crate::sun::{Site, SunPosition, Zone, sun_position};
 use belvedere_data::weather::{Irradiance, Weather, WeatherStep};
 use belvedere_data::{Error, Parameter, Result};
@@ -33,12 +34,16 @@ pub fn weather_instants(weather: &Weather, site: &Site, parts: usize) -> Result<
         let value = parts.to_string();
         return Err(Error::InvalidParameter { parameter: Parameter::WeatherParts, value, expected: "1 to 120" });
     }
-    let of_steps: Vec<Vec<Instant>> =
-        weather.steps.par_iter().with_min_len(64).map(|step| of_step(step, site, parts)).collect::<Result<_>>()?;
+    let of_steps: Vec<Vec<Instant>> = weather
+        .steps
+        .par_iter()
+        .with_min_len(64)
+        .map(|step| of_step(weather, step, site, parts))
+        .collect::<Result<_>>()?;
     Ok(of_steps.into_iter().flatten().collect())
 }
 
-fn of_step(step: &WeatherStep, site: &Site, parts: usize) -> Result<Vec<Instant>> {
+fn of_step(weather: &Weather, step: &WeatherStep, site: &Site, parts: usize) -> Result<Vec<Instant>> {
     let is_dark = |v: Option<f64>| v.unwrap_or(0.0) <= 0.0;
     if is_dark(step.ghi) && is_dark(step.dni) && is_dark(step.dhi) {
         return Ok(Vec::new());
@@ -53,7 +58,8 @@ fn of_step(step: &WeatherStep, site: &Site, parts: usize) -> Result<Vec<Instant>
     for part in 0..parts {
         let since_start = (part as f64 + 0.5) * length;
         let at = step.instant + (since_start - 0.5 * step.hours) * 3600.0;
-        instants.push(instant(site, at, length, step.month, |_| whole)?);
+        let row = row_of_step(weather, step);
+        instants.push(Instant { row, ..instant(site, at, length, step.month, |_| whole)? });
     }
     let up_count = instants.iter().filter(|instant| instant.sun[2] > 0.0).count();
     if up_count > 0 {
@@ -115,6 +121,7 @@ fn instant(site: &Site, at: f64, hours: f64, month: u8, irradiance: impl Fn(f64)
         zenith,
         hours,
         month,
+        row: hour_around(at, 0.0),
         irradiance: irradiance(zenith),
         extraterrestrial: extraterrestrial(at),
     })

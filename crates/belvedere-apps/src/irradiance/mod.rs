@@ -11,36 +11,48 @@
 //! | what a period sends, in parts by what trees let through | [`period_seasons`] |
 //! | what each target gets of it, and what it loses | [`season_irradiation`], [`scene_irradiation`], [`irradiation`] |
 //! | what roofs and planes of panels in strings get | [`roof_irradiation`], [`plane_irradiation`] |
+//! | what a plane gets in each row of weather | [`PeriodRows::on_plane`] |
+//! | the electricity of panels on roofs, in sum and row by row | [`roof_yields`], [`plane_hours`] |
 
 mod atmosphere;
 mod clear_sky;
 mod diffuse;
 mod erbs;
+mod hour_columns;
 mod instants;
 mod intervals;
 mod irradiation;
 mod measures;
 mod patch_sky;
 mod period;
+mod period_rows;
+mod pvwatts;
 mod roof_columns;
 mod roofs;
 mod seasons;
 mod strings;
 mod weather_clock;
+mod yields;
 
 pub use atmosphere::{SOLAR_CONSTANT, absolute_air_mass, air_mass, extraterrestrial, pressure};
 pub use clear_sky::{BirdParams, ClearSky};
 pub use diffuse::{DiffuseParts, SkyModel, diffuse_parts};
 pub use erbs::{complete, split_global};
+pub use hour_columns::{hour_columns, sky_loss_percent};
 pub use instants::{PARTS, clear_instants, weather_instants};
 pub use irradiation::{Irradiation, irradiation, irradiation_through_crowns, scene_irradiation};
 pub use measures::{ENERGY, ENERGY_NAME, MONTH_COLUMNS, irradiation_measures};
 pub use patch_sky::patch_radiation;
 pub use period::{Grouping, Instant, IrradianceParams, PeriodRadiation, PeriodReport, Surroundings};
-pub use roof_columns::{RoofColumn, roof_columns};
+pub use period_rows::{PeriodRow, PeriodRows, RowRadiation};
+pub use pvwatts::{PvPower, PvSystem, cell_temperature, cover_transmission};
+pub use roof_columns::{RoofColumn, RoofRows, RoofValues, building_columns, roof_columns};
 pub use roofs::{RoofIrradiation, RoofsReport, above_roof, horizon_places, roof_irradiation};
 pub use seasons::{
     CLEAR_SKY_YEAR, RadiationSource, SeasonRadiation, TargetEnergies, look_count, period_seasons, season_irradiation,
 };
-pub use strings::{PlaneIrradiation, plane_irradiation};
+pub use strings::{PlaneIrradiation, PlaneLight, plane_irradiation};
 pub(crate) use weather_clock::clock_contradiction;
+pub use yields::{
+    ASSUMED_TEMPERATURE, ASSUMED_WIND, PlaneHour, PlaneYield, PvEnergy, performance_ratio, plane_hours, roof_yields,
+};

@@ -121,6 +121,8 @@ pub struct Instant {
     pub hours: f64,
     /// Month, 1 to 12.
     pub month: u8,
+    /// Middle of the [`PeriodRow`](super::PeriodRow) that it is a part of, seconds since 1970-01-01 UTC.
+    pub row: f64,
     /// Radiation, W/m².
     pub irradiance: Irradiance,
     /// Radiation above the atmosphere on a plane that faces the sun, W/m².
@@ -228,15 +230,39 @@ impl PeriodRadiation {
     /// [`Error::InvalidParameter`] for parameters outside their range and for instants that are not finite or below
     /// zero, [`Error::NoPoints`] without instants.
     pub fn gather(instants: &[Instant], params: &IrradianceParams) -> Result<Self> {
+        match params.grouping {
+            Grouping::Whole => Self::gather_groups(instants, params, 1, |_| 0),
+            Grouping::Months => {
+                let month = |instant: &Instant| usize::from(instant.month.clamp(1, 12)) - 1;
+                Self::gather_groups(instants, params, MONTHS, month)
+            }
+        }
+    }
+
+    /// Gathers `instants` in a group for each of their rows; returns the rows too, rising. The directions are those of
+    /// [`gather`](Self::gather).
+    ///
+    /// # Errors
+    /// Those of [`gather`](Self::gather).
+    pub(super) fn gather_rows(instants: &[Instant], params: &IrradianceParams) -> Result<(Self, Vec<f64>)> {
+        let mut rows: Vec<f64> = instants.iter().map(|instant| instant.row).collect();
+        rows.sort_unstable_by(f64::total_cmp);
+        rows.dedup();
+        let group = |instant: &Instant| rows.partition_point(|row| *row < instant.row);
+        Ok((Self::gather_groups(instants, params, rows.len(), group)?, rows))
+    }
+
+    fn gather_groups(
+        instants: &[Instant],
+        params: &IrradianceParams,
+        group_count: usize,
+        group_of: impl Fn(&Instant) -> usize,
+    ) -> Result<Self> {
         params.validate()?;
         if instants.is_empty() {
             return Err(Error::NoPoints { what: "the period has no instant".to_owned() });
         }
         let sky = SkyDirections::patches(params.patch_division)?;
-        let group_count = match params.grouping {
-            Grouping::Whole => 1,
-            Grouping::Months => MONTHS,
-        };
         let mut cells = SunCells::new();
         let mut evenly = vec![Evenly::default(); group_count];
         let mut patches = vec![0.0; sky.directions.len() * group_count];
@@ -244,7 +270,7 @@ impl PeriodRadiation {
         let mut report = PeriodReport::default();
         for instant in instants {
             check(instant)?;
-            let group = if group_count == 1 { 0 } else { usize::from(instant.month.clamp(1, 12)) - 1 };
+            let group = group_of(instant);
             let Irradiance { ghi, dni, dhi } = instant.irradiance;
             if ghi <= 0.0 && dni <= 0.0 && dhi <= 0.0 {
                 continue;
@@ -300,8 +326,9 @@ impl PeriodRadiation {
 fn check(instant: &Instant) -> Result<()> {
     let Irradiance { ghi, dni, dhi } = instant.irradiance;
     let values = [ghi, dni, dhi, instant.hours, instant.extraterrestrial];
+    let is_at = instant.zenith.is_finite() && instant.row.is_finite();
     let is_unit = (instant.sun.iter().map(|v| v * v).sum::<f64>() - 1.0).abs() < 1e-6;
-    if values.iter().all(|v| v.is_finite() && *v >= 0.0) && instant.zenith.is_finite() && is_unit {
+    if values.iter().all(|v| v.is_finite() && *v >= 0.0) && is_at && is_unit {
         return Ok(());
     }
     Err(Error::InvalidParameter {
@@ -336,6 +363,7 @@ mod tests {
                 zenith: FRAC_PI_2 - elevation,
                 hours: 0.25,
                 month: 6,
+                row: 0.0,
                 irradiance: Irradiance { ghi, dni: 0.0, dhi: ghi },
                 extraterrestrial: 1360.0,
             }

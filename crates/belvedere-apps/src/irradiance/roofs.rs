@@ -3,7 +3,8 @@
 use super::intervals::EnergyOutlines;
 use super::irradiation::Irradiation;
 use super::seasons::{SeasonRadiation, add, group_count};
-use super::strings::{PlaneIrradiation, plane_irradiation};
+use super::strings::{PlaneIrradiation, PlaneLight, plane_irradiation};
+use super::yields::{PlaneYield, performance_ratio};
 use crate::roof_planes::RoofPlane;
 use crate::rows::{BLOCK_BITS, Obstacles, RowBlock, fold_blocks};
 use crate::sum_errors::{Intervals, SumError, SumKind, class_of};
@@ -25,6 +26,8 @@ pub struct RoofIrradiation {
     pub string_limited: Irradiation,
     /// Energy in each group of the period, kWh/m²: 12 months, or the whole.
     pub groups: Vec<f64>,
+    /// Light of each direction, for each season.
+    pub light: Vec<PlaneLight>,
     /// Cells that count: those of the plane that see anything of the sky.
     pub cell_count: usize,
     /// Error class of the mean ([`SumKind::Plane`]); `None` if not requested.
@@ -64,23 +67,43 @@ pub struct RoofsReport {
     pub max_loss_percent: f64,
     /// Area of the cells that this is about, m².
     pub panel_area_m2: f64,
+    /// Peak power of their panels, kW.
+    pub peak_power_kwp: f64,
+    /// Direct current over the period where each panel works for itself, MWh.
+    pub dc_mwh: f64,
+    /// Alternating current over the period where each panel works for itself, MWh.
+    pub ac_mwh: f64,
+    /// Alternating current over the period where rows of panels are strings, MWh.
+    pub string_ac_mwh: f64,
+    /// Alternating current relative to a system that keeps its peak efficiency; `None` without radiation.
+    pub performance_ratio: Option<f64>,
 }
 
 impl RoofsReport {
-    /// Sums over `planes`, each with its energy, by the area of their cells.
+    /// Sums over `planes`, each with its energy, by the area of their cells, and its electricity.
     #[must_use]
-    pub fn new(planes: &[RoofPlane], energies: &[RoofIrradiation]) -> Self {
+    pub fn new(planes: &[RoofPlane], energies: &[RoofIrradiation], yields: &[PlaneYield]) -> Self {
         let weighted = |value: &dyn Fn(&RoofIrradiation) -> f64| -> f64 {
             planes.iter().zip(energies).map(|(plane, energy)| energy.panel_area(plane) * value(energy)).sum()
         };
         let unshaded = weighted(&|energy| energy.mean.unshaded).max(f64::MIN_POSITIVE);
         let energy = weighted(&|energy| energy.mean.total());
         let limited = weighted(&|energy| energy.string_limited.total());
+        let mut electricity = PlaneYield::default();
+        yields.iter().for_each(|own| electricity.add(own));
+        let [alone, strings] = [electricity.mean, electricity.string_limited].map(|energy| energy.total());
+        let mean_radiation = energy / weighted(&|_| 1.0);
+        let ratio = performance_ratio(&electricity.mean, electricity.peak_power, mean_radiation);
         Self {
             energy_mwh: rounded(energy / 1000.0, 2),
             min_loss_percent: rounded(100.0 * (1.0 - energy / unshaded), 2),
             max_loss_percent: rounded(100.0 * (1.0 - limited / unshaded), 2),
             panel_area_m2: rounded(weighted(&|_| 1.0), 1),
+            peak_power_kwp: rounded(electricity.peak_power, 2),
+            dc_mwh: rounded(alone.dc / 1000.0, 2),
+            ac_mwh: rounded(alone.ac / 1000.0, 2),
+            string_ac_mwh: rounded(strings.ac / 1000.0, 2),
+            performance_ratio: Some(rounded(ratio, 3)).filter(|ratio| ratio.is_finite()),
         }
     }
 }
@@ -167,13 +190,15 @@ fn of_planes(
         strings.push(cells.iter().map(|(_, string)| *string).collect());
     }
     let mut sums: Vec<PlaneIrradiation> = Vec::new();
+    let mut light: Vec<Vec<PlaneLight>> = vec![Vec::with_capacity(seasons.len()); planes.len()];
     // progress counts planes, so that the rows of their cells count nothing
     let quiet = Quiet(control);
     for season in seasons {
         let directions = season.radiation.directions();
         let outlines = (intervals == Intervals::With).then(|| EnergyOutlines::new(&season.radiation));
         fold_blocks(obstacles.into(), &places, &directions, places.len().max(1), &Control::new(&quiet), |block| {
-            let own = of_season(&block, planes, &strings, season)?;
+            let mut own = of_season(&block, planes, &strings, season)?;
+            light.iter_mut().zip(&mut own).for_each(|(light, own)| light.push(std::mem::take(&mut own.light)));
             if let Some(outlines) = &outlines {
                 let (mut first, free) = (0, block.free_lines(season.factor)?);
                 for ((plane, strings), moved) in planes.iter().zip(&strings).zip(&mut moved) {
@@ -196,7 +221,9 @@ fn of_planes(
     Ok(sums
         .iter()
         .zip(moved)
-        .map(|(sum, moved)| RoofIrradiation {
+        .zip(light)
+        .map(|((sum, moved), light)| RoofIrradiation {
+            light,
             class: (intervals == Intervals::With).then(|| class_of(false, moved)),
             mean: Irradiation::sum(&sum.mean),
             string_limited: Irradiation::sum(&sum.string_limited),

@@ -60,6 +60,27 @@ pub fn period_seasons(
     params: &IrradianceParams,
     control: &Control<'_>,
 ) -> Result<(Vec<SeasonRadiation>, PeriodReport)> {
+    let mut seasons = Vec::new();
+    let mut report = PeriodReport::default();
+    for (share, instants) in &season_instants(source, site, crowns, control)? {
+        control.check()?;
+        let radiation = PeriodRadiation::gather(instants, params)?;
+        report.add(&radiation.report);
+        seasons.push(SeasonRadiation { radiation, factor: *share });
+    }
+    Ok((seasons, report))
+}
+
+/// Returns the instants of a period with the [`CrownLight::factor`] that they share, for each season.
+///
+/// # Errors
+/// Those of [`weather_instants`] and [`clear_instants`], and [`Error::Cancelled`].
+pub(super) fn season_instants(
+    source: &RadiationSource<'_>,
+    site: &Site,
+    crowns: Option<CrownLight>,
+    control: &Control<'_>,
+) -> Result<Vec<(f64, Vec<Instant>)>> {
     let zone = Zone::mean_solar(site);
     let share = |date: Date| crowns.map_or(0.0, |crowns| crowns.factor(Some(Season::on(date, site))));
     let mut parts: Vec<(f64, Vec<Instant>)> = Vec::new();
@@ -85,15 +106,7 @@ pub fn period_seasons(
             }
         }
     }
-    let mut seasons = Vec::new();
-    let mut report = PeriodReport::default();
-    for (share, instants) in &parts {
-        control.check()?;
-        let radiation = PeriodRadiation::gather(instants, params)?;
-        report.add(&radiation.report);
-        seasons.push(SeasonRadiation { radiation, factor: *share });
-    }
-    Ok((seasons, report))
+    Ok(parts)
 }
 
 /// The rows of `weather`, those together whose instants have the same share; in the order in which shares come first.

@@ -4,6 +4,7 @@ use super::irradiation::{Irradiation, on_plane};
 use super::period::PeriodRadiation;
 use crate::rows::RowBlock;
 use belvedere_core::query::VisibilityMatrix;
+use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Result};
 
 /// Energy of a plane of cells over a period.
@@ -15,8 +16,19 @@ pub struct PlaneIrradiation {
     /// The same where a row of cells gets only the light that all of its cells get at once. It is the maximum loss of a
     /// plant whose rows are strings without bypass diodes.
     pub string_limited: Vec<Irradiation>,
+    /// Light of each direction.
+    pub light: PlaneLight,
     /// Cells that are counted: those that see anything of the sky.
     pub cell_count: usize,
+}
+
+/// Shares of the light from each of [`PeriodRadiation::directions`] that reach the cells of a plane, 0 to 1, (D).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PlaneLight {
+    /// Mean of the cells.
+    pub mean: Vec<f32>,
+    /// Mean of the least of each string, weighted with its cells.
+    pub string_limited: Vec<f32>,
 }
 
 /// Computes the energy of a plane with a unit `normal`, upward, whose cells are rows of `block` from `first` on.
@@ -47,8 +59,10 @@ pub fn plane_irradiation(
     let mut sums = PlaneIrradiation {
         mean: vec![Irradiation::default(); group_count],
         string_limited: vec![Irradiation::default(); group_count],
+        light: PlaneLight::default(),
         cell_count: (first..first + strings.len()).filter(|&target| sees_sky(matrix, target)).count(),
     };
+    let [mut of_cells, mut of_strings] = [(); 2].map(|()| vec![0.0_f64; matrix.direction_count()]);
     let share = 1.0 / sums.cell_count.max(1) as f64;
     let mut groups = vec![Irradiation::default(); group_count];
     let mut cell = first;
@@ -60,11 +74,16 @@ pub fn plane_irradiation(
             on_plane(radiation, normal, |direction| light.get(direction).copied().unwrap_or(0.0), &mut groups);
             add(&mut sums.mean, &groups, share);
             all.iter_mut().zip(&light).for_each(|(all, own)| *all = all.min(*own));
+            of_cells.iter_mut().zip(&light).for_each(|(sum, own)| *sum += share * own);
         }
         on_plane(radiation, normal, |direction| all.get(direction).copied().unwrap_or(0.0), &mut groups);
-        add(&mut sums.string_limited, &groups, share * open.len() as f64);
+        let weight = share * open.len() as f64;
+        add(&mut sums.string_limited, &groups, weight);
+        of_strings.iter_mut().zip(&all).for_each(|(sum, own)| *sum += weight * own);
         cell += string.len();
     }
+    let single = |shares: Vec<f64>| shares.into_iter().map(to_f32).collect();
+    sums.light = PlaneLight { mean: single(of_cells), string_limited: single(of_strings) };
     Ok(sums)
 }
 

@@ -121,6 +121,7 @@ mod tests {
             longitude: site.longitude,
             height: 0.0,
             rows_hold: RowsHold::Means,
+            utc_offset: 0.0,
             steps: (0..count).filter(|i| day(i) % 5.0 == 0.0).map(step).collect(),
             left_out_count: 0,
             notes: Vec::new(),

@@ -1,12 +1,14 @@
 //! Roofs as planes: the plane parts of objects above the ground, with tilt, azimuth, area and the cells that solar
 //! panels would lie on.
 
+mod buildings;
 mod cells;
 mod fit;
 mod grow;
 mod points;
 mod room;
 
+pub use buildings::Buildings;
 pub use cells::PlaneCells;
 pub use points::{GROUND_CELL, RoofsFrom, roof_points};
 

@@ -4,7 +4,7 @@ use super::{
     IntervalArgument, MemoryArgument, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTreesArguments,
     above_zero, at_least_one, location,
 };
-use belvedere::apps::irradiance::{SkyModel, Surroundings};
+use belvedere::apps::irradiance::{PvSystem, SkyModel, Surroundings};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -29,8 +29,8 @@ pub(crate) struct IrradianceArguments {
     pub(crate) trees: ThroughTreesArguments,
     /// Also write the roof planes, as a table (.csv) or outlines (.geojson); repeatable
     ///
-    /// Columns: tilt, azimuth from true north, area, energy, and the minimum and maximum shading loss of a photovoltaic
-    /// plant there.
+    /// Columns: building, tilt, azimuth from true north, area, radiation, the minimum and maximum shading loss, and the
+    /// peak power and electricity of panels there.
     #[arg(long, value_name = "OUT", help_heading = "Roofs")]
     pub(crate) planes: Vec<PathBuf>,
     /// Minimum area of a roof plane in square metres [default: 4]
@@ -55,6 +55,8 @@ pub(crate) struct IrradianceArguments {
     /// nearest to the middle of the plane that has nothing above it.
     #[arg(long, value_name = "DIR", requires = "planes", help_heading = "Roofs")]
     pub(crate) horizons: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) photovoltaics: PvArguments,
     /// Also report the energy of each month
     #[arg(long, help_heading = "Result")]
     pub(crate) months: bool,
@@ -66,6 +68,58 @@ pub(crate) struct IrradianceArguments {
     pub(crate) memory: MemoryArgument,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
+}
+
+/// Panels on roofs, and their buildings.
+#[derive(Args)]
+#[command(next_help_heading = "Roofs")]
+pub(crate) struct PvArguments {
+    /// Also write the sums of each building, as a table (.csv)
+    ///
+    /// Planes that touch in plan are one building, unless --footprints says otherwise.
+    #[arg(long, value_name = "OUT", requires = "planes")]
+    pub(crate) buildings: Option<PathBuf>,
+    /// Outlines of buildings: polygons (.geojson) or a city model (.city.json, .city.jsonl)
+    ///
+    /// A plane belongs to the outline with most of it. Names are those of the members name, identificatie, identifier
+    /// or id, or of city objects.
+    #[arg(long, value_name = "FILE", requires = "planes")]
+    pub(crate) footprints: Option<PathBuf>,
+    /// Also write the radiation, shading losses and electricity of each plane hour by hour into this folder; created if
+    /// it does not exist
+    ///
+    /// For each plane a table by row of weather, and a column of beam shading losses for SAM.
+    #[arg(long, value_name = "DIR", requires = "planes")]
+    pub(crate) hourly: Option<PathBuf>,
+    /// Peak power of a square metre of panels in kW, or their efficiency as a share [default: 0.2]
+    #[arg(long, value_name = "SHARE", requires = "planes", allow_negative_numbers = true)]
+    pub(crate) module_efficiency: Option<f64>,
+    /// Change of the power of panels per degree Celsius, as a share [default: -0.0037]
+    #[arg(long, value_name = "SHARE", requires = "planes", allow_negative_numbers = true)]
+    pub(crate) temperature_coefficient: Option<f64>,
+    /// Share of the direct current that is lost by dirt, wires, mismatch and the like, without shading
+    /// [default: 0.1142]
+    #[arg(long, value_name = "SHARE", requires = "planes", allow_negative_numbers = true)]
+    pub(crate) system_losses: Option<f64>,
+    /// Nominal efficiency of the inverters [default: 0.96]
+    #[arg(long, value_name = "SHARE", requires = "planes", allow_negative_numbers = true)]
+    pub(crate) inverter_efficiency: Option<f64>,
+    /// Peak power of panels for each power of their inverter [default: 1.2]
+    #[arg(long, value_name = "RATIO", requires = "planes", allow_negative_numbers = true)]
+    pub(crate) dc_ac_ratio: Option<f64>,
+}
+
+impl PvArguments {
+    /// Returns the photovoltaic system.
+    pub(crate) fn system(&self) -> PvSystem {
+        let usual = PvSystem::default();
+        usual
+            .with_module_efficiency(self.module_efficiency.unwrap_or(usual.module_efficiency))
+            .with_temperature_coefficient(self.temperature_coefficient.unwrap_or(usual.temperature_coefficient))
+            .with_system_losses(self.system_losses.unwrap_or(usual.system_losses))
+            .with_inverter_efficiency(self.inverter_efficiency.unwrap_or(usual.inverter_efficiency))
+            .with_dc_ac_ratio(self.dc_ac_ratio.unwrap_or(usual.dc_ac_ratio))
+    }
 }
 
 /// Model of radiation.

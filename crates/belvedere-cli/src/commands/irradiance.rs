@@ -1,5 +1,6 @@
 //! `belvedere irradiance`.
 
+mod hours;
 mod planes;
 pub(super) mod radiation;
 
@@ -13,6 +14,8 @@ use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Ask, Places, Roofs, SunPlace};
 use belvedere::apps::irradiance::{CLEAR_SKY_YEAR, Grouping};
+use belvedere::io::read_footprints;
+use std::sync::Arc;
 
 pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Summary> {
     let outputs = arguments.outputs.of_places();
@@ -26,10 +29,11 @@ pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Su
     let grouping = if arguments.months { Grouping::Months } else { Grouping::Whole };
     let params = radiation::params(&arguments.model).with_grouping(grouping);
     let IrradianceArguments { min_area, panel, min_cells, .. } = *arguments;
-    let roofs = Roofs { min_area, panel, min_cells, ground: arguments.places.ground.points() };
+    let (system, ground) = (arguments.photovoltaics.system(), arguments.places.ground.points());
+    let roofs = Roofs { min_area, panel, min_cells, system, footprints: None, ground };
     let (weather, clear_sky) = (arguments.radiation.weather.as_deref(), arguments.radiation.clear_sky);
     let year = arguments.year.unwrap_or(CLEAR_SKY_YEAR);
-    let question = ask::IrradianceQuestion {
+    let mut question = ask::IrradianceQuestion {
         // a mistyped weather file must not be found out after the balls were made
         radiation: radiation::of((weather, clear_sky), &arguments.model, year, &run)?,
         params,
@@ -56,6 +60,10 @@ pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Su
     arguments.places.far.set(&mut scene, &mut run)?;
     warn_of_geojson(&arguments.planes, &scene.cloud.frame.crs, &mut run.summary);
     let scene = scene.into_question_scene(Some(&arguments.places.ground), arguments.shell.shell, &run)?;
+    if let (Some(roofs), Some(path)) = (&mut question.roofs, &arguments.photovoltaics.footprints) {
+        let footprints = run.stage("reading footprints", 0, |_| read_footprints(path.as_path(), scene.frame()))?;
+        roofs.footprints = Some(Arc::new(footprints));
+    }
     let (places, source) = match wants_places {
         true => arguments.places.places(&scene, &mut run).map(|(places, source)| (places, Some(source)))?,
         false => (Places::Scene, None),

@@ -72,6 +72,8 @@ pub struct Weather {
     pub height: f64,
     /// Meaning of the values of rows.
     pub rows_hold: RowsHold,
+    /// Clock of the file: hours that it is ahead of UTC.
+    pub utc_offset: f64,
     /// The rows in the order of the file.
     pub steps: Vec<WeatherStep>,
     /// Rows of the file that hold no radiation, and are left out.
@@ -167,6 +169,7 @@ mod tests {
             longitude: 0.1,
             height: 0.0,
             rows_hold: RowsHold::Means,
+            utc_offset: 0.0,
             steps: hours.map(step).collect(),
             left_out_count: 0,
             notes: Vec::new(),

@@ -46,6 +46,7 @@ pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
         longitude: longitude.to_radians(),
         height,
         rows_hold: RowsHold::Means,
+        utc_offset: zone,
         steps: Vec::new(),
         left_out_count: 0,
         notes: Vec::new(),

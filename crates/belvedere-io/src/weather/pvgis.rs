@@ -74,6 +74,7 @@ pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
         longitude: longitude.to_radians(),
         height: head.height,
         rows_hold: RowsHold::Instants,
+        utc_offset: 0.0,
         steps: Vec::new(),
         left_out_count: 0,
         notes: Vec::new(),

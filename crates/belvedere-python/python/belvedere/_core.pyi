@@ -8,6 +8,7 @@ import numpy.typing as npt
 _Progress = Callable[[str, int, int], object] | None
 _Grid = tuple[int, int, Sequence[float]]
 _Columns = list[tuple[str, str, npt.NDArray[Any]]]
+_NamedColumns = list[tuple[str, Any]]
 _Remarks = list[dict[str, Any]]
 _Measures = list[tuple[str, str, npt.NDArray[Any], bool, str, dict[str, str]]]
 _Results = tuple[
@@ -281,13 +282,10 @@ class Scene:
     def roof_planes(
         self,
         radiation: dict[str, Any],
-        min_area: float | None,
-        panel: float | None,
-        min_cells: int | None,
-        ground: str | None,
+        roofs: dict[str, Any],
         trees: dict[str, Any],
         progress: _Progress,
-    ) -> tuple[list[tuple[str, npt.NDArray[np.float64]]], list[int], _Remarks]: ...
+    ) -> tuple[_NamedColumns, _NamedColumns, list[_NamedColumns], _Remarks]: ...
     def depth_map(
         self, camera: dict[str, Any], place: dict[str, Any], progress: _Progress
     ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32] | None, _Remarks]: ...

@@ -153,6 +153,13 @@ class Energy:
         min_area: float | None = None,
         panel: float | None = None,
         min_cells: int | None = None,
+        footprints: Source | None = None,
+        module_efficiency: float | None = None,
+        temperature_coefficient: float | None = None,
+        system_losses: float | None = None,
+        inverter_efficiency: float | None = None,
+        dc_ac_ratio: float | None = None,
+        hourly: bool = False,
         ground: str | None = None,
         through_trees: str | float | None = None,
         leaves: str | None = None,
@@ -160,7 +167,7 @@ class Energy:
         interval: bool = False,
         progress: Progress = None,
     ) -> Table:
-        """The planes of roofs, and the energy that each receives.
+        """The planes of roofs, the energy that each receives, and the electricity of panels on it.
 
         Parameters
         ----------
@@ -174,15 +181,34 @@ class Energy:
             Side of the panels that a plane is divided into, metres; a row of panels is a string.
         min_cells : int, optional
             Smallest number of cells of a plane that is listed; 10 if not given. Smaller planes are counted in a remark.
+        footprints : path, file or bytes, optional
+            Outlines of buildings: polygons of GeoJSON, or a city model of CityJSON. If not given, planes that touch are
+            one building.
+        module_efficiency : float, optional
+            Peak power of panels, kW per square metre; 0.2 if not given.
+        temperature_coefficient : float, optional
+            Change of their power per degree Celsius, as a share; -0.0037 if not given.
+        system_losses : float, optional
+            Share of the direct current lost without shading; 0.1142 if not given.
+        inverter_efficiency : float, optional
+            Nominal efficiency of the inverters; 0.96 if not given.
+        dc_ac_ratio : float, optional
+            Peak power of panels for each power of their inverter; 1.2 if not given.
+        hourly : bool, optional
+            Whether there is a table of hours for each plane too.
         progress : bool or callable, optional
 
         Returns
         -------
         Table
             A row for each plane: ``cells``, ``area_m2``, ``tilt_deg``, ``azimuth_deg`` from true north (NaN for a level
-            plane), ``kwh_m2`` and its parts, ``min_loss`` where each panel works alone, ``max_loss`` where the worst
-            panel limits its row, and ``kwh``; with `interval` also ``kwh_m2_expected``, ``kwh_m2_low``,
-            ``kwh_m2_high``, ``loss_expected``, ``loss_low`` and ``loss_high``. `places` has the middle of each plane.
+            plane), the source of its ``radiation``, ``kwh_m2`` and its parts, ``min_loss`` where each panel works
+            alone, ``max_loss`` where the worst panel limits its row, and ``radiation_kwh``. Of electricity: ``kwp``,
+            ``dc_kwh``, ``ac_kwh``, ``kwh_per_kwp`` and ``performance_ratio`` where each panel works alone, and
+            ``string_dc_kwh``, ``string_ac_kwh`` and ``string_kwh_per_kwp`` where the worst panel limits its row. With
+            `interval` also ``kwh_m2_expected``, ``kwh_m2_low``, ``kwh_m2_high``, ``loss_expected``, ``loss_low`` and
+            ``loss_high``. `places` has the middle of each plane, `buildings` the sums of each building, and `hours` a
+            table for each plane if `hourly`.
 
         Raises
         ------
@@ -198,6 +224,8 @@ class Energy:
         >>> roofs = scene.roof_planes(clear_sky="ineichen", sun_cell_deg=6, patch_division=1)
         >>> bool((roofs["max_loss"] >= roofs["min_loss"]).all()), roofs.places.shape == (roofs.row_count, 3)
         (True, True)
+        >>> bool((roofs["string_ac_kwh"] <= roofs["ac_kwh"]).all()), str(roofs["radiation"][0])
+        (True, 'clear sky of Ineichen & Perez; Linke turbidity 3; 2026')
         """
         check_finite(min_area=min_area, panel=panel)
         radiation = _radiation(
@@ -215,15 +243,33 @@ class Energy:
             location=location,
             interval=interval,
         )
+        roofs = {
+            "min_area": min_area,
+            "panel": panel,
+            "min_cells": min_cells,
+            "ground": ground,
+            "footprints": None if footprints is None else native_source(footprints, None),
+            "module_efficiency": module_efficiency,
+            "temperature_coefficient": temperature_coefficient,
+            "system_losses": system_losses,
+            "inverter_efficiency": inverter_efficiency,
+            "dc_ac_ratio": dc_ac_ratio,
+            "hourly": hourly,
+        }
         trees = {"share": through_trees, "leaves": leaves}
-        columns, cells, given = self._core.roof_planes(
-            radiation, min_area, panel, min_cells, ground, trees, reporter(progress)
-        )
-        middle = np.column_stack([values for _, values in columns[:3]])
-        found = {"cells": np.array(cells, np.int64), **dict(columns[3:])}
+        planes, buildings, hours, given = self._core.roof_planes(radiation, roofs, trees, reporter(progress))
+        found = _as_arrays(planes)
+        middle = np.column_stack([found.pop(axis) for axis in "xyz"])
         table = Table(found, places=middle, crs=self._core.crs.text)
+        table.buildings = Table(_as_arrays(buildings))
+        table.hours = [Table(_as_arrays(of_plane)) for of_plane in hours]
         table.remarks = warned(given)
         return table
+
+
+def _as_arrays(columns: list[tuple[str, Any]]) -> dict[str, npt.NDArray[Any]]:
+    """Columns of numbers and of words."""
+    return {name: np.array(values, str) if isinstance(values, list) else values for name, values in columns}
 
 
 def native_weather(weather: Any, location: tuple[float, float] | None) -> Any:

@@ -36,6 +36,10 @@ class Table(dict[str, "npt.NDArray[Any]"]):
         What to know of the rows.
     objects : Table or None
         Of the faces of a mesh: the same for each of its objects, or for the whole mesh where it has none.
+    buildings : Table or None
+        Of the planes of roofs: sums of each building.
+    hours : list of Table
+        Of the planes of roofs: radiation, losses and electricity of each, hour by hour.
 
     Examples
     --------
@@ -65,6 +69,8 @@ class Table(dict[str, "npt.NDArray[Any]"]):
         self.crs = crs
         self.panoramas = [] if panoramas is None else panoramas
         self.objects = objects
+        self.buildings: Table | None = None
+        self.hours: list[Table] = []
         self.remarks: tuple[Remark, ...] = ()
 
     def __missing__(self, name: str) -> npt.NDArray[Any]:

@@ -227,6 +227,7 @@ fn weather(steps: Vec<WeatherStep>) -> Weather {
         longitude: site().longitude,
         height: 0.0,
         rows_hold: RowsHold::Means,
+        utc_offset: 0.0,
         steps,
         left_out_count: 0,
         notes: Vec::new(),

@@ -60,6 +60,7 @@ mod reading;
 mod relief;
 mod roof_losses;
 mod roof_planes;
+mod roof_yields;
 mod rooms;
 mod rows;
 mod scanner_location;

@@ -1,4 +1,4 @@
-"""Writes pvlib_skies.csv and pvlib_planes.csv beside itself: what pvlib says of skies and of planes that nothing shades.
+"""Writes pvlib_skies.csv, pvlib_planes.csv and pvlib_yields.csv beside itself: skies, and planes that nothing shades.
 
 Made with pvlib 0.16.1 (BSD-3-Clause), its solar positions by the NREL algorithm, sampled over a year at three sites.
 """
@@ -79,6 +79,55 @@ def planes(number, sky):
         }
 
 
+def year_of_weather():
+    """Hours of a year at Rotterdam under a simple law of sun, clouds, air and wind, which the test repeats."""
+    times = pd.date_range("2025-01-01", "2026-01-01", freq="h", tz="UTC")[:-1] + pd.Timedelta(minutes=30)
+    day, hour = times.dayofyear.values - 1.0, times.hour.values + 0.5
+    season = np.cos(2 * np.pi * (day - 171) / 365)
+    height = np.cos(np.pi / 2 * np.clip((hour - 11.7) / (5.9 + 2.2 * season), -1, 1))
+    clear = (day * 31 + 17) % 10 / 9
+    return pd.DataFrame(
+        {
+            "dni": 850 * clear * np.sqrt(height),
+            "dhi": (60 + 250 * (1 - clear)) * height,
+            "air": 10 + 9 * np.cos(2 * np.pi * (day - 199) / 365) + 4 * np.cos(2 * np.pi * (hour - 15) / 24),
+            "wind": 3 + 2 * np.sin(0.7 * day),
+        },
+        index=times,
+    )
+
+
+def yields():
+    """A year of PVWatts: 1 kW of panels close to a roof, system losses 11.42 %, an inverter of 1/1.2 kW."""
+    latitude, longitude, *_ = SITES[0]
+    weather = year_of_weather()
+    sun = pvlib.solarposition.get_solarposition(weather.index, latitude, longitude, altitude=0.0)
+    zenith, azimuth = sun.apparent_zenith, sun.azimuth
+    assert (zenith[(weather.dni > 0) & (weather.dhi > 1)] < 90).all()
+    ghi = weather.dni * np.cos(np.radians(zenith)).clip(lower=0) + weather.dhi
+    extra = pvlib.irradiance.get_extra_radiation(weather.index)
+    close = pvlib.temperature.TEMPERATURE_MODEL_PARAMETERS["sapm"]["close_mount_glass_glass"]
+    for model in ("isotropic", "haydavies", "perez"):
+        for tilt, facing in PLANES[:-1]:
+            plane = pvlib.irradiance.get_total_irradiance(
+                tilt, facing, zenith, azimuth, weather.dni, ghi, weather.dhi, dni_extra=extra, albedo=ALBEDO, model=model
+            ).fillna(0.0)
+            covered = pvlib.iam.physical(pvlib.irradiance.aoi(tilt, facing, zenith, azimuth))
+            effective = plane.poa_direct * covered + plane.poa_diffuse
+            cell = pvlib.temperature.sapm_cell(plane.poa_global, weather.air, weather.wind, **close)
+            direct = pvlib.pvsystem.pvwatts_dc(effective, cell, 1.0, -0.0037) * (1 - 0.1142)
+            alternating = pvlib.inverter.pvwatts(direct, 1 / 1.2 / 0.96)
+            yield {
+                "model": model,
+                "tilt_deg": tilt,
+                "azimuth_deg": facing,
+                "kwh_m2": plane.poa_global.sum() / 1000,
+                "dc_kwh": direct.sum(),
+                "ac_kwh": alternating.sum(),
+                "june_ac_kwh": alternating[weather.index.month == 6].sum(),
+            }
+
+
 if __name__ == "__main__":
     random = np.random.default_rng(20)
     table = pd.concat([skies(random, *site) for site in SITES], ignore_index=True)
@@ -86,3 +135,4 @@ if __name__ == "__main__":
     table.to_csv(folder / "pvlib_skies.csv", index=False, float_format="%.8g")
     rows = [row for number, sky in table.iterrows() for row in planes(number, sky)]
     pd.DataFrame(rows).to_csv(folder / "pvlib_planes.csv", index=False, float_format="%.8g")
+    pd.DataFrame(yields()).to_csv(folder / "pvlib_yields.csv", index=False, float_format="%.8g")

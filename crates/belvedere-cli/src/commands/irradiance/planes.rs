@@ -1,7 +1,8 @@
 //! Planes of roofs as files.
 
 use super::super::{check_output, check_parent, extension};
-use crate::arguments::IrradianceArguments;
+use super::hours;
+use crate::arguments::{IrradianceArguments, PvArguments};
 use crate::commands::horizon::write_lines;
 use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
@@ -9,12 +10,13 @@ use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{IrradianceResults, Remark, RoofsResults, Scene};
 use belvedere::apps::horizon::{HorizonParams, horizons};
-use belvedere::apps::irradiance::{RoofColumn, horizon_places, roof_columns};
+use belvedere::apps::irradiance::{RoofColumn, RoofValues, building_columns, horizon_places, roof_columns};
 use belvedere::apps::sun::Site;
 use belvedere::io::{PolygonArea, TableCells, atomic, outlines, write_geojson_areas, write_table};
 use belvedere::query::SkylinePoint;
-
+use serde_json::Value;
 use std::f64::consts::FRAC_PI_2;
+use std::path::Path;
 
 /// Azimuths of a horizon: steps of 7.5 degrees, as PVGIS has them.
 const AZIMUTHS: usize = 48;
@@ -23,7 +25,10 @@ pub(super) fn check(arguments: &IrradianceArguments) -> Result<()> {
     for output in &arguments.planes {
         check_output("--planes", output, &["csv", "geojson"])?;
     }
-    if let Some(folder) = &arguments.horizons {
+    if let Some(output) = &arguments.photovoltaics.buildings {
+        check_output("--buildings", output, &["csv"])?;
+    }
+    for folder in [&arguments.horizons, &arguments.photovoltaics.hourly].into_iter().flatten() {
         check_parent(folder)?;
     }
     Ok(())
@@ -47,6 +52,15 @@ pub(super) fn write(
     }
     run.summary
         .add("planes_written", arguments.planes.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    let PvArguments { buildings, hourly, .. } = &arguments.photovoltaics;
+    if let Some(output) = buildings {
+        run.stage("writing", 0, |_| write_columns(output, None, &building_columns(roofs.as_rows())))?;
+        run.summary.add("buildings_written", output.display().to_string());
+    }
+    if let Some(folder) = hourly {
+        hours::write(folder, roofs, &arguments.photovoltaics.system(), run)?;
+        run.summary.add("hourly_written", folder.display().to_string());
+    }
     if let Some(folder) = &arguments.horizons {
         let enclosed = write_horizons(folder, roofs, found, run)?;
         run.summary.add("horizons_written", folder.display().to_string());
@@ -57,23 +71,51 @@ pub(super) fn write(
     Ok(())
 }
 
-fn columns(roofs: &RoofsResults, frame: &Frame, site: &Site) -> Vec<RoofColumn> {
-    roof_columns(&roofs.planes, &roofs.energies, frame, site)
+fn write_rows(output: &Path, roofs: &RoofsResults, frame: &Frame, site: &Site) -> Result<()> {
+    let numbers: Vec<Option<u64>> = (1..).take(roofs.planes.len()).map(Some).collect();
+    write_columns(output, Some(("plane", &numbers)), &roof_columns(roofs.as_rows(), frame, site))
 }
 
-fn write_rows(output: &std::path::Path, roofs: &RoofsResults, frame: &Frame, site: &Site) -> Result<()> {
-    let rows = &roofs.energies;
-    let numbers: Vec<Option<u64>> = (1..).take(rows.len()).map(Some).collect();
-    let cells: Vec<Option<u64>> = rows.iter().map(|row| Some(row.cell_count as u64)).collect();
-    let columns = columns(roofs, frame, site);
-    let mut table = vec![("plane", TableCells::Whole(&numbers)), ("cells", TableCells::Whole(&cells))];
-    table.extend(columns.iter().map(|column| (column.name, TableCells::Real(&column.values, column.decimals))));
+/// Writes columns as a table, behind one of numbers if it is given.
+pub(super) fn write_columns(
+    output: &Path,
+    numbers: Option<(&str, &[Option<u64>])>,
+    columns: &[RoofColumn],
+) -> Result<()> {
+    let texts: Vec<Vec<&str>> =
+        columns.iter().map(|column| words_of(&column.values).iter().map(String::as_str).collect()).collect();
+    let mut table: Vec<(&str, TableCells<'_>)> =
+        numbers.into_iter().map(|(name, cells)| (name, TableCells::Whole(cells))).collect();
+    table.extend(columns.iter().zip(&texts).map(|(column, texts)| {
+        let cells = match &column.values {
+            RoofValues::Real(values, decimals) => TableCells::Real(values, *decimals),
+            RoofValues::Whole(values) => TableCells::Whole(values),
+            RoofValues::Words(_) => TableCells::Words(texts),
+        };
+        (&column.name[..], cells)
+    }));
     Ok(write_table(output, &table)?)
 }
 
+fn words_of(values: &RoofValues) -> &[String] {
+    if let RoofValues::Words(words) = values { words } else { &[] }
+}
+
+/// The value of a column in a row, as a property of an area.
+fn property(column: &RoofColumn, row: usize) -> Value {
+    match &column.values {
+        RoofValues::Real(values, decimals) => {
+            let digits = i32::try_from(*decimals).unwrap_or(2);
+            rounded(values.get(row).copied().unwrap_or(f64::NAN), digits)
+        }
+        RoofValues::Whole(values) => values.get(row).copied().flatten().into(),
+        RoofValues::Words(words) => words.get(row).cloned().into(),
+    }
+}
+
 /// Writes two areas for each plane: its extent, and the cells that panels would lie on, which say so in `kind`.
-fn write_outlines(output: &std::path::Path, roofs: &RoofsResults, frame: &Frame, site: &Site) -> Result<()> {
-    let columns = columns(roofs, frame, site);
+fn write_outlines(output: &Path, roofs: &RoofsResults, frame: &Frame, site: &Site) -> Result<()> {
+    let columns = roof_columns(roofs.as_rows(), frame, site);
     let mut areas = Vec::with_capacity(2 * roofs.planes.len());
     let kinds = roofs.planes.iter().enumerate().flat_map(|(number, plane)| {
         [("roof", &plane.extent), ("panels", &plane.cells)].map(|(kind, cells)| (number, kind, cells))
@@ -82,10 +124,9 @@ fn write_outlines(output: &std::path::Path, roofs: &RoofsResults, frame: &Frame,
         let mut area = PolygonArea::default();
         area.properties.insert("kind".to_owned(), kind.into());
         area.properties.insert("plane".to_owned(), (number + 1).into());
-        for column in columns.iter().skip(3) {
-            let digits = i32::try_from(column.decimals).unwrap_or(2);
-            let value = column.values.get(number).copied().unwrap_or(f64::NAN);
-            area.properties.insert(column.name.to_owned(), rounded(value, digits));
+        // an area has its place in its corners
+        for column in columns.iter().filter(|column| !["x", "y", "z", "cells"].contains(&&column.name[..])) {
+            area.properties.insert(column.name.clone(), property(column, number));
         }
         let corner = |corner: &[usize; 2]| {
             let place = cells.place(corner.map(|v| v as f64));
@@ -105,7 +146,7 @@ fn write_outlines(output: &std::path::Path, roofs: &RoofsResults, frame: &Frame,
 /// Writes the horizon of each plane, and gives how many are measured inside or below an obstacle, for want of a better
 /// place.
 fn write_horizons(
-    folder: &std::path::Path,
+    folder: &Path,
     roofs: &RoofsResults,
     found: &IrradianceResults,
     run: &CommandContext,

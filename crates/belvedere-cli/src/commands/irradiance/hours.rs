@@ -1,0 +1,38 @@
+//! The hours of the planes of roofs as files.
+
+use super::planes::write_columns;
+use crate::run::CommandContext;
+use anyhow::Result;
+use belvedere::apps::ask::RoofsResults;
+use belvedere::apps::irradiance::{PvSystem, RoofColumn, hour_columns, plane_hours, sky_loss_percent};
+use belvedere::io::atomic;
+use std::path::Path;
+
+/// Column of an hour that the time series of SAM hold.
+const FOR_SAM: &str = "beam_loss_percent";
+
+/// Writes two tables for each plane: all that is known of each row, and the loss of direct radiation alone under a
+/// single line, as SAM reads it.
+pub(super) fn write(folder: &Path, roofs: &RoofsResults, system: &PvSystem, run: &CommandContext) -> Result<()> {
+    atomic::make_folder(folder)?;
+    let planes = roofs.planes.iter().zip(&roofs.energies).zip(&roofs.yields);
+    run.stage("writing hours", roofs.planes.len(), |control| {
+        for (number, ((plane, energy), own)) in (1..).zip(planes) {
+            control.check()?;
+            let hours = plane_hours(plane, energy, &roofs.rows, system)?;
+            let columns = hour_columns(&roofs.rows, &hours, own.peak_power);
+            write_columns(&folder.join(format!("plane_{number}.csv")), None, &columns)?;
+            let losses = columns.into_iter().filter(|column| column.name == FOR_SAM).map(|column| RoofColumn {
+                name: format!(
+                    "beam shading loss of plane {number} in percent (sky diffuse {:.2} percent)",
+                    sky_loss_percent(&hours)
+                ),
+                ..column
+            });
+            let losses: Vec<RoofColumn> = losses.collect();
+            write_columns(&folder.join(format!("plane_{number}_beam_loss.csv")), None, &losses)?;
+            control.advance(1);
+        }
+        Ok(())
+    })
+}
