@@ -208,18 +208,37 @@ def test_stations_of_a_scanner_on_the_ground(run_program, folder):
 def test_roof_planes(scene, run_program, folder):
     pandas = pytest.importorskip("pandas")
     flags = ["--clear-sky", "ineichen", "--sun-cell-deg", 6, "--patch-division", 1, "--months", "--panel", 2]
-    run_program("irradiance", "tile.laz", *flags, "--through-trees", "seasons", "--planes", "roofs.csv")
+    files = ["--planes", "roofs.csv", "--buildings", "buildings.csv", "--hourly", "hours", "--dc-ac-ratio", 1.1]
+    run_program("irradiance", "tile.laz", *flags, "--through-trees", "seasons", *files)
     theirs = pandas.read_csv(folder / "roofs.csv", dtype=str)
     ours = scene.roof_planes(
-        clear_sky="ineichen", sun_cell_deg=6, patch_division=1, months=True, panel=2, through_trees="seasons"
+        clear_sky="ineichen",
+        sun_cell_deg=6,
+        patch_division=1,
+        months=True,
+        panel=2,
+        through_trees="seasons",
+        dc_ac_ratio=1.1,
+        hourly=True,
     )
     assert ours.row_count == len(theirs) > 2
-    columns = {"x": ours.places[:, 0], "y": ours.places[:, 1], "z": ours.places[:, 2], **ours}
-    assert list(theirs.columns) == ["plane", "cells", *(name for name in columns if name != "cells")]
+    places = dict(zip("xyz", ours.places.T, strict=True))
+    assert set(theirs.columns) == {"plane", *places, *ours}
+    is_as_written(places | dict(ours), theirs)
+    is_as_written(ours.buildings, pandas.read_csv(folder / "buildings.csv", dtype=str))
+    assert len(ours.hours) == ours.row_count
+    is_as_written(ours.hours[1], pandas.read_csv(folder / "hours" / "plane_2.csv", dtype=str))
+
+
+def is_as_written(columns, theirs):
     for name, values in columns.items():
-        decimals = max(len(cell.partition(".")[2]) for cell in theirs[name])
-        written = [float(cell) for cell in theirs[name]]
-        assert np.abs(values - written).max() <= 0.5001 * 10.0**-decimals, name
+        if values.dtype.kind == "U":
+            assert list(values) == list(theirs[name]), name
+            continue
+        decimals = max(len(cell.partition(".")[2]) for cell in theirs[name].fillna(""))
+        written = theirs[name].astype(float).to_numpy()
+        assert np.array_equal(np.isnan(values), np.isnan(written)), name
+        assert np.nanmax(np.abs(values - written), initial=0) <= 0.5001 * 10.0**-decimals, name
 
 
 def test_horizons_and_isovists(scene, run_program, folder, standing):

@@ -78,6 +78,63 @@ fn roofs_are_planes_with_bounds_of_their_loss() {
     }
 }
 
+#[test]
+fn roofs_yield_electricity_between_both_ends() {
+    let place = place();
+    let outline = |name: &str, west: f64, east: f64| {
+        let corners = [[west, -8.0], [east, -8.0], [east, 8.0], [west, 8.0], [west, -8.0]]
+            .map(|[x, y]| format!("[{},{}]", EAST + x, NORTH + y));
+        let polygon = format!(r#"{{"type":"Polygon","coordinates":[[{}]]}}"#, corners.join(","));
+        format!(r#"{{"type":"Feature","properties":{{"name":"{name}"}},"geometry":{polygon}}}"#)
+    };
+    let features = [outline("barn", 40.0, 60.0), outline("house", -8.0, 8.0)].join(",");
+    place.write("footprints.geojson", format!(r#"{{"type":"FeatureCollection","features":[{features}]}}"#));
+    let flags = "--months --planes roofs.csv --planes roofs.geojson --buildings sums.csv --hourly hours";
+    let summary = place.summary(&format!("irradiance {HOUSE} --clear-sky haurwitz {flags}"));
+    let (roofs, sums) = (place.text("roofs.csv"), place.text("sums.csv"));
+    // both slopes of a roof are one building
+    assert_eq!((numbers(&roofs, "building"), numbers(&sums, "planes")), (vec![1.0, 1.0], vec![2.0]));
+    assert!(roofs.contains(",clear sky of Haurwitz; 2026,"), "{roofs}");
+    let area = numbers(&roofs, "panel_area_m2");
+    for (peak, area) in numbers(&roofs, "kwp").iter().zip(&area) {
+        assert!((peak - 0.2 * area).abs() < 0.006, "{peak} {area}");
+    }
+    let [ac, strings, dc, ratio] =
+        ["ac_kwh", "string_ac_kwh", "dc_kwh", "performance_ratio"].map(|name| numbers(&roofs, name));
+    for plane in 0..2 {
+        assert!(0.0 < strings[plane] && strings[plane] <= ac[plane] && ac[plane] < dc[plane], "{roofs}");
+        assert!((0.7..0.9).contains(&ratio[plane]), "{ratio:?}");
+        let months: f64 = (1..=12).map(|month| numbers(&roofs, &format!("ac_kwh_{month:02}"))[plane]).sum();
+        assert!((months - ac[plane]).abs() < 1.2, "{months} {}", ac[plane]);
+        let hours = place.text(&format!("hours/plane_{}.csv", plane + 1));
+        assert_eq!(hours.lines().count(), 8761);
+        let watts: f64 = numbers(&hours, "ac_w").iter().sum();
+        assert!((watts / 1000.0 - ac[plane]).abs() < 1.0, "{watts} {}", ac[plane]);
+        // the hour before noon at 4 degrees east, by the clock of UTC
+        assert!(hours.contains("2026-06-21,11:00,+00:00,"), "{hours:.400}");
+        let losses = place.text(&format!("hours/plane_{}_beam_loss.csv", plane + 1));
+        let percents: Vec<f64> = losses.lines().skip(1).map(|line| line.parse().unwrap()).collect();
+        assert!(percents.len() == 8760 && percents.iter().all(|loss| (0.0..=100.0).contains(loss)));
+    }
+    let total = summary["planes"]["ac_mwh"].as_f64().unwrap();
+    assert!((1000.0 * total - ac.iter().sum::<f64>()).abs() < 11.0, "{summary}");
+    assert!((numbers(&sums, "ac_kwh")[0] - ac.iter().sum::<f64>()).abs() < 1.5, "{sums}");
+    assert_eq!(summary["photovoltaics"]["system_losses"], 0.1142);
+    assert!(summary["headline"].as_array().unwrap().iter().any(|line| line.to_string().contains("kWp give")));
+    assert!(remarks(&summary).iter().any(|remark| remark.contains("20 °C is assumed")), "{summary}");
+    let features: serde_json::Value = serde_json::from_str(&place.text("roofs.geojson")).unwrap();
+    let first = &features["features"][0]["properties"];
+    assert_eq!((&first["building"], &first["radiation"]), (&1.into(), &"clear sky of Haurwitz; 2026".into()));
+
+    // outlines name the house, and a system of twice the efficiency has twice the power
+    let flags = "--planes named.csv --footprints footprints.geojson --module-efficiency 0.4";
+    place.summary(&format!("irradiance {HOUSE} --clear-sky haurwitz {flags}"));
+    let named = place.text("named.csv");
+    assert_eq!(numbers(&named, "building"), [2.0, 2.0]);
+    assert!(named.lines().nth(1).unwrap().contains(",house,"), "{named}");
+    assert!((numbers(&named, "ac_kwh")[0] - 2.0 * ac[0]).abs() < 2.0, "{named}");
+}
+
 /// A year of noons in the format of PVGIS, and where they are.
 fn weather(latitude: f64, offset: f64) -> String {
     let mut text = format!(
@@ -120,6 +177,16 @@ fn what_cannot_be_is_refused_with_advice() {
     place.refusal(2, &house("--clear-sky bird --year 9999 -o out.csv"), &["--year"]);
     place.refusal(2, &house("--clear-sky bird --location 99,0 -o out.csv"), &["--location", "latitude"]);
     place.refusal(2, &house("--clear-sky bird --planes roofs.txt"), &["--planes", ".csv"]);
+    for (flag, value) in [
+        ("--module-efficiency", "20"),
+        ("--temperature-coefficient", "0.4"),
+        ("--system-losses", "14"),
+        ("--inverter-efficiency", "96"),
+        ("--dc-ac-ratio", "0"),
+    ] {
+        place.refusal(2, &house(&format!("--clear-sky bird --planes roofs.csv {flag} {value}")), &[flag, value]);
+    }
+    place.refusal(2, &house("--clear-sky bird -o out.csv --hourly hours"), &["--planes"]);
     place.refusal(2, &house("--clear-sky bird --planes a.csv -o a.csv"), &["two results"]);
     place.refusal(1, &house("--weather nowhere.epw -o out.csv"), &["nowhere.epw"]);
     place.write(
