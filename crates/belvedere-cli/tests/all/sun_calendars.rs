@@ -1,6 +1,6 @@
 //! `belvedere sun-calendar` and `belvedere report`.
 
-use crate::common::{EAST, NORTH, Workplace, house};
+use crate::common::{EAST, NORTH, Workplace, at, house};
 
 const HOUSE: &str = "house.laz --scene-config ../tau.json --orient given --location 52,5 --zone +01:00";
 
