@@ -41,7 +41,9 @@ def test_towers_are_those_of_the_program(scene, run_program, folder):
 
 def test_a_tower_above_an_eye_in_the_air_is_seen_whole(scene):
     # nothing stands between two places high above the town
-    seen = scene.towers({"x": [155030.0], "y": [463000.0], "base": [80.0], "tip": [50.0]}, targets=[(154980, 463000, 90)])
+    seen = scene.towers(
+        {"x": [155030.0], "y": [463000.0], "base": [80.0], "tip": [50.0]}, targets=[(154980, 463000, 90)]
+    )
     assert seen["metres"] == pytest.approx([50.0]) and seen["nearest_m"] == pytest.approx([50.0])
     angle = np.degrees(np.arctan2(40, 50) + np.arctan2(10, 50))
     assert seen["angle_deg"] == pytest.approx([angle], abs=1e-3)

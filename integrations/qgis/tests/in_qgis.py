@@ -1,5 +1,6 @@
 """All algorithms in QGIS: `in_qgis.py QGIS_PROCESS PLUGINS_FOLDER MAPS_FOLDER`; called by `integrations/qgis/test`."""
 
+import json
 import os
 import subprocess
 import sys
@@ -110,6 +111,16 @@ def hot_noon():
     return str(path)
 
 
+def mast():
+    """A mast beside the cloud, as a point layer."""
+    path = FOLDER / "mast.geojson"
+    crs = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::28992"}}
+    point = {"type": "Point", "coordinates": [85100, 447600]}
+    feature = {"type": "Feature", "geometry": point, "properties": {"tip": 60, "base": 0, "name": "mast"}}
+    path.write_text(json.dumps({"type": "FeatureCollection", "crs": crs, "features": [feature]}), encoding="utf-8")
+    return str(path)
+
+
 def check_algorithms():
     eye = "85036,447527"
     scene = {"CLOUDS": str(DATA), "CRS": "EPSG:28992"}
@@ -177,6 +188,7 @@ def check_algorithms():
             "OUTPUT": "energy.tif",
             "PLANES": "roofs.gpkg",
         },
+        "towers": {"TOWERS": mast(), "CELL": 4, "OUTPUT": "towers.tif"},
         "heat": {
             "WEATHER": hot_noon(),
             "DATE": "2026-07-21",
@@ -212,6 +224,7 @@ def check_results():
         "sky_view.tif": QgsSingleBandPseudoColorRenderer,
         "energy.tif": QgsSingleBandPseudoColorRenderer,
         "heat.tif": QgsSingleBandPseudoColorRenderer,
+        "towers.tif": QgsSingleBandPseudoColorRenderer,
         "protected.tif": QgsSingleBandPseudoColorRenderer,
         "envelope.tif": QgsSingleBandPseudoColorRenderer,
     }

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-ALL = {"viewshed", "line-of-sight", "isovist", "horizon", "landmark", "protected-view", "window-views", "cameras", "survey-plan"} | {
-    *("shadow", "sun-hours", "sky-view", "irradiance", "heat", "envelope", "comfort", "report", "surfaces")
+ALL = {"viewshed", "line-of-sight", "isovist", "horizon", "towers", "landmark", "protected-view", "window-views", "cameras"} | {
+    *("survey-plan", "shadow", "sun-hours", "sky-view", "irradiance", "heat", "envelope", "comfort", "report", "surfaces")
 }
 
 
@@ -38,6 +38,7 @@ def test_every_algorithm_has_a_cloud_a_result_and_help(commands):
         ("viewshed", "--crs", {"kind": "crs", "is_advanced": False}),
         ("line-of-sight", "--pairs", {"kind": "layer", "geometry": "line"}),
         ("line-of-sight", "--random", {"kind": "integer"}),
+        ("towers", "--towers", {"kind": "layer", "geometry": "point", "is_required": True}),
         ("landmark", "--targets", {"kind": "file"}),
         ("landmark", "--target-polygon", {"kind": "layer", "geometry": "polygon"}),
         ("cameras", "--candidates", {"kind": "layer", "geometry": "any"}),
