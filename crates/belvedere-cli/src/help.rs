@@ -138,6 +138,7 @@ const RARE_IN: &[(&str, &[&str])] = &[
         "irradiance",
         &[
             "dc-ac-ratio",
+            "footprints",
             "inverter-efficiency",
             "min-cells",
             "module-efficiency",

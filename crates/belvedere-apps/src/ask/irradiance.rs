@@ -175,8 +175,8 @@ impl Radiation {
         }
     }
 
-    /// Returns the source in words, such as "EPW; delft.epw" or "clear sky of Haurwitz; 2026", without commas, which part
-    /// the cells of tables.
+    /// Returns the source in words, such as "EPW; delft.epw" or "clear sky of Haurwitz; 2026". Commas would part the
+    /// cells of tables.
     #[must_use]
     pub fn in_words(&self) -> String {
         let text = match self {

@@ -178,8 +178,8 @@ impl PeriodRows {
         Ok(Self { rows, zone, rows_hold, seasons })
     }
 
-    /// Returns the radiation in each row on a plane with a unit `normal`, reached by these shares of the light from each
-    /// direction, season by season. `None` stands for a plane without obstacles.
+    /// Returns the radiation in each row on a plane with a unit `normal`, reached by these shares of the light of each
+    /// direction, season by season; `None` for a plane without obstacles.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] for shares of other seasons or directions.

@@ -61,8 +61,8 @@ fn building_numbers(numbers: Vec<Option<u64>>, names: &[String]) -> Vec<RoofColu
     std::iter::once(number).chain(named).collect()
 }
 
-/// Returns the columns of peak power and electricity, `kwh_m2` being the radiation on the panels of each row. Those that
-/// begin with `string_` hold if rows of panels are strings, the others if each panel works for itself.
+/// Returns the columns of peak power and electricity, `kwh_m2` being the radiation on the panels of each row. Columns
+/// that begin with `string_` hold if rows of panels are strings, the others if each panel works for itself.
 fn yield_columns(yields: &[PlaneYield], kwh_m2: &[f64]) -> Vec<RoofColumn> {
     let of_yields = |value: &dyn Fn(&PlaneYield) -> f64| -> Vec<f64> { yields.iter().map(value).collect() };
     let ratio = |(own, kwh_m2): (&PlaneYield, &f64)| performance_ratio(&own.mean, own.peak_power, *kwh_m2);

@@ -85,10 +85,10 @@ pub(crate) struct PvArguments {
     /// or id, or of city objects.
     #[arg(long, value_name = "FILE", requires = "planes")]
     pub(crate) footprints: Option<PathBuf>,
-    /// Also write the radiation, shading losses and electricity of each plane hour by hour into this folder; created if
-    /// it does not exist
+    /// Also write the hours of each roof plane into this folder (PVsyst, SAM); created if it does not exist
     ///
-    /// For each plane a table by row of weather, and a column of beam shading losses for SAM.
+    /// For each plane a table of radiation, shading losses and electricity by row of weather, and a column of beam
+    /// shading losses.
     #[arg(long, value_name = "DIR", requires = "planes")]
     pub(crate) hourly: Option<PathBuf>,
     /// Peak power of a square metre of panels in kW, or their efficiency as a share [default: 0.2]

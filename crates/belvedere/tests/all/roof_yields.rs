@@ -143,7 +143,7 @@ fn planes_that_nothing_shades_yield_what_pvlib_says() {
             ] {
                 let error = (value / expected - 1.0).abs();
                 greatest = greatest.max(error);
-                // the issue asks for half a percent
+                // half a percent was the aim
                 assert!(error < 0.005, "{name}, tilt {} to {}: {value}, not {expected}", row[0], row[1]);
             }
             assert_eq!(own.mean, own.string_limited, "nothing shades");
