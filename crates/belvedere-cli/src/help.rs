@@ -139,6 +139,7 @@ const RARE_IN: &[(&str, &[&str])] = &[
         &[
             "dc-ac-ratio",
             "footprints",
+            "hourly",
             "inverter-efficiency",
             "min-cells",
             "module-efficiency",
