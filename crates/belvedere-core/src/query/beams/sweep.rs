@@ -81,8 +81,8 @@ impl<'a> TreeSweep<'a> {
         })
     }
 
-    /// Calls `visit` with the places of the targets below `node` that no ball blocks, with the kernels `K`. All that it calls is inlined, so that it can be
-    /// compiled for other instructions.
+    /// Calls `visit` with the places of the targets below `node` that no ball blocks, with the kernels `K`. All that it
+    /// calls is inlined, so that it can be compiled for other instructions.
     #[inline(always)]
     pub(super) fn search<K: Kernels>(&self, node: usize, visit: &mut impl FnMut(usize)) {
         let mut lists = Lists::default();
