@@ -4,7 +4,6 @@ use super::atmosphere::extraterrestrial;
 use super::clear_sky::ClearSky;
 use super::erbs::complete;
 use super::period::Instant;
-use super::period_rows::{hour_around, row_of_step};
 use crate::sun::{Site, SunPosition, Zone, sun_position};
 use belvedere_data::weather::{Irradiance, Weather, WeatherStep};
 use belvedere_data::{Error, Parameter, Result};
@@ -13,10 +12,25 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Parts that rows of weather are cut into by default: of an hour 15 minutes, in which the sun moves 4 degrees.
 pub const PARTS: usize = 4;
+/// Seconds of an hour.
+pub(super) const HOUR_S: f64 = 3600.0;
+/// Rows of weather of this length are whole hours, which rounding may shorten, hours.
+const WHOLE_HOUR: f64 = 0.999;
 /// Maximum number of parts of a row: of an hour half a minute each.
 const MAX_PARTS: usize = 120;
 /// Instants of a clear sky beyond which something is mistyped: 20 years of minutes.
 const MAX_INSTANTS: f64 = 1.1e7;
+
+/// Returns the middle of the whole hour of a clock around an instant; the clock is so many hours ahead of UTC.
+pub(super) fn hour_around(instant: f64, utc_offset: f64) -> f64 {
+    let ahead = utc_offset * HOUR_S;
+    (((instant + ahead) / HOUR_S).floor() + 0.5) * HOUR_S - ahead
+}
+
+/// Returns the row that a step of weather is a part of.
+pub(super) fn row_of_step(weather: &Weather, step: &WeatherStep) -> f64 {
+    if step.hours >= WHOLE_HOUR { step.instant } else { hour_around(step.instant, weather.utc_offset) }
+}
 
 /// The rows of `weather` under the sun of `site`, each cut into `parts` of equal length, 1 to 120.
 ///

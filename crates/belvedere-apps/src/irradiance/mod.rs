@@ -29,6 +29,7 @@ mod period_rows;
 mod pvwatts;
 mod roof_columns;
 mod roofs;
+mod roofs_report;
 mod seasons;
 mod strings;
 mod weather_clock;
@@ -47,7 +48,8 @@ pub use period::{Grouping, Instant, IrradianceParams, PeriodRadiation, PeriodRep
 pub use period_rows::{PeriodRow, PeriodRows, RowRadiation};
 pub use pvwatts::{PvPower, PvSystem, cell_temperature, cover_transmission};
 pub use roof_columns::{RoofColumn, RoofRows, RoofValues, building_columns, roof_columns};
-pub use roofs::{RoofIrradiation, RoofsReport, above_roof, horizon_places, roof_irradiation};
+pub use roofs::{RoofIrradiation, above_roof, horizon_places, roof_irradiation};
+pub use roofs_report::RoofsReport;
 pub use seasons::{
     CLEAR_SKY_YEAR, RadiationSource, SeasonRadiation, TargetEnergies, look_count, period_seasons, season_irradiation,
 };

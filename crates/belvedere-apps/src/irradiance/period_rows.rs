@@ -1,5 +1,6 @@
 //! A period row by row, and the radiation on a plane in each row.
 
+use super::instants::{HOUR_S, row_of_step};
 use super::irradiation::{Irradiation, on_plane};
 use super::period::{IrradianceParams, PeriodRadiation};
 use super::pvwatts::cover_transmission;
@@ -10,10 +11,6 @@ use belvedere_data::control::Control;
 use belvedere_data::vector::{dot, length};
 use belvedere_data::weather::{RowsHold, Weather, WeatherStep};
 use belvedere_data::{Error, Result};
-
-const HOUR_S: f64 = 3600.0;
-/// Rows of weather of this length are whole hours, which rounding may shorten, hours.
-const WHOLE_HOUR: f64 = 0.999;
 
 /// A row of weather of an hour or more, an hour of shorter rows, or an hour of a clear sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,17 +25,6 @@ pub struct PeriodRow {
     pub temperature: Option<f64>,
     /// Wind speed 10 m above the ground, m/s, where it is known.
     pub wind_speed: Option<f64>,
-}
-
-/// Returns the middle of the whole hour of a clock around an instant; the clock is so many hours ahead of UTC.
-pub(super) fn hour_around(instant: f64, utc_offset: f64) -> f64 {
-    let ahead = utc_offset * HOUR_S;
-    (((instant + ahead) / HOUR_S).floor() + 0.5) * HOUR_S - ahead
-}
-
-/// Returns the row that a step of weather is a part of.
-pub(super) fn row_of_step(weather: &Weather, step: &WeatherStep) -> f64 {
-    if step.hours >= WHOLE_HOUR { step.instant } else { hour_around(step.instant, weather.utc_offset) }
 }
 
 /// Mean of what is known.
@@ -226,6 +212,7 @@ fn clock(hours: f64) -> Result<Zone> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::instants::hour_around;
     use super::*;
     use belvedere_data::weather::WeatherAir;
 

@@ -1,5 +1,6 @@
 //! `belvedere irradiance`.
 
+mod columns;
 mod hours;
 mod planes;
 pub(super) mod radiation;

@@ -1,6 +1,6 @@
 //! The hours of the planes of roofs as files.
 
-use super::planes::write_columns;
+use super::columns::write_columns;
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::apps::ask::RoofsResults;

@@ -1,6 +1,7 @@
 //! Planes of roofs as files.
 
 use super::super::{check_output, check_parent, extension};
+use super::columns::write_columns;
 use super::hours;
 use crate::arguments::{IrradianceArguments, PvArguments};
 use crate::commands::horizon::write_lines;
@@ -74,31 +75,6 @@ pub(super) fn write(
 fn write_rows(output: &Path, roofs: &RoofsResults, frame: &Frame, site: &Site) -> Result<()> {
     let numbers: Vec<Option<u64>> = (1..).take(roofs.planes.len()).map(Some).collect();
     write_columns(output, Some(("plane", &numbers)), &roof_columns(roofs.as_rows(), frame, site))
-}
-
-/// Writes columns as a table, behind one of numbers if it is given.
-pub(super) fn write_columns(
-    output: &Path,
-    numbers: Option<(&str, &[Option<u64>])>,
-    columns: &[RoofColumn],
-) -> Result<()> {
-    let texts: Vec<Vec<&str>> =
-        columns.iter().map(|column| words_of(&column.values).iter().map(String::as_str).collect()).collect();
-    let mut table: Vec<(&str, TableCells<'_>)> =
-        numbers.into_iter().map(|(name, cells)| (name, TableCells::Whole(cells))).collect();
-    table.extend(columns.iter().zip(&texts).map(|(column, texts)| {
-        let cells = match &column.values {
-            RoofValues::Real(values, decimals) => TableCells::Real(values, *decimals),
-            RoofValues::Whole(values) => TableCells::Whole(values),
-            RoofValues::Words(_) => TableCells::Words(texts),
-        };
-        (&column.name[..], cells)
-    }));
-    Ok(write_table(output, &table)?)
-}
-
-fn words_of(values: &RoofValues) -> &[String] {
-    if let RoofValues::Words(words) = values { words } else { &[] }
 }
 
 /// The value of a column in a row, as a property of an area.
