@@ -9,6 +9,9 @@ use belvedere_data::{Error, Frame, Mesh, Result};
 /// Members of GeoJSON that name a building, the first of them that a feature has.
 const NAMES: [&str; 4] = ["name", "identificatie", "identifier", "id"];
 
+/// Type of a city model, which GeoJSON has nowhere.
+const CITY_TYPE: &[u8] = b"\"CityJSON\"";
+
 /// Reads the outlines of buildings, local metres of `frame`. Polygons of GeoJSON are brought into the system of the
 /// frame as [`read_geojson`] does; polygons with the same name are one building. Objects of CityJSON cover what their
 /// surfaces cover on the map. A building without a name is named after its number.
@@ -17,10 +20,10 @@ const NAMES: [&str; 4] = ["name", "identificatie", "identifier", "id"];
 /// Those of [`read_geojson`], [`read_cityjson`] and of a city model in another reference system;
 /// [`Error::Malformed`] for a file without polygons.
 pub fn read_footprints<'a>(source: impl Into<Source<'a>>, frame: &Frame) -> Result<Vec<Footprint>> {
-    let source = source.into();
-    let path = source.name().to_owned();
-    let name = path.to_string_lossy().to_lowercase();
-    let is_city = ["city.json", ".cityjson", ".jsonl"].iter().any(|end| name.ends_with(end));
+    let (path, text) = source.into().read_text()?;
+    // both are called .json
+    let is_city = text.windows(CITY_TYPE.len()).any(|word| word == CITY_TYPE);
+    let source = Source::bytes(&path, &text);
     let found = if is_city { of_city(source, frame)? } else { of_features(source, frame)? };
     if found.is_empty() {
         return Err(Error::malformed(&path, "there is no polygon; outlines of buildings are polygons"));
@@ -111,7 +114,7 @@ mod tests {
             "CityObjects":{"hall":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"1",
             "boundaries":[[[0,1,2,3]],[[0,1,5,4]]]}]}},
             "vertices":[[0,0,0],[6,0,0],[6,5,0],[0,5,0],[0,0,3],[6,0,3]]}"#;
-        let path = std::path::Path::new("town.city.json");
+        let path = std::path::Path::new("town.json");
         let found = read_footprints(Source::bytes(path, text.as_bytes()), &frame()).unwrap();
         assert_eq!((found.len(), &found[0].name[..], found[0].polygons.len()), (1, "hall", 2));
         assert_eq!(found[0].bounds(), [[0.0, 0.0], [6.0, 5.0]]);
