@@ -13,7 +13,7 @@ use belvedere::apps::ask::{IrradianceResults, Remark, RoofsResults, Scene};
 use belvedere::apps::horizon::{HorizonParams, horizons};
 use belvedere::apps::irradiance::{RoofColumn, RoofValues, building_columns, horizon_places, roof_columns};
 use belvedere::apps::sun::Site;
-use belvedere::io::{PolygonArea, TableCells, atomic, outlines, write_geojson_areas, write_table};
+use belvedere::io::{PolygonArea, atomic, outlines, write_geojson_areas};
 use belvedere::query::SkylinePoint;
 use serde_json::Value;
 use std::f64::consts::FRAC_PI_2;
