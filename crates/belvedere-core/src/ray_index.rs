@@ -103,12 +103,13 @@ pub struct NodeParts {
     pub half_sizes: [[f32; PARTS]; 3],
 }
 
-/// A part of a node that waits for its visit, with its box.
-struct WaitingBox {
-    key: f64,
-    center: [f64; 3],
-    half: [f64; 3],
-    part: NodePart,
+/// Reach of a box as a walk sees it.
+#[derive(Clone, Copy)]
+pub(crate) struct BoxReach {
+    /// Its least distance, metres.
+    pub(crate) distance: f32,
+    /// Least and greatest tangent of the elevations that it may hide.
+    pub(crate) tangents: [f32; 2],
 }
 
 /// Maximum number of parts of a node of a [`RayIndex`].
@@ -260,38 +261,34 @@ impl RayIndex {
         }
     }
 
-    /// Visits rows box by box, those with the least `key` first. `key` gets the middle and the half size of a box, local
-    /// metres; where it gives `None`, the rows of the box are passed over. `visit` ends the walk by false. Both get
-    /// `state`.
+    /// Visits rows box by box, the nearest first. `reaches` measures the boxes of a node, with the rounding of their
+    /// corners, metres; the rows of a box without a reach, or that `is_wanted` no more when its turn comes, are passed
+    /// over. `visit` ends the walk by false. All get `state`.
     pub(crate) fn visit_nearest_first<S>(
         &self,
         state: &mut S,
-        key: impl Fn(&S, [f64; 3], [f64; 3]) -> Option<f64>,
+        reaches: impl Fn(&S, &NodeParts, f32) -> [Option<BoxReach>; PARTS],
+        is_wanted: impl Fn(&S, &BoxReach) -> bool,
         mut visit: impl FnMut(&mut S, u32) -> bool,
     ) {
-        let slack = self.slack();
+        let slack = to_f32(self.slack() + TREE_SLACK);
         // boxes that wait, the nearest last
-        let mut waiting: SmallVec<[WaitingBox; 64]> = SmallVec::new();
+        let mut waiting: SmallVec<[(BoxReach, NodePart); 64]> = SmallVec::new();
         let mut open = self.root();
         loop {
             if let Some(parts) = open.and_then(|node| self.parts(node)) {
                 let first = waiting.len();
-                for (child, part) in parts.parts.into_iter().enumerate().filter(|(_, part)| *part != NodePart::Nothing)
-                {
-                    let center = std::array::from_fn(|axis| f64::from(parts.centers[axis][child]));
-                    let half = std::array::from_fn(|axis| f64::from(parts.half_sizes[axis][child]) + slack);
-                    if let Some(key) = key(state, center, half) {
-                        waiting.push(WaitingBox { key, center, half, part });
-                    }
+                for (reach, part) in reaches(state, &parts, slack).into_iter().zip(parts.parts) {
+                    waiting.extend(reach.filter(|_| part != NodePart::Nothing).map(|reach| (reach, part)));
                 }
-                waiting[first..].sort_unstable_by(|a, b| b.key.total_cmp(&a.key));
+                waiting[first..].sort_unstable_by(|(a, _), (b, _)| b.distance.total_cmp(&a.distance));
             }
-            let Some(next) = waiting.pop() else { return };
+            let Some((reach, part)) = waiting.pop() else { return };
             open = None;
-            if key(state, next.center, next.half).is_none() {
+            if !is_wanted(state, &reach) {
                 continue;
             }
-            match next.part {
+            match part {
                 NodePart::Node(node) => open = Some(node),
                 NodePart::Rows { first, count } => {
                     if !(first..first + count).all(|row| visit(state, row)) {

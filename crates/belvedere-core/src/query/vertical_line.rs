@@ -5,10 +5,12 @@ use super::far_terrain::TerrainGuess;
 use super::skyline::cut;
 use super::{BallTree, EarthParams, MedialScene};
 use crate::blocking::Ball;
-use crate::ray_index::RayIndex;
-use belvedere_data::vector::sub;
+use crate::ray_index::{BoxReach, NodeParts, PARTS, RayIndex};
+use belvedere_data::vector::{sub, to_f32};
 use smallvec::SmallVec;
 
+/// More than single precision rounds distances by, as a share of the distance of the line.
+const ROUNDING: f32 = 1e-6;
 /// Maximum number of obstacles that are tried first for the next eye.
 const MAX_RECENT: usize = 24;
 
@@ -134,14 +136,68 @@ impl<'a> VerticalSight<'a> {
 
 /// Calls `visit` with each row of an index whose box may hide tangents that nothing hides yet, nearest boxes first.
 fn each_hiding(index: &RayIndex, plane: &Plane<'_>, hidden: &mut Hidden, mut visit: impl FnMut(u32, &mut Hidden)) {
+    let plane_of_boxes = BoxPlane::new(plane);
     index.visit_nearest_first(
         hidden,
-        |hidden, center, half| plane.reach_of_box(hidden, center, half),
+        |hidden, parts, slack| plane_of_boxes.reaches(hidden, parts, slack),
+        |hidden, reach| !hidden.holds(reach.tangents.map(f64::from)),
         |hidden, row| {
             visit(row, hidden);
             !hidden.is_whole()
         },
     );
+}
+
+/// A [`Plane`] in single precision, which boxes are measured in eight at a time.
+struct BoxPlane {
+    eye: [f32; 3],
+    along: [f32; 2],
+    span: f32,
+    fall: f32,
+}
+
+impl BoxPlane {
+    fn new(plane: &Plane<'_>) -> Self {
+        let FarLine { observer, along, span, .. } = plane.line;
+        Self {
+            eye: observer.map(to_f32),
+            along: along.map(to_f32),
+            span: to_f32(span).next_up(),
+            fall: to_f32(plane.fall),
+        }
+    }
+
+    /// The reaches of the boxes of a node that may hide a tangent that nothing hides yet. They are `slack` metres
+    /// larger, which is more than is rounded.
+    #[inline]
+    fn reaches(&self, hidden: &Hidden, parts: &NodeParts, slack: f32) -> [Option<BoxReach>; PARTS] {
+        let slack = slack + ROUNDING * self.span;
+        let [east, north] = self.along;
+        let (mut from, mut to) = ([0.0_f32; PARTS], [0.0_f32; PARTS]);
+        let (mut beside, mut low, mut high) = ([0.0_f32; PARTS], [0.0_f32; PARTS], [0.0_f32; PARTS]);
+        for i in 0..PARTS {
+            let [x, y, z] = [0, 1, 2].map(|axis| parts.centers[axis][i] - self.eye[axis]);
+            let half = [0, 1, 2].map(|axis| parts.half_sizes[axis][i] + slack);
+            let along = x * east + y * north;
+            let reach = half[0] * east.abs() + half[1] * north.abs();
+            from[i] = (along - reach).max(0.0);
+            to[i] = (along + reach).min(self.span);
+            beside[i] = (y * east - x * north).abs() - (half[0] * north.abs() + half[1] * east.abs());
+            (low[i], high[i]) = (z - half[2], z + half[2]);
+        }
+        std::array::from_fn(|i| {
+            if !(beside[i] <= 0.0 && from[i] <= to[i]) {
+                return None;
+            }
+            let lowest = low[i] / if low[i] > 0.0 { to[i] } else { from[i] } - self.fall * to[i];
+            let highest = high[i] / if high[i] > 0.0 { from[i] } else { to[i] } - self.fall * from[i];
+            // 0 / 0 beside the eye says nothing
+            let lowest = if lowest.is_nan() { f32::NEG_INFINITY } else { lowest };
+            let highest = if highest.is_nan() { f32::INFINITY } else { highest };
+            let tangents = [lowest, highest];
+            (!hidden.holds(tangents.map(f64::from))).then_some(BoxReach { distance: from[i], tangents })
+        })
+    }
 }
 
 impl Plane<'_> {
@@ -159,29 +215,6 @@ impl Plane<'_> {
     fn on_map(&self, [x, y, _]: [f64; 3]) -> [f64; 2] {
         let [east, north] = self.line.along;
         [x * east + y * north, y * east - x * north]
-    }
-
-    /// Returns the least distance of a box, metres, if it may hide a tangent that nothing hides yet.
-    #[inline]
-    fn reach_of_box(&self, hidden: &Hidden, center: [f64; 3], half: [f64; 3]) -> Option<f64> {
-        let offset = sub(center, self.line.observer);
-        let [along, beside] = self.on_map(offset);
-        let [east, north] = self.line.along.map(f64::abs);
-        if beside.abs() > half[0] * north + half[1] * east {
-            return None;
-        }
-        let reach = half[0] * east + half[1] * north;
-        let (from, to) = ((along - reach).max(0.0), (along + reach).min(self.line.span));
-        if !(from <= to) {
-            return None;
-        }
-        let (low, high) = (offset[2] - half[2], offset[2] + half[2]);
-        let lowest = low / if low > 0.0 { to } else { from } - self.fall * to;
-        let highest = high / if high > 0.0 { from } else { to } - self.fall * from;
-        // 0 / 0 beside the eye says nothing
-        let lowest = if lowest.is_nan() { f64::NEG_INFINITY } else { lowest };
-        let highest = if highest.is_nan() { f64::INFINITY } else { highest };
-        (!hidden.holds([lowest, highest])).then_some(from)
     }
 
     /// The tangents that a ball hides, if any.

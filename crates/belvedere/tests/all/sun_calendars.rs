@@ -26,7 +26,7 @@ fn box_mesh([x, y]: [f64; 2], [along, across]: [f64; 2], [bottom, top]: [f64; 2]
 }
 
 fn window(place: [f64; 3], azimuth_deg: f64) -> GivenWindow {
-    GivenWindow { place, azimuth_deg, tilt_deg: 90.0, size: None }
+    GivenWindow { place, azimuth_deg: azimuth_deg.rem_euclid(360.0), tilt_deg: 90.0, size: None }
 }
 
 fn question(windows: Vec<GivenWindow>, date: &str, step: f64) -> SunCalendarQuestion {
