@@ -31,7 +31,7 @@ def test_towers_are_those_of_the_program(scene, run_program, folder):
     for measure, raster in rasters.items():
         with rasterio.open(folder / "towers" / f"{measure}.tif") as file:
             theirs = file.read(1)
-            expected = np.where(theirs == file.nodata, np.nan, theirs) if theirs.dtype == np.float32 else theirs
+            expected = np.where(theirs == file.nodata, np.nan, theirs.astype(np.float32))
         assert np.array_equal(raster.values, expected, equal_nan=True), measure
     metres, share = rasters["metres"].values, rasters["share"].values
     known = np.isfinite(metres)
