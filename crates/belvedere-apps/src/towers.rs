@@ -55,14 +55,15 @@ pub struct TowersView {
     /// Visible metres of all towers.
     pub metres: f64,
     /// Visible metres of the tower of which most is visible.
-    pub most_metres: f64,
+    pub max_metres: f64,
     /// Greatest angle between the lowest and the highest visible place of a tower, radians.
     pub angle: f64,
     /// Horizontal distance of the nearest visible tower, metres; 0 where none is visible.
     pub nearest: f64,
     /// Bit i: a part of a tower of scheme i is visible.
     pub schemes: u32,
-    /// True if pulses do not prove the line of sight to the highest visible place of the tower of which most is visible.
+    /// True if pulses do not prove the line of sight to the highest visible place of the tower of which most is
+    /// visible.
     pub is_unproven: bool,
 }
 
@@ -166,8 +167,8 @@ impl PlacesPart {
                 self.place_counts[number][i] += usize::from(is_seen);
             }
             view.metres += metres;
-            if metres > view.most_metres {
-                view.most_metres = metres;
+            if metres > view.max_metres {
+                view.max_metres = metres;
                 *highest = [foot[0], foot[1], foot[2] + top];
             }
             let elevation = |height: f64| (foot[2] + height - eye[2]).atan2(distance);
@@ -179,7 +180,7 @@ impl PlacesPart {
 
     fn test_proof(&mut self, scene: &MedialScene, eyes: &[[f32; 3]], earth: &EarthParams) {
         for ((view, highest), eye) in self.views.iter_mut().flatten().zip(&self.highest).zip(eyes) {
-            if view.most_metres > 0.0 {
+            if view.max_metres > 0.0 {
                 let answer = scene.far_sight_answer(eye.map(f64::from), *highest, earth);
                 view.is_unproven = answer == Answer::Unproven;
             }
@@ -217,7 +218,7 @@ impl TowersSeen {
         if towers.iter().any(|tower| tower.hub.is_some()) {
             measures.push(count("hubs", 2, "visible hubs"));
         }
-        measures.push(length("most_metres", &|view| view.most_metres, "most visible metres of a tower"));
+        measures.push(length("max_metres", &|view| view.max_metres, "most visible metres of a tower"));
         measures.push(
             Measure::new("angle_deg", column(&|view| view.angle.to_degrees()))
                 .with_description("greatest vertical angle, deg")

@@ -27,12 +27,12 @@ pub struct TowerRow {
 }
 
 /// Reads towers from a table (.csv .txt) or points (.geojson .json), in the system `crs` of the cloud. A table has the
-/// columns x, y and tip; it may have base, hub, name and scheme. Points have these as properties. Heights of hub and tip
-/// are metres above the base.
+/// columns x, y and tip; it may have base, hub, name and scheme. Points have these as properties. Heights of hub and
+/// tip are metres above the base.
 ///
 /// # Errors
-/// [`Error::UnknownFormat`], [`Error::Malformed`] for missing columns, empty cells and text in place of numbers, and for
-/// files without towers; the errors of [`read_table`] and [`read_geojson`].
+/// [`Error::UnknownFormat`], [`Error::Malformed`] for missing columns, empty cells and text in place of numbers, and
+/// for files without towers; the errors of [`read_table`] and [`read_geojson`].
 pub fn read_towers<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<TowerRow>> {
     let source = source.into();
     let name = source.name().to_owned();

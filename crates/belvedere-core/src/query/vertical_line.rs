@@ -26,8 +26,8 @@ pub struct VerticalLine {
     pub height: f64,
 }
 
-/// What eyes see of a vertical line. Obstacles of the last eye are tried first for the next one, which saves most of the
-/// time for neighbouring eyes and changes no result.
+/// What eyes see of a vertical line. Obstacles of the last eye are tried first for the next one, which saves most of
+/// the time for neighbouring eyes and changes no result.
 pub struct VerticalSight<'a> {
     scene: &'a MedialScene,
     line: VerticalLine,

@@ -63,7 +63,7 @@ class Towers:
         -------
         Rasters or Table
             ``metres`` and ``share``, visible metres of all towers and their share; ``towers``, ``tips`` and ``hubs``,
-            numbers that are visible, partly or whole; ``most_metres``; ``angle_deg``, the greatest vertical angle of a
+            numbers that are visible, partly or whole; ``max_metres``; ``angle_deg``, the greatest vertical angle of a
             tower; ``nearest_m``; ``schemes``, a bit for each scheme; ``unproven``.
 
         Raises
@@ -86,7 +86,7 @@ class Towers:
         >>> mast = {"x": [154990.0], "y": [462980.0], "tip": [60.0]}
         >>> seen = scene.towers(mast, cell=8)
         >>> list(seen)
-        ['metres', 'share', 'towers', 'tips', 'most_metres', 'angle_deg', 'nearest_m', 'unproven']
+        ['metres', 'share', 'towers', 'tips', 'max_metres', 'angle_deg', 'nearest_m', 'unproven']
         >>> seen["metres"].unit
         'm'
         """

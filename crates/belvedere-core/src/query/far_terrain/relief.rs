@@ -159,8 +159,8 @@ impl TerrainHeights {
         self.first_patch(line).is_some()
     }
 
-    /// Returns the greatest tangent of an elevation between two, at which terrain rises above lines from the observer of
-    /// `line` up to its target: the first of `tangents` where it does not rise above that.
+    /// Returns the greatest tangent of an elevation between two, at which terrain rises above lines from the observer
+    /// of `line` up to its target: the first of `tangents` where it does not rise above that.
     pub(super) fn highest_before(&self, line: &FarLine<'_>, tangents: [f64; 2], guess: &mut TerrainGuess) -> f64 {
         let FarLine { observer: from, along, earth, .. } = *line;
         let lines = self.lines(&LineStarts { low: from, high: from }, along, earth);
