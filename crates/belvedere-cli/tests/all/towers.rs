@@ -67,7 +67,7 @@ fn towers_that_cannot_be_are_refused_before_a_cloud_is_read() {
     let [x, y, _] = at(0.0, 200.0, 0.0);
     for (table, words) in [
         (format!("x,y,tip\n{x},{y},50\n"), "no ground is known"),
-        ("x,y,base,tip\n155000,463000,0,50\n".to_owned(), "from the cloud"),
+        ("x,y,base,tip\n385000,463000,0,50\n".to_owned(), "from the cloud"),
     ] {
         place.write("wrong.csv", table);
         let run = place.run(&format!("{} -o seen.tif", TOWERS.replace("masts.csv", "wrong.csv")));
