@@ -1,6 +1,6 @@
 //! Minimum visible height: how high a target must be to be seen over obstacles.
 
-use super::skyline::cut;
+use super::vertical_plane::VerticalPlane;
 use super::{EarthParams, MedialScene};
 use crate::triangle_tree::Corners;
 use belvedere_data::vector::{length, sub, unit};
@@ -93,61 +93,23 @@ impl MedialScene {
 
 /// Returns the upper end of the shadow that a triangle casts from `observer` on the vertical through `target`.
 fn shadow_top_of_triangle(corners: &Corners, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> f64 {
-    let across = [target[0] - observer[0], target[1] - observer[1]];
-    let span = across[0].hypot(across[1]);
-    let bends = earth.bends(target, observer);
-    let fall = |along: f64| if bends { earth.fall(along) } else { 0.0 };
-    let offsets = corners.map(|corner| {
-        let [x, y, z] = sub(corner, observer);
-        [x, y, z - fall(x.hypot(y))]
-    });
-    if span == 0.0 {
-        // straight below or above the observer: nothing is seen past it
+    let Some(plane) = VerticalPlane::new(observer, target, earth, earth.bends(target, observer)) else {
+        // straight below or above the observer nothing is seen past it
         let highest = corners.iter().map(|corner| corner[2]).fold(f64::NEG_INFINITY, f64::max);
         return if highest > observer[2] { f64::INFINITY } else { highest };
-    }
-    let Some([near, far]) = cut(&offsets, [across[0] / span, across[1] / span]) else { return target[2] };
-    let at = |along: f64| match far[0] > near[0] {
-        true => near[1] + (far[1] - near[1]) * (along - near[0]) / (far[0] - near[0]),
-        false => far[1].max(near[1]),
     };
-    // the piece between the observer and the vertical
-    let ends = [near[0].max(0.0), far[0].min(span)];
-    let shadow = |along: f64| match at(along) {
-        up if along > 0.0 => up * span / along,
-        up if up > 0.0 => f64::INFINITY,
-        _ => f64::NEG_INFINITY,
-    };
-    observer[2] + shadow(ends[0]).max(shadow(ends[1])) + fall(span)
+    plane.hidden_by_triangle(corners).map_or(target[2], |[_, top]| plane.height_at(top))
 }
 
 /// Returns the upper end of the shadow that a whole ball casts from `observer` on the vertical through `target`.
 fn shadow_top(center: [f64; 3], radius: f64, observer: [f64; 3], target: [f64; 3], earth: &EarthParams) -> f64 {
-    let across = [target[0] - observer[0], target[1] - observer[1]];
-    let span = across[0].hypot(across[1]);
-    let offset = sub(center, observer);
-    if span == 0.0 {
-        return if offset[2] > 0.0 { f64::INFINITY } else { center[2] + radius };
+    let Some(plane) = VerticalPlane::new(observer, target, earth, earth.bends(target, observer)) else {
+        return if center[2] > observer[2] { f64::INFINITY } else { center[2] + radius };
+    };
+    match plane.hidden_by_ball(center, radius) {
+        Some([_, top]) => plane.height_at(top),
+        None if length(sub(center, observer)) <= radius => f64::INFINITY,
+        // the line only grazes it
+        None => target[2],
     }
-    // seen from the observer a curved earth falls away below straight lines of sight
-    let bends = earth.bends(target, observer);
-    let fall = |along: f64| if bends { earth.fall(along) } else { 0.0 };
-    let along = (offset[0] * across[0] + offset[1] * across[1]) / span;
-    let beside = (offset[0] * across[1] - offset[1] * across[0]) / span;
-    let disc = (radius * radius - beside * beside).max(0.0).sqrt();
-    let up = offset[2] - fall(along);
-    let distance = along.hypot(up);
-    if distance <= disc {
-        return f64::INFINITY;
-    }
-    let tangent = up.atan2(along) + (disc / distance).asin();
-    let touches = (distance * distance - disc * disc).max(0.0).sqrt() * tangent.cos();
-    let past = span - along;
-    if touches > span && past.abs() < disc {
-        return center[2] + (disc * disc - past * past).sqrt();
-    }
-    if tangent >= std::f64::consts::FRAC_PI_2 {
-        return f64::INFINITY;
-    }
-    observer[2] + span * tangent.tan() + fall(span)
 }

@@ -42,6 +42,7 @@ pub mod surface;
 pub mod target_tree;
 mod triangles;
 mod vertical_line;
+mod vertical_plane;
 pub mod visibility;
 pub mod visibility_matrix;
 

@@ -2,11 +2,10 @@
 
 use super::far_line::FarLine;
 use super::far_terrain::TerrainGuess;
-use super::skyline::cut;
-use super::{BallTree, EarthParams, MedialScene};
-use crate::blocking::Ball;
+use super::vertical_plane::VerticalPlane;
+use super::{EarthParams, MedialScene};
 use crate::ray_index::{BoxReach, NodeParts, PARTS, RayIndex};
-use belvedere_data::vector::{sub, to_f32};
+use belvedere_data::vector::to_f32;
 use smallvec::SmallVec;
 
 /// More than single precision rounds distances by, as a share of the distance of the line.
@@ -26,7 +25,7 @@ pub struct VerticalLine {
     pub height: f64,
 }
 
-/// What eyes see of a vertical line. Obstacles of the last eye are tried first for the next one, which saves most of
+/// Views of a vertical line from eyes. Obstacles of the last eye are tried first for the next one, which saves most of
 /// the time for neighbouring eyes and changes no result.
 pub struct VerticalSight<'a> {
     scene: &'a MedialScene,
@@ -43,14 +42,6 @@ enum Obstacle {
     Triangle(u32),
 }
 
-/// The vertical plane between an eye and a vertical line: distances from the eye along it, and tangents of elevations.
-struct Plane<'a> {
-    /// The line of sight to the upper end.
-    line: FarLine<'a>,
-    /// Fall of places for each square metre of their squared distance, 1/m.
-    fall: f64,
-}
-
 /// Tangents of the elevations between two, and which of them something hides.
 struct Hidden {
     all: [f64; 2],
@@ -58,11 +49,35 @@ struct Hidden {
 }
 
 impl MedialScene {
-    /// What eyes see of a vertical line over the earth of `earth`.
+    /// Prepares views of a vertical line over the earth of `earth`.
     #[must_use]
     pub fn vertical_sight<'a>(&'a self, line: VerticalLine, earth: &'a EarthParams) -> VerticalSight<'a> {
         let (recent, terrain) = (SmallVec::new(), TerrainGuess::default());
         VerticalSight { scene: self, line, earth, recent, terrain }
+    }
+
+    /// The tangents that a ball of the tree hides, if any: it gives way to the eye.
+    fn hidden_by_ball(&self, plane: &VerticalPlane, row: u32) -> Option<[f64; 2]> {
+        let ball = *self.tree().balls().get(row as usize)?;
+        // most balls of an open box lie beside the plane
+        if !plane.meets(ball) {
+            return None;
+        }
+        let (_, radius) = self.tree().rule().seen_from(ball, plane.eye)?;
+        plane.hidden_by_ball(ball.center.map(f64::from), radius)
+    }
+
+    /// The tangents that a triangle of the tree hides, if any: its surface gives way to the eye.
+    fn hidden_by_triangle(&self, plane: &VerticalPlane, row: u32) -> Option<[f64; 2]> {
+        plane.hidden_by_triangle(self.triangles()?.corners_before(plane.eye, row as usize)?)
+    }
+}
+
+impl VerticalLine {
+    /// Its upper end, local metres.
+    #[must_use]
+    pub fn top(&self) -> [f64; 3] {
+        [self.foot[0], self.foot[1], self.foot[2] + self.height]
     }
 }
 
@@ -80,7 +95,8 @@ impl<'a> VerticalSight<'a> {
         let Some((plane, mut hidden)) = self.plane(eye) else { return HeightSpans::new() };
         self.hide_behind_recent(&plane, &mut hidden);
         if !hidden.is_whole()
-            && let Some(tangent) = self.scene.far_terrain.highest_before(&plane.line, hidden.all, &mut self.terrain)
+            && let Some(line) = FarLine::new(eye, self.line.top(), self.earth)
+            && let Some(tangent) = self.scene.far_terrain.highest_before(&line, hidden.all, &mut self.terrain)
         {
             hidden.add(Some([f64::NEG_INFINITY, tangent]));
         }
@@ -95,47 +111,49 @@ impl<'a> VerticalSight<'a> {
             // meshes first: they are few and large
             if let Some(triangles) = scene.triangles() {
                 each_hiding(triangles.index(), &plane, &mut hidden, |row, hidden| {
-                    if hidden.add(plane.hidden_by_triangle(scene, row)) {
+                    if hidden.add(scene.hidden_by_triangle(&plane, row)) {
                         note(Obstacle::Triangle(row));
                     }
                 });
             }
             each_hiding(scene.tree().index(), &plane, &mut hidden, |row, hidden| {
-                if hidden.add(plane.hidden_by_ball(scene.tree(), row)) {
+                if hidden.add(scene.hidden_by_ball(&plane, row)) {
                     note(Obstacle::Ball(row));
                 }
             });
         }
-        let height = |tangent: f64| (plane.height_at(tangent) - self.line.foot[2]).clamp(0.0, self.line.height);
-        hidden.open().into_iter().map(|[from, to]| [height(from), height(to)]).collect()
+        let VerticalLine { foot, height } = self.line;
+        let above_foot = |tangent: f64| match tangent {
+            // both ends exactly, so that a visible tip is one
+            lowest if lowest == hidden.all[0] => 0.0,
+            highest if highest == hidden.all[1] => height,
+            between => (plane.height_at(between) - foot[2]).clamp(0.0, height),
+        };
+        hidden.open().into_iter().map(|span| span.map(above_foot)).collect()
     }
 
     /// The vertical plane from `eye` to the line, and the tangents of the line; `None` where there is none.
-    fn plane(&self, eye: [f64; 3]) -> Option<(Plane<'a>, Hidden)> {
-        let VerticalLine { foot, height } = self.line;
-        let top = [foot[0], foot[1], foot[2] + height];
-        let line = FarLine::new(eye, top, self.earth)?;
-        let is_curved =
-            self.earth.bends(eye, top) || [eye, foot].into_iter().any(|end| self.scene.is_on_far_terrain(end));
-        let fall = if is_curved { self.earth.fall_rate() } else { 0.0 };
-        let plane = Plane { line, fall };
-        let all = [foot[2], top[2]].map(|z| plane.tangent(z - eye[2]));
-        (height > 0.0 && all[0] < all[1]).then(|| (plane, Hidden { all, spans: HeightSpans::new() }))
+    fn plane(&self, eye: [f64; 3]) -> Option<(VerticalPlane, Hidden)> {
+        let (foot, top) = (self.line.foot, self.line.top());
+        let is_far = [eye, foot].into_iter().any(|end| self.scene.is_on_far_terrain(end));
+        let plane = VerticalPlane::new(eye, foot, self.earth, is_far || self.earth.bends(eye, top))?;
+        let all = [foot[2], top[2]].map(|height| plane.tangent_of(height));
+        (all[0] < all[1]).then(|| (plane, Hidden { all, spans: HeightSpans::new() }))
     }
 
-    fn hide_behind_recent(&mut self, plane: &Plane<'_>, hidden: &mut Hidden) {
+    fn hide_behind_recent(&mut self, plane: &VerticalPlane, hidden: &mut Hidden) {
         let scene = self.scene;
         self.recent.retain(|obstacle| {
             hidden.add(match *obstacle {
-                Obstacle::Ball(row) => plane.hidden_by_ball(scene.tree(), row),
-                Obstacle::Triangle(row) => plane.hidden_by_triangle(scene, row),
+                Obstacle::Ball(row) => scene.hidden_by_ball(plane, row),
+                Obstacle::Triangle(row) => scene.hidden_by_triangle(plane, row),
             })
         });
     }
 }
 
 /// Calls `visit` with each row of an index whose box may hide tangents that nothing hides yet, nearest boxes first.
-fn each_hiding(index: &RayIndex, plane: &Plane<'_>, hidden: &mut Hidden, mut visit: impl FnMut(u32, &mut Hidden)) {
+fn each_hiding(index: &RayIndex, plane: &VerticalPlane, hidden: &mut Hidden, mut visit: impl FnMut(u32, &mut Hidden)) {
     let plane_of_boxes = BoxPlane::new(plane);
     index.visit_nearest_first(
         hidden,
@@ -148,7 +166,7 @@ fn each_hiding(index: &RayIndex, plane: &Plane<'_>, hidden: &mut Hidden, mut vis
     );
 }
 
-/// A [`Plane`] in single precision, which boxes are measured in eight at a time.
+/// A [`VerticalPlane`] in single precision, which boxes are measured in eight at a time.
 struct BoxPlane {
     eye: [f32; 3],
     along: [f32; 2],
@@ -157,14 +175,9 @@ struct BoxPlane {
 }
 
 impl BoxPlane {
-    fn new(plane: &Plane<'_>) -> Self {
-        let FarLine { observer, along, span, .. } = plane.line;
-        Self {
-            eye: observer.map(to_f32),
-            along: along.map(to_f32),
-            span: to_f32(span).next_up(),
-            fall: to_f32(plane.fall),
-        }
+    fn new(plane: &VerticalPlane) -> Self {
+        let VerticalPlane { eye, along, span, fall } = *plane;
+        Self { eye: eye.map(to_f32), along: along.map(to_f32), span: to_f32(span).next_up(), fall: to_f32(fall) }
     }
 
     /// The reaches of the boxes of a node that may hide a tangent that nothing hides yet. They are `slack` metres
@@ -197,99 +210,6 @@ impl BoxPlane {
             let tangents = [lowest, highest];
             (!hidden.holds(tangents.map(f64::from))).then_some(BoxReach { distance: from[i], tangents })
         })
-    }
-}
-
-impl Plane<'_> {
-    /// Tangent of the elevation at which a place of the vertical line appears that lies `rise` metres above the eye.
-    fn tangent(&self, rise: f64) -> f64 {
-        rise / self.line.span - self.fall * self.line.span
-    }
-
-    /// Height on the vertical line, local metres, that appears at a tangent.
-    fn height_at(&self, tangent: f64) -> f64 {
-        self.line.observer[2] + (tangent + self.fall * self.line.span) * self.line.span
-    }
-
-    /// Returns the distances along the plane and to its left of an offset from the eye, metres.
-    fn on_map(&self, [x, y, _]: [f64; 3]) -> [f64; 2] {
-        let [east, north] = self.line.along;
-        [x * east + y * north, y * east - x * north]
-    }
-
-    /// The tangents that a ball hides, if any.
-    fn hidden_by_ball(&self, tree: &BallTree, row: u32) -> Option<[f64; 2]> {
-        let (ball, span): (Ball, f64) = (*tree.balls().get(row as usize)?, self.line.span);
-        let offset = sub(ball.center.map(f64::from), self.line.observer);
-        let [along, beside] = self.on_map(offset);
-        let whole = f64::from(ball.radius);
-        if beside * beside >= whole * whole || along + whole <= 0.0 || along - whole >= span {
-            return None;
-        }
-        let (_, radius) = tree.rule().seen_from(ball, self.line.observer)?;
-        let up = offset[2] - self.fall * along * along;
-        let disc = radius * radius - beside * beside;
-        let touch_square = along * along + up * up - disc;
-        if disc <= 0.0 || touch_square <= 0.0 {
-            return None;
-        }
-        let half = disc.sqrt();
-        if along + half <= 0.0 || along - half >= span {
-            return None;
-        }
-        // slopes m of the two tangents: (along m - up)² = disc (1 + m²), without a difference of like numbers
-        let (ahead, product) = (along * along - disc, along * up);
-        let root = half * touch_square.sqrt();
-        let other = up * up - disc;
-        let [minus, plus] = match product >= 0.0 {
-            true => [other / (product + root), (product + root) / ahead],
-            false => [(product - root) / ahead, other / (product - root)],
-        };
-        // a disc over the eye, or below it, has one of them on either side
-        let slopes = match ahead > 0.0 {
-            true => [minus, plus],
-            false if up > 0.0 => [minus, f64::INFINITY],
-            false => [f64::NEG_INFINITY, plus],
-        };
-        // beyond the line the disc ends at it
-        let past = span - along;
-        let of_line = (disc - past * past).max(0.0).sqrt();
-        let end = |slope: f64, side: f64| match touch_square > span * span * (1.0 + slope * slope) {
-            true => (up + side * of_line) / span,
-            false => slope,
-        };
-        Some([end(slopes[0], -1.0), end(slopes[1], 1.0)])
-    }
-
-    /// The tangents that a triangle hides, if any.
-    fn hidden_by_triangle(&self, scene: &MedialScene, row: u32) -> Option<[f64; 2]> {
-        let corners = scene.triangles()?.corners_before(self.line.observer, row as usize)?;
-        let offsets = corners.map(|corner| {
-            let offset = sub(corner, self.line.observer);
-            let along = offset[0].hypot(offset[1]);
-            [offset[0], offset[1], offset[2] - self.fall * along * along]
-        });
-        let [near, far] = cut(&offsets, self.line.along)?;
-        let from = near[0].max(0.0);
-        let to = far[0].min(self.line.span);
-        if !(from <= to) || to <= 0.0 {
-            return None;
-        }
-        let at = |along: f64| match far[0] > near[0] {
-            true => near[1] + (far[1] - near[1]) * (along - near[0]) / (far[0] - near[0]),
-            false => near[1],
-        };
-        let tangent = |along: f64| match along > 0.0 {
-            true => at(along) / along,
-            false => f64::INFINITY.copysign(at(0.0)),
-        };
-        // a wall that stands upright in the plane has both of its heights at one distance
-        let heights = [near, far].map(|place| if place[0] > 0.0 { place[1] / place[0] } else { tangent(0.0) });
-        let ends = match far[0] > near[0] {
-            true => [tangent(from), tangent(to)],
-            false => heights,
-        };
-        Some([ends[0].min(ends[1]), ends[0].max(ends[1])])
     }
 }
 
