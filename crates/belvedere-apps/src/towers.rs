@@ -15,7 +15,7 @@ pub const MAX_SCHEMES: usize = 24;
 /// A tower.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tower {
-    /// From its foot to its tip, local metres.
+    /// Line from its foot to its tip, local metres.
     pub line: VerticalLine,
     /// Height of its hub above the foot, metres; `None` where it has none.
     pub hub: Option<f64>,
@@ -62,8 +62,8 @@ pub struct TowersView {
     pub nearest: f64,
     /// Bit i: a part of a tower of scheme i is visible.
     pub schemes: u32,
-    /// True if pulses do not prove the line of sight to the highest visible place of the tower of which most is
-    /// visible.
+    /// True if pulses do not prove the line of sight to the tower of which most is visible, to the middle of its
+    /// highest visible part.
     pub is_unproven: bool,
 }
 
@@ -72,7 +72,7 @@ pub struct TowersView {
 pub struct TowersSeen {
     /// The view from each place; `None` from one that is not finite.
     pub views: Vec<Option<TowersView>>,
-    /// For each tower the number of places that see a part of it, its tip, and its hub.
+    /// Number of places that see a part of each tower, its tip, and its hub.
     pub place_counts: Vec<[usize; 3]>,
 }
 
@@ -100,13 +100,13 @@ pub fn towers_seen(
         });
     }
     let of_chunk = |eyes: &[[f32; 3]]| {
-        let mut part = PlacesPart::new(eyes.len(), towers.len());
+        let mut part = PlacesPart::new(eyes, towers.len());
         for (number, tower) in towers.iter().enumerate() {
             control.check()?;
-            part.look_at(scene, (number, tower), eyes, params);
+            part.look_at(scene, (number, tower), params);
         }
         if params.tests_proof && scene.proof().is_some() {
-            part.test_proof(scene, eyes, &params.earth);
+            part.test_proof(scene, &params.earth);
         }
         control.advance(eyes.len());
         Ok(part)
@@ -117,49 +117,46 @@ pub fn towers_seen(
         for (sum, counts) in seen.place_counts.iter_mut().zip(&part.place_counts) {
             (0..3).for_each(|i| sum[i] += counts[i]);
         }
-        seen.views.extend(part.views);
-    }
-    for (view, eye) in seen.views.iter_mut().zip(eyes) {
-        *view = view.filter(|_| eye.iter().all(|v| v.is_finite()));
+        seen.views.extend(part.places.into_iter().map(|place| Some(place?.view)));
     }
     Ok(seen)
 }
 
-/// Views from some of the places.
+/// Some of the places.
 struct PlacesPart {
-    views: Vec<Option<TowersView>>,
-    /// The highest visible place of the tower of which most is visible, local metres.
-    highest: Vec<[f64; 3]>,
+    /// `None` for an eye that is not finite.
+    places: Vec<Option<SeeingPlace>>,
+    /// Counts as those of [`TowersSeen`].
     place_counts: Vec<[usize; 3]>,
 }
 
+/// A place that looks at towers.
+struct SeeingPlace {
+    eye: [f64; 3],
+    view: TowersView,
+    /// Middle of the highest visible part of the tower of which most is visible, local metres.
+    tested: [f64; 3],
+}
+
 impl PlacesPart {
-    fn new(places: usize, towers: usize) -> Self {
-        Self {
-            views: vec![Some(TowersView::default()); places],
-            highest: vec![[f64::NAN; 3]; places],
-            place_counts: vec![[0; 3]; towers],
-        }
+    fn new(eyes: &[[f32; 3]], towers: usize) -> Self {
+        let place = |eye: &[f32; 3]| {
+            let (eye, view, tested) = (eye.map(f64::from), TowersView::default(), [f64::NAN; 3]);
+            eye.iter().all(|v| v.is_finite()).then_some(SeeingPlace { eye, view, tested })
+        };
+        Self { places: eyes.iter().map(place).collect(), place_counts: vec![[0; 3]; towers] }
     }
 
-    fn look_at(
-        &mut self,
-        scene: &MedialScene,
-        (number, tower): (usize, &Tower),
-        eyes: &[[f32; 3]],
-        params: &TowersParams,
-    ) {
+    fn look_at(&mut self, scene: &MedialScene, (number, tower): (usize, &Tower), params: &TowersParams) {
         let VerticalLine { foot, height } = tower.line;
         let mut sight = scene.vertical_sight(tower.line, &params.earth);
-        for ((view, highest), eye) in self.views.iter_mut().flatten().zip(&mut self.highest).zip(eyes) {
-            let eye = eye.map(f64::from);
+        for SeeingPlace { eye, view, tested } in self.places.iter_mut().flatten() {
             let distance = (eye[0] - foot[0]).hypot(eye[1] - foot[1]);
-            // also for an eye that is not finite
-            if !(distance <= params.max_distance) {
+            if distance > params.max_distance {
                 continue;
             }
-            let spans = sight.seen_from(eye);
-            let (Some(&[lowest, _]), Some(&[_, top])) = (spans.first(), spans.last()) else { continue };
+            let spans = sight.seen_from(*eye);
+            let (Some(&[lowest, _]), Some(&[from, top])) = (spans.first(), spans.last()) else { continue };
             let metres: f64 = spans.iter().map(|[from, to]| to - from).sum();
             let hub = tower.hub.is_some_and(|hub| spans.iter().any(|[from, to]| *from <= hub && hub <= *to));
             for (i, is_seen) in [true, top >= height, hub].into_iter().enumerate() {
@@ -169,7 +166,7 @@ impl PlacesPart {
             view.metres += metres;
             if metres > view.max_metres {
                 view.max_metres = metres;
-                *highest = [foot[0], foot[1], foot[2] + top];
+                *tested = [foot[0], foot[1], foot[2] + f64::midpoint(from, top)];
             }
             let elevation = |height: f64| (foot[2] + height - eye[2]).atan2(distance);
             view.angle = view.angle.max(elevation(top) - elevation(lowest));
@@ -178,11 +175,10 @@ impl PlacesPart {
         }
     }
 
-    fn test_proof(&mut self, scene: &MedialScene, eyes: &[[f32; 3]], earth: &EarthParams) {
-        for ((view, highest), eye) in self.views.iter_mut().flatten().zip(&self.highest).zip(eyes) {
+    fn test_proof(&mut self, scene: &MedialScene, earth: &EarthParams) {
+        for SeeingPlace { eye, view, tested } in self.places.iter_mut().flatten() {
             if view.max_metres > 0.0 {
-                let answer = scene.far_sight_answer(eye.map(f64::from), *highest, earth);
-                view.is_unproven = answer == Answer::Unproven;
+                view.is_unproven = scene.far_sight_answer(*eye, *tested, earth) == Answer::Unproven;
             }
         }
     }

@@ -20,7 +20,7 @@ pub struct TowerRow {
     pub hub: Option<f64>,
     /// Height of the tip above the foot, metres.
     pub tip: f64,
-    /// Name; `row 3` for the third row without one.
+    /// Name; empty for none.
     pub name: String,
     /// Scheme that it belongs to; empty for none.
     pub scheme: String,
@@ -74,7 +74,7 @@ fn of_points(source: Source<'_>, path: &Path, crs: &Crs) -> Result<Vec<TowerRow>
             base: number("base")?.or(Some(z / metres_per_height).filter(|z| z.is_finite())),
             hub: number("hub")?,
             tip,
-            name: words("name").filter(|name| !name.is_empty()).unwrap_or_else(|| format!("row {}", rows.len() + 1)),
+            name: words("name").unwrap_or_default(),
             scheme: words("scheme").unwrap_or_default(),
         });
     }
@@ -100,7 +100,7 @@ fn of_table(source: Source<'_>, path: &Path) -> Result<Vec<TowerRow>> {
             base: of(&base, row),
             hub: of(&hub, row),
             tip: tip[row],
-            name: words("name", row).map_or_else(|| format!("row {}", row + 1), str::to_owned),
+            name: words("name", row).unwrap_or_default().to_owned(),
             scheme: words("scheme", row).unwrap_or_default().to_owned(),
         })
         .collect();
@@ -154,7 +154,7 @@ mod tests {
             base: None,
             hub: None,
             tip: 80.0,
-            name: "row 2".to_owned(),
+            name: String::new(),
             scheme: String::new(),
         };
         assert_eq!(rows, [first, second]);

@@ -245,12 +245,14 @@ fn sentence(place: &PlaceSection, measures: &[Measure], row: usize) -> String {
     let named = |name: &str| measures.iter().find(|measure| measure.name == name).and_then(value);
     if let (Some(metres), Some(share)) = (named("metres"), named("share")) {
         let mut text = format!("{metres:.0} visible metres of towers ({:.1} %)", 100.0 * share);
-        for (name, what) in [("towers", "towers in part"), ("tips", "tips"), ("hubs", "hubs")] {
-            text += &named(name).filter(|_| metres > 0.0).map_or(String::new(), |count| format!(", {count:.0} {what}"));
+        if metres > 0.0 {
+            for (name, what) in [("towers", "towers with a visible part"), ("tips", "tips"), ("hubs", "hubs")] {
+                text += &named(name).map_or(String::new(), |count| format!(", {what}: {count:.0}"));
+            }
+            if let (Some(angle), Some(nearest)) = (named("angle_deg"), named("nearest_m")) {
+                text += &format!(", up to {angle:.2}° high, the nearest {nearest:.0} m away");
+            }
         }
-        text += &named("angle_deg").filter(|_| metres > 0.0).map_or(String::new(), |angle| {
-            format!(", up to {angle:.2}° high, the nearest {:.0} m away", named("nearest_m").unwrap_or(f64::NAN))
-        });
         let unproven = if named(UNPROVEN) == Some(1.0) { ", unproven" } else { "" };
         return format!("at {x:.1}, {y:.1} (height {z:.1}{on}): {text}{unproven}");
     }

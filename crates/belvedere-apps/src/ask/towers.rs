@@ -4,7 +4,7 @@ use super::observers::{Standing, check_height, stand};
 use super::sections::{LinesSection, MeasuresSection, PlacesReport};
 use super::{Answers, Ask, Context, OnTargets, Places, Remark, Scene};
 use crate::targets::Measure;
-use crate::towers::{MAX_SCHEMES, Tower, TowersParams, TowersSeen, towers_seen};
+use crate::towers::{MAX_SCHEMES, Tower, TowersParams, TowersSeen, TowersView, towers_seen};
 use crate::viewshed::{OBSERVER_HEIGHT, Observer, SightLimits, far_targets, terrain_within_reach};
 use belvedere_core::ground::GroundPoints;
 use belvedere_core::query::{EarthParams, MedialScene, UnprovenAs, VerticalLine};
@@ -103,9 +103,14 @@ struct TowerSection {
 }
 
 impl GivenTower {
-    fn check(&self) -> Result<()> {
+    /// Its name; its number, from 1, where it has none.
+    fn name(&self, number: usize) -> String {
+        if self.name.is_empty() { format!("number {number}") } else { self.name.clone() }
+    }
+
+    fn check(&self, number: usize) -> Result<()> {
         let refused = |value: String, expected| {
-            let value = format!("{} with {value}", self.name);
+            let value = format!("{} with {value}", self.name(number));
             Err(Error::InvalidParameter { parameter: Parameter::Tower, value, expected })
         };
         if !(self.tip > 0.0 && self.tip <= MAX_HEIGHT) {
@@ -140,9 +145,9 @@ impl TowersQuestion {
         let schemes = self.schemes();
         let (low, high) = scene.model().bounds().on_map();
         let middle = [0, 1].map(|i| f64::midpoint(low[i], high[i]));
-        let one = |(given, foot): (&GivenTower, [f64; 3])| {
+        let one = |(number, (given, foot)): (usize, (&GivenTower, [f64; 3]))| {
             let refused = |value: &str, expected| {
-                let value = format!("{}, {value}", given.name);
+                let value = format!("{}, {value}", given.name(number));
                 Err(Error::InvalidParameter { parameter: Parameter::Tower, value, expected })
             };
             if !((foot[0] - middle[0]).hypot(foot[1] - middle[1]) <= MAX_AWAY) {
@@ -155,7 +160,7 @@ impl TowersQuestion {
             let scheme = schemes.iter().position(|scheme| *scheme == given.scheme).unwrap_or(0);
             Ok(Tower { line: VerticalLine { foot, height: given.tip }, hub: given.hub, scheme })
         };
-        self.towers.iter().zip(feet).map(one).collect()
+        (1..).zip(self.towers.iter().zip(feet)).map(one).collect()
     }
 
     fn params(&self) -> TowersParams {
@@ -203,7 +208,7 @@ impl TowersQuestion {
                 seen[which].map(|seen| percent(seen.place_counts[number][what], places[which]))
             };
             TowerSection {
-                name: given.name.clone(),
+                name: given.name(number + 1),
                 base: rounded(scene.frame().file_from_local(tower.line.foot)[2], 2),
                 visible_percent: share(0, 0).unwrap_or(0.0),
                 tip_percent: share(0, 1).unwrap_or(0.0),
@@ -239,7 +244,7 @@ impl Ask for TowersQuestion {
         }
         match self.schemes().len() {
             count if count > MAX_SCHEMES => refused(format!("of {count} schemes"), "of at most 24 schemes"),
-            _ => self.towers.iter().try_for_each(GivenTower::check),
+            _ => (1..).zip(&self.towers).try_for_each(|(number, tower)| tower.check(number)),
         }
     }
 
@@ -290,8 +295,7 @@ fn in_words(towers: usize) -> String {
 fn summarise(towers: &[Tower], seen: &TowersSeen, places: &str, context: &mut Context) {
     let views = || seen.views.iter().flatten();
     let count = views().count();
-    let share =
-        |what: &dyn Fn(&crate::towers::TowersView) -> bool| percent(views().filter(|view| what(view)).count(), count);
+    let share = |what: &dyn Fn(&TowersView) -> bool| percent(views().filter(|view| what(view)).count(), count);
     let name = in_words(towers.len());
     if count == 0 {
         context.headline(format!("{name} from {places}: no place has an answer"));

@@ -23,16 +23,17 @@ pub(crate) fn run(arguments: &TowersArguments, global: &Global) -> Result<Summar
         check_output("--far-output", output, &["tif", "tiff", "png"])?;
     }
     let mut run = CommandContext::new(global);
-    // wrong towers must not be found out after the balls were made; points need the system of the cloud
+    // wrong towers must not be found out after the balls were made; only points need the system of the cloud
     let is_table = matches!(extension(&arguments.towers).as_str(), "csv" | "txt");
-    if is_table {
-        question(arguments, &read_towers(arguments.towers.as_path(), &Crs::default())?)?.check()?;
+    let of_table = is_table.then(|| read_towers(arguments.towers.as_path(), &Crs::default())).transpose()?;
+    if let Some(rows) = &of_table {
+        question(arguments, rows)?.check()?;
     }
     places.check_on_map(&arguments.scene.input)?;
     let mut scene = pipeline::scene(&arguments.scene, KeepPoints::Keep, &mut run)?;
     places.far.set(&mut scene, &mut run)?;
     let scene = scene.into_question_scene(Some(&arguments.ground), arguments.shell.shell, &run)?;
-    let rows = read_towers(arguments.towers.as_path(), &scene.frame().crs)?;
+    let rows = of_table.map_or_else(|| read_towers(arguments.towers.as_path(), &scene.frame().crs), Ok)?;
     let mut question = question(arguments, &rows)?;
     for (tower, row) in question.towers.iter_mut().zip(&rows) {
         tower.foot = Standing::on_map(row.place, row.base, scene.frame(), &scene.model().bounds())?.place;

@@ -44,7 +44,7 @@ fn the_ridge_of_a_house_hides_the_foot_of_a_mast() {
     assert!(summary["measures"]["metres"]["max"].as_f64().unwrap() <= 340.0 + 1e-3);
     let run = place.run(&format!("{TOWERS} --at {x},{y}"));
     assert!(
-        run.stdout.contains("340 visible metres of towers (100.0 %), 2 towers in part, 2 tips, 1 hubs"),
+        run.stdout.contains("340 visible metres of towers (100.0 %), towers with a visible part: 2, tips: 2, hubs: 1"),
         "{}",
         run.stdout
     );
