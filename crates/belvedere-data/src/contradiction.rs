@@ -152,6 +152,9 @@ contradictions! {
     /// One that lies deeper than a cellar.
     MESH_SINKS = "mesh-sinks":
         "base of an added mesh", "ground of the scene around it", 4.5 "m below it, or its top below it", Warned;
+    /// Millimetres, or another system: nothing taller was ever built.
+    MESH_IS_HUGE = "mesh-is-huge":
+        "height of an added mesh", "the tallest buildings", 1000.0 "m", Warned;
     /// Clouds without a reference system are taken as metres.
     UNIT_OF_ROOM = "unit-of-room":
         "metres, as the unit of a cloud without a reference system", "height of a room from floor to ceiling", 9.0 "m", Warned;

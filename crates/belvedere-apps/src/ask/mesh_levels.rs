@@ -3,7 +3,7 @@
 
 use super::{Remark, remark_on_axis};
 use belvedere_core::model::SceneModel;
-use belvedere_data::contradiction::{FoundContradiction, MESH_FLOATS, MESH_SINKS};
+use belvedere_data::contradiction::{FoundContradiction, MESH_FLOATS, MESH_IS_HUGE, MESH_SINKS};
 use belvedere_data::report::rounded;
 
 /// Radius around a mesh within which ground counts, metres.
@@ -15,9 +15,6 @@ const LOWEST: f64 = 0.05;
 const GROUND: f64 = 0.3;
 /// Meshes lower than this are no buildings, metres: paths, decks, roofs on their own.
 const MIN_HEIGHT: f64 = 2.0;
-/// Largest planned things, metres: towers of a kilometre, and roads through a region.
-const MAX_HEIGHT: f64 = 1000.0;
-const MAX_WIDTH: f64 = 20_000.0;
 /// Minimum share of the places below it at the base of a mesh that stands on a roof, within a tolerance in metres.
 const MIN_SUPPORT: f64 = 0.02;
 const SUPPORT: f64 = 1.0;
@@ -27,51 +24,33 @@ const SUPPORT: f64 = 1.0;
 pub fn remarks_on_model(model: &SceneModel) -> Vec<Remark> {
     let noted = FoundContradiction::noted_in(&model.parts().provenance);
     let found = noted.chain(levels_of_meshes(model)).filter_map(Remark::of_contradiction);
-    let huge = meshes(model).filter_map(|(own, name)| remark_on_huge(&own, &name));
-    remark_on_axis(model.looks_y_up()).into_iter().chain(found).chain(huge).collect()
+    remark_on_axis(model.looks_y_up()).into_iter().chain(found).collect()
 }
 
 /// Lowest and highest corner of a mesh, local metres.
 type MeshBox = [[f64; 3]; 2];
 
-/// Boxes and names of the meshes that were added.
-fn meshes(model: &SceneModel) -> impl Iterator<Item = (MeshBox, String)> {
-    let (mut boxes, mut names) = (Vec::new(), Vec::new());
-    if let Some(added) = model.added() {
-        names = added.names().to_vec();
-        boxes = vec![[[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]; names.len()];
-        for (corners, blocker) in added.triangles() {
-            let Some([low, high]) = blocker.mesh().and_then(|mesh| boxes.get_mut(mesh)) else { continue };
-            for axis in 0..3 {
-                low[axis] = corners.iter().fold(low[axis], |least, corner| least.min(corner[axis]));
-                high[axis] = corners.iter().fold(high[axis], |most, corner| most.max(corner[axis]));
-            }
+fn levels_of_meshes(model: &SceneModel) -> Vec<FoundContradiction> {
+    let Some(added) = model.added() else { return Vec::new() };
+    let mut boxes = vec![[[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]; added.names().len()];
+    for (corners, blocker) in added.triangles() {
+        let Some([low, high]) = blocker.mesh().and_then(|mesh| boxes.get_mut(mesh)) else { continue };
+        for axis in 0..3 {
+            low[axis] = corners.iter().fold(low[axis], |least, corner| least.min(corner[axis]));
+            high[axis] = corners.iter().fold(high[axis], |most, corner| most.max(corner[axis]));
         }
     }
-    boxes.into_iter().zip(names)
-}
-
-/// A warning of a mesh larger than anything that is planned; `None` for others.
-fn remark_on_huge([low, high]: &MeshBox, name: &str) -> Option<Remark> {
-    let size = [0, 1, 2].map(|axis| rounded(high[axis] - low[axis], 1));
-    let is_huge = size[2] > MAX_HEIGHT || size[0].max(size[1]) > MAX_WIDTH;
-    let text =
-        || format!("{name} is {} x {} m wide and {} m high: is its unit that of the cloud?", size[0], size[1], size[2]);
-    is_huge.then(|| Remark::warning("mesh-is-huge", text()).with("height_m", size[2]))
-}
-
-fn levels_of_meshes(model: &SceneModel) -> Vec<FoundContradiction> {
     let balls = model.balls();
-    let found = meshes(model).filter_map(|(own, name)| {
+    let found = boxes.iter().zip(added.names()).filter_map(|(own, name)| {
         let mut tops: Vec<[f64; 3]> = Vec::new();
         for (center, radius) in balls.centers.iter().zip(&balls.radii) {
             let [x, y, z] = center.map(f64::from);
-            if is_around(&own, [x, y], AROUND) {
+            if is_around(own, [x, y], AROUND) {
                 // the top of a ball in the ground lies in its surface
                 tops.push([x, y, z + f64::from(*radius)]);
             }
         }
-        level_of_mesh(&own, tops, &name)
+        level_of_mesh(own, tops, name)
     });
     found.collect()
 }
@@ -83,6 +62,11 @@ fn is_around([low, high]: &MeshBox, place: [f64; 2], by: f64) -> bool {
 /// Returns the contradiction between the level of a mesh and places on surfaces below and around it.
 fn level_of_mesh(own: &MeshBox, mut tops: Vec<[f64; 3]>, name: &str) -> Option<FoundContradiction> {
     let [base, top] = own.map(|corner| corner[2]);
+    if MESH_IS_HUGE.is_exceeded_by(top - base) {
+        let height = rounded(top - base, 1);
+        let text = format!("{name} is {height} m high: is its unit that of the cloud?");
+        return Some(MESH_IS_HUGE.found(text).with("height_m", height));
+    }
     if tops.len() < MIN_PLACES || top - base < MIN_HEIGHT {
         return None;
     }
@@ -114,14 +98,6 @@ fn level_of_mesh(own: &MeshBox, mut tops: Vec<[f64; 3]>, name: &str) -> Option<F
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_mesh_in_another_unit_is_warned_of() {
-        let of = |size: [f64; 3]| remark_on_huge(&[[0.0; 3], size], "tower.obj");
-        assert_eq!(of([100.0, 40.0, 900.0]), None);
-        assert_eq!(of([50_000.0, 40.0, 20.0]).unwrap().key, "mesh-is-huge");
-        assert!(of([10.0, 10.0, 46_000.0]).unwrap().text.contains("46000 m high"));
-    }
 
     /// Places every metre on ground that rises to the east, and on the roof of a house 9 m high.
     fn places(slope: f64) -> Vec<[f64; 3]> {

@@ -72,20 +72,28 @@ fn ground_of_another_place_is_refused_and_of_another_level_is_said() {
 fn a_building_that_floats_or_sinks_is_said() {
     let place = Workplace::new();
     place.write_cloud("field.laz", &house_in_a_field());
-    let building = |base: f64| {
+    let building = |base: f64, height: f64| {
         let mut text = String::new();
-        for z in [base, base + 9.0] {
+        for z in [base, base + height] {
             for [x, y] in [[20.0, -4.0], [30.0, -4.0], [30.0, 4.0], [20.0, 4.0]] {
                 writeln!(text, "v {} {} {z}", EAST + x, NORTH + y).unwrap();
             }
         }
         text + "f 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"
     };
-    for (base, expected) in [(0.0, None), (-3.0, None), (4.0, Some("mesh-floats")), (-7.0, Some("mesh-sinks"))] {
-        place.write("plan.obj", building(base));
+    for (base, height, expected) in [
+        (0.0, 9.0, None),
+        (-3.0, 9.0, None),
+        (4.0, 9.0, Some("mesh-floats")),
+        (-7.0, 9.0, Some("mesh-sinks")),
+        (0.0, 900.0, None),
+        // millimetres
+        (0.0, 9000.0, Some("mesh-is-huge")),
+    ] {
+        place.write("plan.obj", building(base, height));
         let summary = place.summary("shadow field.laz --sun 180,40 --cell 2 --add plan.obj -o a.tif");
         let said: Vec<String> = keys(&summary).into_iter().filter(|key| key.starts_with("mesh-")).collect();
-        assert_eq!(said, expected.into_iter().collect::<Vec<_>>(), "{base}");
+        assert_eq!(said, expected.into_iter().collect::<Vec<_>>(), "{base} {height}");
     }
 }
 
