@@ -1,6 +1,6 @@
 //! Comfort: sun and sky of walkers on routes, and of windows.
 
-use super::places::{leave_out_outside, test_edge};
+use super::places::test_edge;
 use super::sections::{LinesSection, NamedValues, PeriodSection};
 use super::sun::{Days, SunPlace, sun_days_above};
 use super::sun_hours::days_in_words;
@@ -202,12 +202,12 @@ impl Ask for ComfortQuestion {
         if self.shade == ShadeAtEachSun::Kept || !matches!(self.along, RoutesOrWindows::Routes(_)) {
             context.north(&north);
         }
-        let (found, routes) = self.targets(north.of_grid, scene, context, control)?;
-        let WindowTargets { mut targets, windows, names } = found;
-        if targets.is_empty() {
+        let (mut found, routes) = self.targets(north.of_grid, scene, context, control)?;
+        if found.targets.is_empty() {
             return refused(Parameter::Targets, "missing".to_owned(), "routes or windows");
         }
-        leave_out_outside(&mut targets, scene, context);
+        found.leave_out_outside(scene, context)?;
+        let WindowTargets { targets, windows, names } = found;
         let directions = [sky.directions.as_slice(), &schedule.directions].concat();
         let near_edge = test_edge(scene, &targets, &directions, context, control)?;
         let blockers = scene.blockers(UnprovenAs::Visible, control)?;

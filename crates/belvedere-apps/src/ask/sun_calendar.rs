@@ -1,11 +1,11 @@
 //! Sun calendars: from when to when the sun shines at windows and places, and what shades them otherwise.
 
-use super::places::{leave_out_outside, test_edge};
+use super::places::test_edge;
 use super::sections::{LinesSection, MeasuresSection, PeriodSection, PlacesReport};
 use super::sun::{Days, SunPlace, sun_days_above};
 use super::sun_hours::{days_in_words, days_of_rule, missing_period, remark_on_hours_of_rules};
 use super::window_views::kinds_of_balls;
-use super::windows::{GivenWindows, WindowTargets};
+use super::windows::GivenWindows;
 use super::{Answers, Ask, Context, Places, Scene, spread};
 use crate::sun::{Binning, Date, Site, SunSchedule, Zone};
 use crate::sun_calendar::{CalendarDay, SunObstacle, SunStretch, sun_calendars};
@@ -14,7 +14,6 @@ use crate::targets::{Measure, Targets, Window};
 use crate::window_views::{ClassMeanings, SeenKind};
 use belvedere_core::query::UnprovenAs;
 use belvedere_data::control::Control;
-use belvedere_data::report::rounded;
 use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
@@ -116,30 +115,10 @@ impl SunCalendarQuestion {
             GivenWindows::Each(_) => return refused("missing"),
             GivenWindows::Faces(_) => return refused("faces of a mesh"),
         };
-        let WindowTargets { mut targets, windows, .. } = middles.targets(scene.frame(), grid_north, (1.0, 0))?;
-        leave_out_outside(&mut targets, scene, context);
-        if targets.target_count() == 0 {
-            return Err(all_outside(&windows, scene));
-        }
-        Ok((Arc::new(targets), windows))
+        let mut found = middles.targets(scene.frame(), grid_north, (1.0, 0))?;
+        found.leave_out_outside(scene, context)?;
+        Ok((Arc::new(found.targets), found.windows))
     }
-}
-
-/// The error of windows none of which lies over the cloud, or above its lowest point.
-fn all_outside(windows: &[Window], scene: &Scene) -> Error {
-    let file = |corner: [f64; 3]| scene.frame().file_from_local(corner).map(|v| rounded(v, 1));
-    let end = |pick: fn(f64, f64) -> f64, start: f64| {
-        file([0, 1, 2].map(|axis| windows.iter().map(|window| window.center[axis]).fold(start, pick)))
-    };
-    let (low, high) = scene.model().bounds().corners();
-    let [low, high] = [low, high].map(file);
-    let [from, to] = [end(f64::min, f64::INFINITY), end(f64::max, f64::NEG_INFINITY)];
-    let value = format!(
-        "all outside of the cloud: x {} to {}, y {} to {}, z {} to {}, while the cloud has x {} to {}, y {} to {}, z {} to {}",
-        from[0], to[0], from[1], to[1], from[2], to[2], low[0], high[0], low[1], high[1], low[2], high[2]
-    );
-    let expected = "in the coordinates of the cloud; z is a height of its system, not above the ground, and degrees must be converted";
-    Error::InvalidParameter { parameter: Parameter::Window, value, expected }
 }
 
 fn refused<T>(value: &str) -> Result<T> {

@@ -1,6 +1,6 @@
 //! Window views: kinds and ranges of the surfaces seen from windows.
 
-use super::places::{leave_out_outside, test_edge};
+use super::places::test_edge;
 use super::sections::{LinesSection, NamedValues};
 use super::windows::{GivenWindows, WindowTargets};
 use super::{Answers, Ask, Context, North, Places, Remark, Scene, spread};
@@ -119,7 +119,7 @@ impl WindowViewsQuestion {
             section.targets_on_roofs_and_floors = Some(leave_out_level(&mut found.targets));
         }
         context.report.windows = Some(section);
-        leave_out_outside(&mut found.targets, scene, context);
+        found.leave_out_outside(scene, context)?;
         let upper = directions.get(..self.directions).unwrap_or(directions);
         test_edge(scene, &found.targets, upper, context, control)?;
         Ok(found)

@@ -1,8 +1,11 @@
 //! Windows: from a user's input to the targets in front of them.
 
-use super::SharedObject;
+use super::places::leave_out_outside;
+use super::scene::Scene;
+use super::{Context, SharedObject};
 use crate::targets::{Targets, Window, objects_of_windows};
 use belvedere_data::frame::Frame;
+use belvedere_data::report::rounded;
 use belvedere_data::{Error, Mesh, Parameter, Result};
 
 /// Windows as they are given.
@@ -104,6 +107,34 @@ fn with_number((row, error): (usize, Error)) -> Error {
             Error::InvalidParameter { parameter, value: format!("number {}, {value}", row + 1), expected }
         }
         other => other,
+    }
+}
+
+impl WindowTargets {
+    /// Leaves out targets outside the cloud, which is reported and warned of.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for windows all of which lie outside.
+    pub(super) fn leave_out_outside(&mut self, scene: &Scene, context: &mut Context) -> Result<()> {
+        leave_out_outside(&mut self.targets, scene, context);
+        if self.windows.is_empty() || self.targets.target_count() > 0 {
+            return Ok(());
+        }
+        let file = |corner: [f64; 3]| scene.frame().file_from_local(corner).map(|v| rounded(v, 1));
+        let end = |pick: fn(f64, f64) -> f64, start: f64| {
+            [0, 1, 2].map(|axis| self.windows.iter().map(|window| window.center[axis]).fold(start, pick))
+        };
+        let [from, to] = [end(f64::min, f64::INFINITY), end(f64::max, f64::NEG_INFINITY)].map(file);
+        let (low, high) = scene.model().bounds().corners();
+        let [low, high] = [low, high].map(file);
+        let ranges = |low: [f64; 3], high: [f64; 3]| {
+            let range = |(axis, name): (usize, &str)| format!("{name} {} to {}", low[axis], high[axis]);
+            ["x", "y", "z"].into_iter().enumerate().map(range).collect::<Vec<_>>().join(", ")
+        };
+        let value =
+            format!("all outside of the cloud: {}, while the cloud has {}", ranges(from, to), ranges(low, high));
+        let expected = "in the coordinates of the cloud; z is a height of its system, not above the ground, and degrees must be converted";
+        Err(Error::InvalidParameter { parameter: Parameter::Window, value, expected })
     }
 }
 
