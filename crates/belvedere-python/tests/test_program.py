@@ -10,25 +10,7 @@ import warnings
 import belvedere
 import numpy as np
 import pytest
-
-rasterio = pytest.importorskip("rasterio")
-
-
-def values_of(path):
-    with rasterio.open(path) as file:
-        return file.read(1), file.transform, file.nodata, file.crs
-
-
-def assert_same_raster(raster, path, folder):
-    values, transform, nodata, crs = values_of(path)
-    ours = folder / f"python_{path.name}"
-    raster.to_geotiff(ours)
-    written = values_of(ours)
-    assert np.array_equal(written[0], values), path
-    assert (written[1], written[2], written[3]) == (transform, nodata, crs)
-    assert tuple(transform)[:6] == raster.transform
-    expected = np.where(values == nodata, np.nan, values) if raster.values.dtype == np.float32 else values
-    assert np.array_equal(raster.values, expected, equal_nan=True)
+from rasters import assert_same_raster
 
 
 def test_ball_files_are_the_same_bytes(scene, run_program, folder):
@@ -203,42 +185,6 @@ def test_stations_of_a_scanner_on_the_ground(run_program, folder):
     # the places count: with those of the other station the pulses come from elsewhere
     other = belvedere.Scene(cloud, stations=np.column_stack([rows[::-1, 0], rows[:, 1:]]))
     assert other.report["normals"] != scene.report["normals"]
-
-
-def test_roof_planes(scene, run_program, folder):
-    pandas = pytest.importorskip("pandas")
-    flags = ["--clear-sky", "ineichen", "--sun-cell-deg", 6, "--patch-division", 1, "--months", "--panel", 2]
-    files = ["--planes", "roofs.csv", "--buildings", "buildings.csv", "--hourly", "hours", "--dc-ac-ratio", 1.1]
-    run_program("irradiance", "tile.laz", *flags, "--through-trees", "seasons", *files)
-    theirs = pandas.read_csv(folder / "roofs.csv", dtype=str)
-    ours = scene.roof_planes(
-        clear_sky="ineichen",
-        sun_cell_deg=6,
-        patch_division=1,
-        months=True,
-        panel=2,
-        through_trees="seasons",
-        dc_ac_ratio=1.1,
-        hourly=True,
-    )
-    assert ours.row_count == len(theirs) > 2
-    places = dict(zip("xyz", ours.places.T, strict=True))
-    assert set(theirs.columns) == {"plane", *places, *ours}
-    is_as_written(places | dict(ours), theirs)
-    is_as_written(ours.buildings, pandas.read_csv(folder / "buildings.csv", dtype=str))
-    assert len(ours.hours) == ours.row_count
-    is_as_written(ours.hours[1], pandas.read_csv(folder / "hours" / "plane_2.csv", dtype=str))
-
-
-def is_as_written(columns, theirs):
-    for name, values in columns.items():
-        if values.dtype.kind == "U":
-            assert list(values) == list(theirs[name]), name
-            continue
-        decimals = max(len(cell.partition(".")[2]) for cell in theirs[name].fillna(""))
-        written = theirs[name].astype(float).to_numpy()
-        assert np.array_equal(np.isnan(values), np.isnan(written)), name
-        assert np.nanmax(np.abs(values - written), initial=0) <= 0.5001 * 10.0**-decimals, name
 
 
 def test_horizons_and_isovists(scene, run_program, folder, standing):
@@ -453,34 +399,6 @@ def test_cameras_of_places(scene, cloud, standing):
         scene.cameras(standing, count=1, fov_deg=360, density=50)
     with pytest.raises(belvedere.BelvedereError, match="roofs"):
         scene.cameras("trees", count=1)
-
-
-def test_irradiance(scene, run_program, folder):
-    run_program(
-        *("irradiance", "tile.laz", "--clear-sky", "ineichen", "--cell", 8, "--through-trees", "seasons"),
-        *("-o", "energy.tif", "--measures", "energy"),
-    )
-    rasters = scene.irradiance(clear_sky="ineichen", cell=8, through_trees="seasons")
-    assert {path.stem for path in (folder / "energy").iterdir()} == set(rasters)
-    for measure, raster in rasters.items():
-        assert_same_raster(raster, folder / "energy" / f"{measure}.tif", folder)
-
-
-def test_heat(scene, run_program, folder, hot_day):
-    run_program(
-        *("heat", "tile.laz", "--weather", hot_day, "--date", "07-21", "--zone", "Europe/Amsterdam", "--cell", 8),
-        *("--between", "10:00,16:00", "--pet", "--by-hour", "-o", "heat.tif", "--measures", "heat"),
-    )
-    rasters = scene.heat(
-        weather=hot_day, date="07-21", zone="Europe/Amsterdam", cell=8, between=(10, 16), pet=True, by_hour=True
-    )
-    assert {path.stem for path in (folder / "heat").iterdir()} == set(rasters)
-    for measure, raster in rasters.items():
-        assert_same_raster(raster, folder / "heat" / f"{measure}.tif", folder)
-    tags = rasters["tmrt_20150721_1400"].tags
-    assert tags["TIME"].startswith("2015-07-21T14:00") and tags["TIME_ZONE"] == "Europe/Amsterdam"
-    with rasterio.open(folder / "heat.tif") as file:
-        assert json.loads(tags["QUESTION"]) == json.loads(file.tags()["QUESTION"]), tags
 
 
 def test_depth_maps(scene, run_program, folder, eye):

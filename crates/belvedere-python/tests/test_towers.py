@@ -3,8 +3,7 @@
 import belvedere
 import numpy as np
 import pytest
-
-rasterio = pytest.importorskip("rasterio")
+from rasters import assert_same_raster
 
 TOWERS = {
     "name": ["near", "far", "north"],
@@ -29,10 +28,7 @@ def test_towers_are_those_of_the_program(scene, run_program, folder):
         rasters = scene.towers(TOWERS, cell=8)
     assert {path.stem for path in (folder / "towers").iterdir()} == set(rasters)
     for measure, raster in rasters.items():
-        with rasterio.open(folder / "towers" / f"{measure}.tif") as file:
-            theirs = file.read(1)
-            expected = np.where(theirs == file.nodata, np.nan, theirs.astype(np.float32))
-        assert np.array_equal(raster.values, expected, equal_nan=True), measure
+        assert_same_raster(raster, folder / "towers" / f"{measure}.tif", folder)
     metres, share = rasters["metres"].values, rasters["share"].values
     known = np.isfinite(metres)
     assert known.sum() > 20 and np.allclose(metres[known], 330 * share[known], atol=1e-3)

@@ -6,7 +6,7 @@ import datetime
 import operator
 import os
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from numbers import Real
 from typing import Any, BinaryIO, Union
 
@@ -145,6 +145,23 @@ def pairs_of(
     elif len(targets) == 1 and len(observers) > 1:
         targets = np.repeat(targets, len(observers), axis=0)
     return observers, targets
+
+
+def table_columns(
+    columns: Mapping[str, npt.ArrayLike], what: str, known: Sequence[str], required: Sequence[str]
+) -> dict[str, npt.NDArray[Any]]:
+    """Columns of a table of places, all of one length: those that are known, with those that are required."""
+    unknown = [str(name) for name in columns if name not in known]
+    if unknown:
+        raise wrong(what, f"a column '{unknown[0]}'", f"use {', '.join(known)}")
+    missing = [name for name in required if name not in columns]
+    if missing:
+        raise wrong(what, f"without {', '.join(missing)}", f"give {', '.join(required[:-1])} and {required[-1]}")
+    arrays = {name: np.atleast_1d(np.asarray(values)) for name, values in columns.items()}
+    count = len(arrays[required[0]])
+    if {array.shape for array in arrays.values()} != {(count,)} or not count:
+        raise wrong(what, "columns of different lengths, or empty", "give a value for each row")
+    return arrays
 
 
 def location_pair(location: npt.ArrayLike | None) -> tuple[float, float] | None:

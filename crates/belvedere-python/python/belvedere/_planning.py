@@ -21,6 +21,7 @@ from ._inputs import (
     map_places,
     number_pair,
     reporter,
+    table_columns,
 )
 from ._mesh import Mesh, native_mesh
 from ._outlook import _OBSERVERS, _looking
@@ -534,16 +535,8 @@ def _classes(meanings: Mapping[int, str]) -> list[tuple[int, str]]:
 
 def _windows(columns: Mapping[str, npt.ArrayLike]) -> list[list[float]]:
     known = ("x", "y", "z", "azimuth", "tilt", "width", "height")
-    for name in columns:
-        if name not in known:
-            raise wrong("windows", f"a column '{name}'", f"use {', '.join(known)}")
-    missing = [name for name in known[:4] if name not in columns]
-    if missing:
-        raise wrong("windows", f"without {', '.join(missing)}", "give x, y, z and azimuth")
-    count = len(np.asarray(columns["x"]))
+    given = table_columns(columns, "windows", known, known[:4])
     usual = {"tilt": 90.0}
-    full = {name: np.full(count, usual.get(name, float("nan"))) for name in known}
-    full |= {name: np.asarray(values, np.float64) for name, values in columns.items()}
-    if {values.shape for values in full.values()} != {(count,)} or not count:
-        raise wrong("windows", "columns of different lengths, or empty", "give a value for each window")
+    full = {name: np.full(len(given["x"]), usual.get(name, float("nan"))) for name in known}
+    full |= {name: np.asarray(values, np.float64) for name, values in given.items()}
     return [[float(value) for value in row] for row in np.column_stack([full[name] for name in known])]

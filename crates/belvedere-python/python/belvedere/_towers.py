@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import wrong
-from ._inputs import Progress, check_finite, reporter
+from ._inputs import Progress, check_finite, reporter, table_columns
 from ._outlook import _looking
 from ._shapes import in_system
 from ._sunlight import _cells
@@ -111,16 +111,7 @@ class Towers:
 
 def _rows(towers: Mapping[str, npt.ArrayLike]) -> list[dict[str, Any]]:
     known = ("x", "y", "base", "hub", "tip", "name", "scheme")
-    missing = [name for name in ("x", "y", "tip") if name not in towers]
-    if missing:
-        raise wrong("towers", f"without {', '.join(missing)}", "give x, y and tip, each with a value for each tower")
-    unknown = [str(name) for name in towers if name not in known]
-    if unknown:
-        raise wrong("towers", f"a column '{unknown[0]}'", f"use {', '.join(known)}")
-    columns = {name: np.atleast_1d(np.asarray(towers[name])) for name in known if name in towers}
-    count = len(columns["x"])
-    if {column.shape for column in columns.values()} != {(count,)} or not count:
-        raise wrong("towers", "columns of different lengths, or empty", "give a value for each tower")
+    columns = table_columns(towers, "towers", known, ("x", "y", "tip"))
 
     def number(name: str, row: int) -> float | None:
         value = float(columns[name][row]) if name in columns else np.nan
@@ -131,7 +122,7 @@ def _rows(towers: Mapping[str, npt.ArrayLike]) -> list[dict[str, Any]]:
         return "" if value is None or value != value else str(value)
 
     rows = []
-    for row in range(count):
+    for row in range(len(columns["x"])):
         x, y, tip = (number(name, row) for name in ("x", "y", "tip"))
         if x is None or y is None or tip is None:
             raise wrong("towers", f"row {row} without x, y or tip", "give all three")
@@ -141,7 +132,7 @@ def _rows(towers: Mapping[str, npt.ArrayLike]) -> list[dict[str, Any]]:
                 "base": number("base", row),
                 "hub": number("hub", row),
                 "tip": tip,
-                "name": text("name", row) or f"row {row + 1}",
+                "name": text("name", row),
                 "scheme": text("scheme", row),
             }
         )
