@@ -32,7 +32,7 @@ pub(crate) struct GpuState {
     pub(crate) notes: Mutex<Vec<String>>,
     /// The device that decided anything.
     pub(crate) used: OnceLock<DeviceInfo>,
-    /// For tests: after so many directions, or parts of a picture, the device fails.
+    /// Number of directions, or parts of a picture, after which the device fails in tests.
     pub(crate) fails_after: Option<usize>,
     /// Pixels of depth maps, and those of them that the CPU drew again.
     pub(crate) pixel_counts: Mutex<[usize; 2]>,

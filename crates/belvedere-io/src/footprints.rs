@@ -5,6 +5,7 @@ use super::geojson_read::{FeatureShape, read_geojson};
 use super::source::Source;
 use belvedere_data::polygon::Footprint;
 use belvedere_data::{Error, Frame, Mesh, Result};
+use std::collections::HashMap;
 
 /// Members of GeoJSON that name a building, the first of them that a feature has.
 const NAMES: [&str; 4] = ["name", "identificatie", "identifier", "id"];
@@ -34,15 +35,20 @@ pub fn read_footprints<'a>(source: impl Into<Source<'a>>, frame: &Frame) -> Resu
 fn of_features(source: Source<'_>, frame: &Frame) -> Result<Vec<Footprint>> {
     let from_origin = |corner: &[f64; 3]| [0, 1].map(|axis| corner[axis] - frame.origin[axis]);
     let mut found: Vec<Footprint> = Vec::new();
+    let mut numbers: HashMap<String, usize> = HashMap::new();
     for feature in read_geojson(source, &frame.crs)? {
         let FeatureShape::Polygon(rings) = &feature.shape else { continue };
         let own = NAMES.iter().find_map(|name| feature.properties.get(*name)).filter(|value| !value.is_null());
         let name = own.map(|value| value.as_str().map_or_else(|| value.to_string(), str::to_owned));
         let rings = rings.iter().map(|ring| ring.iter().map(from_origin).collect()).collect();
-        match (found.iter_mut().find(|one| Some(&one.name) == name.as_ref()), name) {
-            (Some(same), _) => same.polygons.push(rings),
-            (None, name) => {
-                let name = name.unwrap_or_else(|| (found.len() + 1).to_string());
+        let Some(name) = name else {
+            found.push(Footprint { name: (found.len() + 1).to_string(), polygons: vec![rings] });
+            continue;
+        };
+        match numbers.get(&name) {
+            Some(&same) => found[same].polygons.push(rings),
+            None => {
+                numbers.insert(name.clone(), found.len());
                 found.push(Footprint { name, polygons: vec![rings] });
             }
         }

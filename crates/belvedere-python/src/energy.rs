@@ -9,10 +9,10 @@ use crate::targets::{RequestedTargets, TargetResults, ground_points, put_to_scen
 use crate::trees::Through;
 use crate::work::run;
 use belvedere::Frame;
-use belvedere::apps::ask::{self, Roofs, SunPlace};
+use belvedere::apps::ask::{self, PvChoice, Roofs, SunPlace};
 use belvedere::apps::irradiance::{
-    BirdParams, CLEAR_SKY_YEAR, ClearSky, Grouping, IrradianceParams, PARTS, PvSystem, RoofColumn, RoofValues,
-    SkyModel, Surroundings, building_columns, hour_columns, plane_hours, roof_columns,
+    BirdParams, CLEAR_SKY_YEAR, ClearSky, Grouping, IrradianceParams, PARTS, RoofColumn, RoofValues, SkyModel,
+    Surroundings, building_columns, roof_columns,
 };
 use belvedere::io::{read_footprints, read_weather};
 use pyo3::exceptions::PyRuntimeError;
@@ -129,14 +129,13 @@ pub(crate) struct RoofKeywords {
 
 impl RoofKeywords {
     fn chosen(&self, frame: &Frame) -> PyResult<Roofs> {
-        let usual = PvSystem::default();
-        let system = usual
-            .with_module_efficiency(self.module_efficiency.unwrap_or(usual.module_efficiency))
-            .with_temperature_coefficient(self.temperature_coefficient.unwrap_or(usual.temperature_coefficient))
-            .with_system_losses(self.system_losses.unwrap_or(usual.system_losses))
-            .with_inverter_efficiency(self.inverter_efficiency.unwrap_or(usual.inverter_efficiency))
-            .with_dc_ac_ratio(self.dc_ac_ratio.unwrap_or(usual.dc_ac_ratio));
-        system.validate().map_err(exception)?;
+        let system = PvChoice {
+            module_efficiency: self.module_efficiency,
+            temperature_coefficient: self.temperature_coefficient,
+            system_losses: self.system_losses,
+            inverter_efficiency: self.inverter_efficiency,
+            dc_ac_ratio: self.dc_ac_ratio,
+        };
         let footprints = self.footprints.as_ref().map(|file| read_footprints(file.source(), frame)).transpose();
         Ok(Roofs {
             min_area: self.min_area,
@@ -180,31 +179,26 @@ impl PyScene {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<RoofColumns<'py>> {
         let scene = Arc::clone(&self.0);
-        let chosen = roofs.chosen(scene.frame())?;
-        let system = chosen.system;
-        let question = radiation.question(&trees, Some(chosen))?;
+        let question = radiation.question(&trees, Some(roofs.chosen(scene.frame())?))?;
         let of_work = Arc::clone(&scene);
         let is_hourly = roofs.hourly;
         let (answers, hours) = run(py, progress, move |control| {
             let answers = ask::ask(&of_work, &question, &ask::Places::Scene, control)?;
-            let hours = match &answers.found.roofs {
-                Some(found) if is_hourly => found
-                    .planes
-                    .iter()
-                    .zip(&found.energies)
-                    .map(|(plane, energy)| plane_hours(plane, energy, &found.rows, &system))
-                    .collect::<belvedere::Result<Vec<_>>>()?,
-                _ => Vec::new(),
-            };
+            let planes = answers
+                .found
+                .roofs
+                .iter()
+                .filter(|_| is_hourly)
+                .flat_map(|found| (0..found.planes.len()).map(move |plane| Ok(found.hours(plane)?.1)));
+            let hours = planes.collect::<belvedere::Result<Vec<_>>>()?;
             Ok((answers, hours))
         })?;
         let remarks = remarks_of(py, &answers.remarks)?;
         let Some(found) = &answers.found.roofs else { return Ok((Vec::new(), Vec::new(), Vec::new(), remarks)) };
         let planes = roof_columns(found.as_rows(), scene.frame(), &answers.found.site);
         let buildings = building_columns(found.as_rows());
-        let hours = hours.iter().zip(&found.yields);
-        let hours = hours.map(|(hours, own)| to_python(py, hour_columns(&found.rows, hours, own.peak_power)));
-        Ok((to_python(py, planes)?, to_python(py, buildings)?, hours.collect::<PyResult<_>>()?, remarks))
+        let hours = hours.into_iter().map(|columns| to_python(py, columns)).collect::<PyResult<_>>()?;
+        Ok((to_python(py, planes)?, to_python(py, buildings)?, hours, remarks))
     }
 
     fn irradiance<'py>(

@@ -20,7 +20,7 @@ use belvedere_core::query::UnprovenAs;
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use belvedere_data::vector::to_f32;
-use belvedere_data::weather::Weather;
+use belvedere_data::weather::{USUAL_WIND, Weather};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -240,8 +240,7 @@ impl HeatQuestion {
         let rows = found.days.iter().map(|(hours, _)| hours.len()).sum::<usize>();
         let so = "of the weather have no temperature or humidity, and are left out";
         context.add(Remark::of_share("rows-without-air", found.without_air, rows + found.without_air, "rows", so));
-        let so = "of the weather have no wind: 2 m/s is assumed";
-        context.add(Remark::of_share("rows-without-wind", found.without_wind, rows, "rows", so));
+        context.add(remark_on_wind(found.without_wind, rows));
         let so = "of the weather have no longwave radiation of the sky: it follows from air and clouds";
         context.add(
             Remark::of_share("longwave-modelled", found.modelled_longwave, rows, "rows", so).map(Remark::into_note),
@@ -266,6 +265,12 @@ impl HeatQuestion {
             not_modelled: "wind among buildings, heat stored in walls, evaporation",
         })
     }
+}
+
+/// A warning of rows of weather without wind.
+pub(super) fn remark_on_wind(missing: usize, rows: usize) -> Option<Remark> {
+    let so = format!("of the weather have no wind: {USUAL_WIND} m/s is assumed");
+    Remark::of_share("rows-without-wind", missing, rows, "rows", &so)
 }
 
 fn missing_period<T>() -> Result<T> {

@@ -1,5 +1,6 @@
 //! Irradiance: the energy that sun and sky send to places, and to the planes of roofs.
 
+use super::heat::remark_on_wind;
 use super::how_sure::{check_interval, check_interval_scene};
 use super::scene::Whereabouts;
 use super::sections::{LinesSection, MeasuresSection, PlacesReport, PvSection, RadiationSection, RoofsSection};
@@ -8,9 +9,10 @@ use super::sun_and_sky::{Light, OnTargets};
 use super::trees::remark_on_leaves;
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::irradiance::{
-    ASSUMED_TEMPERATURE, ASSUMED_WIND, ClearSky, IrradianceParams, PeriodReport, PeriodRow, PeriodRows, PlaneYield,
-    PvSystem, RadiationSource, RoofIrradiation, RoofRows, RoofsReport, SeasonRadiation, Surroundings,
-    clock_contradiction, look_count, period_seasons, roof_irradiation, roof_yields, season_irradiation,
+    ClearSky, IrradianceParams, PeriodReport, PeriodRow, PeriodRows, PlaneHour, PlaneYield, PvSystem, RadiationSource,
+    RoofColumn, RoofIrradiation, RoofRows, RoofsReport, SeasonRadiation, Surroundings, USUAL_TEMPERATURE,
+    clock_contradiction, hour_columns, look_count, period_seasons, plane_hours, roof_irradiation, roof_yields,
+    season_irradiation,
 };
 use crate::roof_planes::{Buildings, GROUND_CELL, RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
 use crate::rows::Obstacles;
@@ -105,7 +107,7 @@ pub struct Roofs {
     /// smallest plant that is worth its inverter.
     pub min_cells: Option<usize>,
     /// Photovoltaic system on them.
-    pub system: PvSystem,
+    pub system: PvChoice,
     /// Outlines of buildings, local metres; `None` if planes that touch are a building.
     #[serde(skip)]
     pub footprints: Option<Arc<Vec<Footprint>>>,
@@ -114,9 +116,42 @@ pub struct Roofs {
     pub ground: GroundPoints,
 }
 
+/// A photovoltaic system; values that are not given are those of [`PvSystem`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct PvChoice {
+    /// Peak power of a square metre of panels, kW/m².
+    pub module_efficiency: Option<f64>,
+    /// Change of the power with the temperature of the cells, share per °C.
+    pub temperature_coefficient: Option<f64>,
+    /// Share of the direct current lost without shading.
+    pub system_losses: Option<f64>,
+    /// Nominal efficiency of the inverter.
+    pub inverter_efficiency: Option<f64>,
+    /// Peak power of the panels for each power of the inverter.
+    pub dc_ac_ratio: Option<f64>,
+}
+
+impl PvChoice {
+    /// The system.
+    ///
+    /// # Errors
+    /// Those of [`PvSystem::validate`].
+    pub fn system(&self) -> Result<PvSystem> {
+        let usual = PvSystem::default();
+        let system = usual
+            .with_module_efficiency(self.module_efficiency.unwrap_or(usual.module_efficiency))
+            .with_temperature_coefficient(self.temperature_coefficient.unwrap_or(usual.temperature_coefficient))
+            .with_system_losses(self.system_losses.unwrap_or(usual.system_losses))
+            .with_inverter_efficiency(self.inverter_efficiency.unwrap_or(usual.inverter_efficiency))
+            .with_dc_ac_ratio(self.dc_ac_ratio.unwrap_or(usual.dc_ac_ratio));
+        system.validate().map(|()| system)
+    }
+}
+
 impl Default for Roofs {
     fn default() -> Self {
-        let system = PvSystem::default();
+        let system = PvChoice::default();
         Self { min_area: None, panel: None, min_cells: None, system, footprints: None, ground: GroundPoints::Auto }
     }
 }
@@ -141,6 +176,8 @@ pub struct RoofsResults {
     pub buildings: Buildings,
     /// The energy of each.
     pub energies: Vec<RoofIrradiation>,
+    /// Photovoltaic system on each.
+    pub system: PvSystem,
     /// The electricity of each.
     pub yields: Vec<PlaneYield>,
     /// Radiation row by row.
@@ -157,6 +194,16 @@ impl RoofsResults {
     pub fn as_rows(&self) -> RoofRows<'_> {
         let Self { planes, buildings, energies, yields, radiation, .. } = self;
         RoofRows { planes, buildings, energies, yields, radiation }
+    }
+
+    /// Returns radiation and power of a plane, by its number from 0, in each row of the period, also as columns.
+    ///
+    /// # Errors
+    /// Those of [`plane_hours`].
+    pub fn hours(&self, plane: usize) -> Result<(Vec<PlaneHour>, Vec<RoofColumn>)> {
+        let hours = plane_hours(&self.planes[plane], &self.energies[plane], &self.rows, &self.system)?;
+        let columns = hour_columns(&self.rows, &hours, self.yields[plane].peak_power);
+        Ok((hours, columns))
     }
 }
 
@@ -356,7 +403,7 @@ impl Ask for IrradianceQuestion {
     fn check(&self) -> Result<()> {
         self.params.validate()?;
         check_interval(self.interval, &self.trees)?;
-        self.roofs.as_ref().map_or(Ok(()), |roofs| roofs.system.validate())?;
+        self.roofs.as_ref().map(|roofs| roofs.system.system()).transpose()?;
         self.place.check().map(|_| ())
     }
 
@@ -435,7 +482,7 @@ impl IrradianceQuestion {
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<RoofsResults> {
-        let system = self.roofs.as_ref().map(|roofs| roofs.system).unwrap_or_default();
+        let system = self.roofs.as_ref().map(|roofs| roofs.system).unwrap_or_default().system()?;
         let source = self.radiation.source()?;
         let (rows, yields) = control.stage("computing yields", planes.len(), || {
             let rows = PeriodRows::gather(&source, site, crowns, &self.params, control)?;
@@ -462,7 +509,7 @@ impl IrradianceQuestion {
             ));
         }
         let radiation = self.radiation.in_words();
-        Ok(RoofsResults { planes, buildings, energies, yields, rows, radiation, report })
+        Ok(RoofsResults { planes, buildings, energies, system, yields, rows, radiation, report })
     }
 }
 
@@ -479,12 +526,14 @@ impl Radiation {
 /// Adds remarks on air that is assumed.
 fn remark_on_air(rows: &[PeriodRow], context: &mut Context) {
     let missing = |known: &dyn Fn(&PeriodRow) -> bool| rows.iter().filter(|row| !known(row)).count();
-    let (temperatures, winds) = (missing(&|row| row.temperature.is_some()), missing(&|row| row.wind_speed.is_some()));
-    for (key, count, what) in [
-        ("air-assumed", temperatures, format!("have no air temperature: {ASSUMED_TEMPERATURE} °C is assumed")),
-        ("wind-assumed", winds, format!("have no wind: {ASSUMED_WIND} m/s is assumed")),
-    ] {
-        let what = format!("of the radiation {what} for the yield of panels");
-        context.add(Remark::of_share(key, count, rows.len(), "rows", &what).map(Remark::into_note));
-    }
+    let so = format!("of the weather have no air temperature: {USUAL_TEMPERATURE} °C is assumed");
+    let temperature = Remark::of_share(
+        "rows-without-temperature",
+        missing(&|row| row.temperature.is_some()),
+        rows.len(),
+        "rows",
+        &so,
+    );
+    let wind = remark_on_wind(missing(&|row| row.wind_speed.is_some()), rows.len());
+    [temperature, wind].into_iter().for_each(|remark| context.add(remark.map(Remark::into_note)));
 }

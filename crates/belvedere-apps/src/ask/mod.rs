@@ -69,7 +69,9 @@ pub use how_sure::{
     knows_intervals, remark_from_ground,
 };
 pub use in_parts::summarise_parts;
-pub use irradiance::{IrradianceQuestion, IrradianceResults, Radiation, Roofs, RoofsResults, remark_on_radiation};
+pub use irradiance::{
+    IrradianceQuestion, IrradianceResults, PvChoice, Radiation, Roofs, RoofsResults, remark_on_radiation,
+};
 pub use isovist::{IsovistColumn, IsovistsQuestion, IsovistsResults};
 pub use landmark::{LandmarkQuestion, LandmarkResults, LandmarkSection, LandmarkShape};
 pub use line_of_sight::{LinesOfSightQuestion, ProfileRows, SightColumns, SightsResults};

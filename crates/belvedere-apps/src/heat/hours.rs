@@ -7,7 +7,7 @@ use super::utci::Air;
 use crate::irradiance::{ClearSky, complete, extraterrestrial};
 use crate::sun::{Date, Period, Site, Zone, sun_position, sun_times};
 use crate::tree_light::Season;
-use belvedere_data::weather::{Irradiance, Weather, WeatherStep};
+use belvedere_data::weather::{Irradiance, USUAL_WIND, Weather, WeatherStep};
 use belvedere_data::{Error, Parameter, Result};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -20,8 +20,6 @@ const MIN_CLEARNESS_SINE: f64 = 0.174;
 /// # Source
 /// Lindberg & Grimmond 2011, SOLWEIG 2.
 const DECAY: f64 = 33.27 / DAY;
-/// Wind that is assumed where the weather has none, m/s.
-const USUAL_WIND: f64 = 2.0;
 
 /// A sun of a part of an hour.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -55,6 +55,4 @@ pub use seasons::{
 };
 pub use strings::{PlaneIrradiation, PlaneLight, plane_irradiation};
 pub(crate) use weather_clock::clock_contradiction;
-pub use yields::{
-    ASSUMED_TEMPERATURE, ASSUMED_WIND, PlaneHour, PlaneYield, PvEnergy, performance_ratio, plane_hours, roof_yields,
-};
+pub use yields::{PlaneHour, PlaneYield, PvEnergy, USUAL_TEMPERATURE, performance_ratio, plane_hours, roof_yields};

@@ -82,11 +82,11 @@ fn clear_rows(year: i16, zone: &Zone) -> Result<Vec<PeriodRow>> {
 /// Radiation on a plane in a row, W/m².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RowRadiation {
-    /// Straight from the sun.
+    /// Direct radiation.
     pub beam: f64,
-    /// From the sky, with the part around the sun.
+    /// Radiation of the sky, with the part around the sun.
     pub diffuse: f64,
-    /// From the ground, and from obstacles.
+    /// Radiation of the ground and of obstacles.
     pub reflected: f64,
     /// Direct radiation that passes the cover of panels.
     pub beam_through_cover: f64,

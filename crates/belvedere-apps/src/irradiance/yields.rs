@@ -6,12 +6,11 @@ use super::roofs::RoofIrradiation;
 use crate::roof_planes::RoofPlane;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
+use belvedere_data::weather::USUAL_WIND;
 use rayon::prelude::*;
 
 /// Temperature of the air where weather has none, °C: that of PVWatts' reference conditions and pvlib.
-pub const ASSUMED_TEMPERATURE: f64 = 20.0;
-/// Wind where weather has none, m/s: a light breeze, as heat assumes it.
-pub const ASSUMED_WIND: f64 = 2.0;
+pub const USUAL_TEMPERATURE: f64 = 20.0;
 
 /// Electricity of each month, kWh, January first.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -75,7 +74,7 @@ pub struct PlaneHour {
 
 /// Returns the power of a system under the radiation of a row.
 fn power(system: &PvSystem, row: &PeriodRow, radiation: &RowRadiation) -> PvPower {
-    let (temperature, wind) = (row.temperature.unwrap_or(ASSUMED_TEMPERATURE), row.wind_speed.unwrap_or(ASSUMED_WIND));
+    let (temperature, wind) = (row.temperature.unwrap_or(USUAL_TEMPERATURE), row.wind_speed.unwrap_or(USUAL_WIND));
     system.power(radiation.through_cover(), cell_temperature(radiation.total(), temperature, wind))
 }
 

@@ -4,7 +4,8 @@ use super::{
     IntervalArgument, MemoryArgument, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTreesArguments,
     above_zero, at_least_one, location,
 };
-use belvedere::apps::irradiance::{PvSystem, SkyModel, Surroundings};
+use belvedere::apps::ask::PvChoice;
+use belvedere::apps::irradiance::{SkyModel, Surroundings};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -110,15 +111,15 @@ pub(crate) struct PvArguments {
 }
 
 impl PvArguments {
-    /// Returns the photovoltaic system.
-    pub(crate) fn system(&self) -> PvSystem {
-        let usual = PvSystem::default();
-        usual
-            .with_module_efficiency(self.module_efficiency.unwrap_or(usual.module_efficiency))
-            .with_temperature_coefficient(self.temperature_coefficient.unwrap_or(usual.temperature_coefficient))
-            .with_system_losses(self.system_losses.unwrap_or(usual.system_losses))
-            .with_inverter_efficiency(self.inverter_efficiency.unwrap_or(usual.inverter_efficiency))
-            .with_dc_ac_ratio(self.dc_ac_ratio.unwrap_or(usual.dc_ac_ratio))
+    /// Returns the photovoltaic system that was typed.
+    pub(crate) fn system(&self) -> PvChoice {
+        PvChoice {
+            module_efficiency: self.module_efficiency,
+            temperature_coefficient: self.temperature_coefficient,
+            system_losses: self.system_losses,
+            inverter_efficiency: self.inverter_efficiency,
+            dc_ac_ratio: self.dc_ac_ratio,
+        }
     }
 }
 

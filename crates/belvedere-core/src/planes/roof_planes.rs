@@ -106,9 +106,9 @@ pub(super) struct Roofs {
     pub(super) plane_of: Vec<Option<u32>>,
     /// The planes.
     pub(super) planes: Vec<Roof>,
-    /// For each return of the block its plane, `None` for those on none.
+    /// Plane of each return of the block, `None` for those on none.
     pub(super) plane_of_return: Vec<Option<u32>>,
-    /// For each of the points its row among the returns of the block.
+    /// Row of each of the points among the returns of the block.
     return_of: Vec<usize>,
     /// Noise of points along the normals, metres.
     pub(super) noise: f64,

@@ -149,6 +149,9 @@ impl Weather {
     }
 }
 
+/// Wind speed where weather has none, m/s: a light breeze.
+pub const USUAL_WIND: f64 = 2.0;
+
 #[cfg(test)]
 mod tests {
     use super::*;

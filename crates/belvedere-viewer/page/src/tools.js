@@ -150,13 +150,13 @@ export const TOOLS = [
     ask: ([place]) => ["roof", { place }],
     show(answer, page) {
       page.plane(answer);
-      return `<p class="verdict">${t`${count(Math.round(answer.kwh / 100) * 100)} kWh a year`}</p><p class="note">${t`is the solar energy received by ${fixed(answer.panel_area_m2, 0)} m² of panels from sun and sky, not electricity: panels turn a part of it into that. It is for a sky without clouds, an upper bound. With a file of weather, the command below gives less.`}</p>`
+      return `<p class="verdict">${t`${count(Math.round(answer.radiation_kwh / 100) * 100)} kWh a year`}</p><p class="note">${t`is the solar energy received by ${fixed(answer.panel_area_m2, 0)} m² of panels from sun and sky, not electricity: panels turn a part of it into that. It is for a sky without clouds, an upper bound. With a file of weather, the command below gives less.`}</p>`
         + list([[t`Received by a square metre`, `${count(Math.round(answer.kwh_m2))} kWh`], ...interval(answer.interval_kwh_m2, (v) => count(Math.round(v)), "kWh"), [t`Without any shade`, `${count(Math.round(answer.free_kwh_m2))} kWh`], [t`Lost by shade, each panel for itself`, percent(answer.min_loss, 1)], [t`Lost by shade, panels in strings`, percent(answer.max_loss, 1)],
           [t`Tilt`, `${fixed(answer.tilt_deg, 0)}°`], [t`Faces`, answer.azimuth_deg === null ? t`up` : t`${fixed(answer.azimuth_deg, 0)}° from north`], [t`Area of the plane`, `${fixed(answer.area_m2, 1)} m²`], [t`Plane`, t`${answer.plane} of ${answer.planes}`]])
         + `<h3>${t`Solar energy received in each month, kWh/m²`}</h3><figure>${charts.energy(answer.months_kwh_m2)}</figure>`;
     },
     rows: (answer) => [["month", "kwh_m2"], ...answer.months_kwh_m2.map((v, i) => [i + 1, v])],
-    properties: ({ plane, kwh, kwh_m2, free_kwh_m2, min_loss, max_loss, tilt_deg, azimuth_deg, area_m2 }) => ({ plane, kwh, kwh_m2, free_kwh_m2, min_loss, max_loss, tilt_deg, azimuth_deg, area_m2 }),
+    properties: ({ plane, radiation_kwh, kwh_m2, free_kwh_m2, min_loss, max_loss, tilt_deg, azimuth_deg, area_m2 }) => ({ plane, radiation_kwh, kwh_m2, free_kwh_m2, min_loss, max_loss, tilt_deg, azimuth_deg, area_m2 }),
   },
   {
     name: "sun_area", short: t`Sun hours`, title: t`Sun hours of an area`, change: true, icon: icon('<path d="M4 8 13 4l7 8-5 8-9-3z"/><circle cx="12.500" cy="11.500" r="2"/>'), places: Infinity, time: "date",

@@ -47,7 +47,7 @@ pub(super) fn answer(question: &RoofRequest, context: &RequestContext<'_>) -> Re
         "free_kwh_m2": number(energy.mean.unshaded, 1),
         "min_loss": number(energy.mean.loss(), 4),
         "max_loss": number(energy.greatest_loss(), 4),
-        "kwh": number(energy.panel_area(plane) * energy.mean.total(), 0),
+        "radiation_kwh": number(energy.panel_area(plane) * energy.mean.total(), 0),
         "months_kwh_m2": months,
         "year": CLEAR_SKY_YEAR,
         "planes": roofs.planes.len(),

@@ -4,7 +4,7 @@ use super::columns::write_columns;
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::apps::ask::RoofsResults;
-use belvedere::apps::irradiance::{PvSystem, RoofColumn, hour_columns, plane_hours, sky_loss_percent};
+use belvedere::apps::irradiance::{RoofColumn, sky_loss_percent};
 use belvedere::io::atomic;
 use std::path::Path;
 
@@ -13,14 +13,12 @@ const FOR_SAM: &str = "beam_loss_percent";
 
 /// Writes two tables for each plane: all that is known of each row, and the loss of direct radiation alone under a
 /// single line, as SAM reads it.
-pub(super) fn write(folder: &Path, roofs: &RoofsResults, system: &PvSystem, run: &CommandContext) -> Result<()> {
+pub(super) fn write(folder: &Path, roofs: &RoofsResults, run: &CommandContext) -> Result<()> {
     atomic::make_folder(folder)?;
-    let planes = roofs.planes.iter().zip(&roofs.energies).zip(&roofs.yields);
     run.stage("writing hours", roofs.planes.len(), |control| {
-        for (number, ((plane, energy), own)) in (1..).zip(planes) {
+        for number in 1..=roofs.planes.len() {
             control.check()?;
-            let hours = plane_hours(plane, energy, &roofs.rows, system)?;
-            let columns = hour_columns(&roofs.rows, &hours, own.peak_power);
+            let (hours, columns) = roofs.hours(number - 1)?;
             write_columns(&folder.join(format!("plane_{number}.csv")), None, &columns)?;
             let losses = columns.into_iter().filter(|column| column.name == FOR_SAM).map(|column| RoofColumn {
                 name: format!(

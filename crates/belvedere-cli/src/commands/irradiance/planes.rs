@@ -59,7 +59,7 @@ pub(super) fn write(
         run.summary.add("buildings_written", output.display().to_string());
     }
     if let Some(folder) = hourly {
-        hours::write(folder, roofs, &arguments.photovoltaics.system(), run)?;
+        hours::write(folder, roofs, run)?;
         run.summary.add("hourly_written", folder.display().to_string());
     }
     if let Some(folder) = &arguments.horizons {
