@@ -116,8 +116,9 @@ impl WindowTargets {
     /// # Errors
     /// [`Error::InvalidParameter`] for windows all of which lie outside.
     pub(super) fn leave_out_outside(&mut self, scene: &Scene, context: &mut Context) -> Result<()> {
+        let given = self.targets.target_count();
         leave_out_outside(&mut self.targets, scene, context);
-        if self.windows.is_empty() || self.targets.target_count() > 0 {
+        if given == 0 || self.targets.target_count() > 0 {
             return Ok(());
         }
         let file = |corner: [f64; 3]| scene.frame().file_from_local(corner).map(|v| rounded(v, 1));

@@ -138,5 +138,5 @@ fn window_views_refuse_what_they_cannot_do() {
     }
     let plain = format!("window-views house.laz {BALLS} --windows plain.csv -o a.csv");
     place.refusal(1, &format!("{plain} --buildings b.csv"), &["column name"]);
-    place.refusal(1, &plain, &["no window is left", "plain.csv"]);
+    place.refusal(2, &plain, &["--windows", "all outside of the cloud", "x 100000 to 100000"]);
 }
