@@ -190,6 +190,8 @@ pub(crate) enum Command {
     Info(Info),
     /// Estimate the scanner positions from the pulses of a cloud
     Trajectory(TrajectoryArguments),
+    /// Find the open surveys of a place, and take their points
+    Fetch(FetchArguments),
     /// Estimate normals and orient them outward
     Normals(NormalsArguments),
     /// Find roofs, their edges and ridges, and walls, with how well each is known

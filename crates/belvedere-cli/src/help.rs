@@ -24,7 +24,7 @@ pub(crate) const BALL_FLAGS: [&str; 15] = [
 
 /// Commands by task, in the order of the overview.
 const GROUPS: [(&str, &[&str]); 7] = [
-    ("start", &["demo", "info", "view", "simulate"]),
+    ("start", &["demo", "fetch", "info", "view", "simulate"]),
     (
         "sun",
         &[
@@ -161,6 +161,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("demo", include_str!("help/demo.txt")),
     ("simulate", include_str!("help/simulate.txt")),
     ("info", include_str!("help/info.txt")),
+    ("fetch", include_str!("help/fetch.txt")),
     ("trajectory", include_str!("help/trajectory.txt")),
     ("normals", include_str!("help/normals.txt")),
     ("surfaces", include_str!("help/surfaces.txt")),
@@ -242,7 +243,7 @@ pub(crate) fn group(command: &str) -> Option<&'static str> {
 /// The help of the program, which fits a screen: its commands by task.
 fn overview(program: &Command) -> String {
     let about = include_str!("help/belvedere.txt").trim_end();
-    let mut text = format!("{about}\n\nUsage: belvedere COMMAND [OPTIONS]\n");
+    let mut text = format!("{about}\nUsage: belvedere COMMAND [OPTIONS]\n");
     for (name, commands) in GROUPS {
         text.push_str(&format!("\n{name}\n"));
         for command in commands.iter().filter_map(|command| program.find_subcommand(command)) {

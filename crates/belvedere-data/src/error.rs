@@ -89,6 +89,12 @@ pub enum Error {
         /// Stage at which they were lost.
         what: String,
     },
+    /// No open survey gives points of a place.
+    #[error("no survey gives points there: {}", printable(what))]
+    NoSurvey {
+        /// What each survey lacks, and advice.
+        what: String,
+    },
     /// There are points, but too few, or none beside one line, for a surface.
     #[error("{count} {} left, {what}: a surface cannot be made of {}; is this the right file?", if *count == 1 { "point is" } else { "points are" }, if *count == 1 { "it" } else { "them" })]
     NoSurface {

@@ -273,6 +273,12 @@ parameters! {
     LevelOfDetail => "level of detail",
     /// Columns of results in a file.
     ResultColumns => "result columns",
+    /// Open survey to take points of.
+    OpenSurvey => "survey",
+    /// Place to find open surveys of.
+    SurveyPlace => "place",
+    /// Half of the side of an area of an open survey.
+    SurveyRadius => "radius",
     /// Number and size of the frames of a film.
     Frames => "frames of a film",
     /// Display time of a frame of a film.

@@ -77,6 +77,8 @@ mod obj;
 mod observers;
 #[cfg(feature = "las")]
 mod octree;
+#[cfg(all(feature = "http", feature = "las"))]
+pub mod open_surveys;
 mod outline;
 mod output;
 mod pcd;

@@ -24,6 +24,8 @@ const MAX_AHEAD: u64 = 1 << 20;
 const MAX_BYTES: u64 = 1 << 24;
 /// Bytes that are taken from a connection at once.
 const BLOCK_BYTES: usize = 1 << 16;
+/// Largest answer of a service, bytes: a thousand rows of a list with room to spare.
+const MAX_TEXT: u64 = 1 << 25;
 /// Largest file of a server that gives no parts: it is kept in memory.
 const MAX_WHOLE: u64 = 1 << 28;
 /// Time to wait before asking again, where a server was busy or a connection broke.
@@ -207,8 +209,47 @@ impl Seek for Remote {
     }
 }
 
+/// Returns the size of the file at `address`, bytes; `None` if the server has no such file.
+///
+/// # Errors
+/// Those of [`Remote::open`].
+#[cfg(feature = "las")]
+pub(crate) fn size_of(address: &str) -> Result<Option<u64>> {
+    match Remote::open(address) {
+        Ok(file) => Ok(Some(file.size())),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+/// The answer of a service as text.
+///
+/// # Errors
+/// Those of connecting and of the server, and answers of more than 32 MiB.
+#[cfg(feature = "las")]
+pub(crate) fn text(address: &str) -> Result<String> {
+    patiently(|| {
+        let mut response = AGENT
+            .get(address)
+            .header(header::ACCEPT_ENCODING, "identity")
+            .call()
+            .map_err(|error| Failure { may_pass: is_passing(&error), error: Error::other(described(&error)) })?;
+        let status = response.status().as_u16();
+        if status != 200 {
+            return Err(of_status(status));
+        }
+        let mut bytes = Vec::new();
+        let mut reader = response.body_mut().with_config().limit(MAX_TEXT + 1).reader().take(MAX_TEXT + 1);
+        reader.read_to_end(&mut bytes).map_err(broken)?;
+        if bytes.len() as u64 > MAX_TEXT {
+            return Err(lasting("the answer has more than 32 MiB; look at the page of the service".to_owned()));
+        }
+        Ok(String::from_utf8_lossy(&bytes).into_owned())
+    })
+}
+
 /// Asks again where that may help.
-fn patiently(mut ask: impl FnMut() -> std::result::Result<Reply, Failure>) -> Result<Reply> {
+fn patiently<T>(mut ask: impl FnMut() -> std::result::Result<T, Failure>) -> Result<T> {
     for pause in PAUSES {
         match ask() {
             Err(Failure { may_pass: true, .. }) => sleep(pause),
@@ -271,13 +312,23 @@ fn request(agent: &Agent, address: &str, part: Part, pace: &mut Pace) -> std::re
         (404, _) if known.is_some() => Err(Failure { error: Error::other(CHANGED), may_pass: true }),
         // it ends earlier than before, or is gone
         (410 | 416, _) if known.is_some() => Err(lasting(CHANGED.to_owned())),
-        (401 | 403 | 407, _) => Err(lasting(format!("the server refuses access (status {status})"))),
-        (404 | 410, _) => Err(lasting(format!("the server has no such file (status {status}); check the address"))),
-        (408 | 429 | 500..=599, _) => {
-            let error = Error::other(format!("the server cannot answer now (status {status}); try again later"));
-            Err(Failure { error, may_pass: true })
+        _ => Err(of_status(status)),
+    }
+}
+
+/// The failure that a status means.
+fn of_status(status: u16) -> Failure {
+    match status {
+        401 | 403 | 407 => lasting(format!("the server refuses access (status {status})")),
+        404 | 410 => {
+            let what = format!("the server has no such file (status {status}); check the address");
+            Failure { error: Error::new(ErrorKind::NotFound, what), may_pass: false }
         }
-        _ => Err(lasting(format!("the server gives no answer that fits (status {status}); download the file first"))),
+        408 | 429 | 500..=599 => {
+            let error = Error::other(format!("the server cannot answer now (status {status}); try again later"));
+            Failure { error, may_pass: true }
+        }
+        _ => lasting(format!("the server gives no answer that fits (status {status}); download the file first")),
     }
 }
 

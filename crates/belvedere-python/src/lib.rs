@@ -53,4 +53,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(raster::write_geotiff, module)?)?;
     module.add_function(wrap_pyfunction!(simulate::simulate, module)?)?;
     Ok(())
+    module.add_function(wrap_pyfunction!(fetch::fetch, module)?)?;
+    module.add_function(wrap_pyfunction!(fetch::open_surveys, module)?)?;
 }

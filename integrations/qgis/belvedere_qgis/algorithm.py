@@ -6,6 +6,7 @@ import tempfile
 
 from processing.core.ProcessingConfig import ProcessingConfig
 from qgis.core import (
+    QgsCoordinateReferenceSystem,
     QgsProcessing,
     QgsProcessingAlgorithm,
     QgsProcessingException,
@@ -173,6 +174,9 @@ class BelvedereAlgorithm(QgsProcessingAlgorithm):
         if one.kind == "point":
             place = self.parameterAsPoint(parameters, one.key, context, scene)
             return f"{place.x()!r},{place.y()!r}"
+        if one.kind == "place":
+            place = self.parameterAsPoint(parameters, one.key, context, QgsCoordinateReferenceSystem("EPSG:4326"))
+            return f"{place.y()!r},{place.x()!r}"
         if one.kind == "layer":
             source = self.parameterAsSource(parameters, one.key, context)
             if source is None:
@@ -199,7 +203,7 @@ def _definitions(one):
         return [QgsProcessingParameterNumber(one.key, one.label, kind, one.default, optional)]
     if one.kind == "crs":
         return [QgsProcessingParameterCrs(one.key, one.label, optional=optional)]
-    if one.kind == "point":
+    if one.kind in ("point", "place"):
         return [QgsProcessingParameterPoint(one.key, one.label, optional=optional)]
     if one.kind == "layer":
         kinds = [GEOMETRIES[one.geometry]]

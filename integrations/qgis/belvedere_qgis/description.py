@@ -27,6 +27,7 @@ GROUPS = {
     "report": "Sun and sky",
     "surfaces": "Scene",
 }
+    "fetch": "Scene",
 TITLES = {
     "viewshed": "Viewshed",
     "line-of-sight": "Line of sight",
@@ -49,6 +50,7 @@ TITLES = {
     "surfaces": "Roofs and walls",
 }
 # Headings of parameters that few people change.
+    "fetch": "Points of an open survey",
 RARE = ("Lines of sight", "Scene", "Balls", "Global options")
 # Layers that must have a certain geometry; others take any.
 GEOMETRIES = {
@@ -91,7 +93,7 @@ class Parameter:
     flag: str
     key: str
     kind: str
-    """flag, choice, number, integer, text, crs, point, layer, file, files or written"""
+    """flag, choice, number, integer, text, crs, point, place (on earth), layer, file, files or written"""
     label: str
     help: str
     default: object = None
@@ -196,6 +198,8 @@ def _kind(described):
         return "point"
     if ".geojson" in described["formats"]:
         return "layer"
+    if described["name"] == "--at" and named == "LAT,LON":
+        return "place"
     if described["type"] == "path":
         return "file"
     # several numbers in one value are typed, as on the command line

@@ -81,6 +81,7 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         Command::Info(arguments) => info::run(arguments, global),
         Command::Trajectory(arguments) => trajectory::run(arguments, global),
         Command::Normals(arguments) => normals::run(arguments, global),
+        Command::Fetch(arguments) => fetch::run(arguments, global),
         Command::Surfaces(arguments) => surfaces::run(arguments, global),
         Command::Balls(arguments) => balls::run(arguments, global),
         Command::Calibrate(arguments) => calibrate::run(arguments, global),

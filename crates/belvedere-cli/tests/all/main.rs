@@ -18,6 +18,7 @@ mod determinism;
 mod devices;
 mod envelopes;
 mod far_terrain;
+mod fetch;
 mod given_rows;
 mod heat;
 mod help_examples;

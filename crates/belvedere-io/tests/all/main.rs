@@ -10,6 +10,7 @@ mod hostile_side_files;
 mod odd_clouds;
 mod odd_meshes;
 mod odd_tables;
+mod open_surveys;
 mod outputs;
 mod remote;
 mod skies;

@@ -14,6 +14,7 @@ from ._cloud import Cloud, read
 from ._core import __version__
 from ._devices import Device, devices
 from ._errors import BelvedereError, BelvedereWarning
+from ._fetch import fetch, open_surveys
 from ._mesh import Mesh
 from ._raster import Raster, Rasters
 from ._remarks import Remark
@@ -39,6 +40,8 @@ __all__ = [
     "__version__",
     "city",
     "devices",
+    "fetch",
+    "open_surveys",
     "read",
     "simulate",
 ]

@@ -291,7 +291,11 @@ def read(
     options = (crs, bool(crs_override), up, bool(skip_distant))
     day = None if flown is None else str(flown)[:10]
     core, text = _core.read(inputs, *options, box, wanted, day, reporter(progress))
-    report = json.loads(text)
+    return cloud_of(core, json.loads(text))
+
+
+def cloud_of(core: _core.Cloud, report: dict[str, Any]) -> Cloud:
+    """A cloud that was read, with warnings of what is lost or odd."""
     for note in _notes(report):
         _warn(note)
     return Cloud._of(core, report)

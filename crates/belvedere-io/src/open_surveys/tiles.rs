@@ -1,0 +1,308 @@
+//! The tiles of a survey around a place.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::index::ListPage;
+use super::table::{OpenSurvey, SurveyArea, TileIndex};
+use crate::remote;
+use crate::secrets::hidden;
+use belvedere_data::control::Control;
+use belvedere_data::crs::{Crs, GeographicProjection};
+use belvedere_data::parameter::Parameter;
+use belvedere_data::{Error, Result};
+
+/// Maximum number of pages of a list, and of tiles: an area of a few kilometres has far fewer, and services err.
+const MAX_PAGES: usize = 20;
+const MAX_TILES: usize = 1000;
+/// Places of the area a side at which the newest tile is looked for.
+const PLACES: usize = 32;
+
+/// A file of a survey.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SurveyTile {
+    /// Its address.
+    pub address: String,
+    /// Its size, where the service or its server says it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bytes: Option<u64>,
+    /// Date by the service, such as "2020-03-01T00:00:00Z".
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub date: Option<String>,
+}
+
+/// A survey that may cover a place.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FoundSurvey {
+    /// The survey.
+    #[serde(flatten)]
+    pub survey: OpenSurvey,
+    /// Its tiles in the area; none where people choose them on its page.
+    pub tiles: Vec<SurveyTile>,
+    /// Reason why its tiles are not known, and advice.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
+}
+
+impl SurveyTile {
+    /// Name for its file: the last part of the address, without letters that file systems do not have.
+    #[must_use]
+    pub fn file_name(&self) -> String {
+        let plain = self.address.split(['?', '#']).next().unwrap_or_default();
+        let last = plain.rsplit('/').next().unwrap_or_default();
+        let is_usual = |letter: char| letter.is_ascii_alphanumeric() || "._-".contains(letter);
+        let name: String = last.chars().map(|letter| if is_usual(letter) { letter } else { '_' }).collect();
+        name.trim_start_matches('.').to_owned()
+    }
+
+    /// True for archives, which must be unpacked before their points can be read.
+    #[must_use]
+    pub fn is_archive(&self) -> bool {
+        Path::new(&self.file_name()).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("zip"))
+    }
+}
+
+/// The tiles of `surveys` in `area`. Surveys without tiles there are left out.
+///
+/// # Errors
+/// [`Error::Cancelled`].
+pub fn find_surveys(surveys: &[OpenSurvey], area: &SurveyArea, control: &Control<'_>) -> Result<Vec<FoundSurvey>> {
+    control.stage("asking for tiles", surveys.len(), || {
+        let mut found = Vec::new();
+        for survey in surveys {
+            let (tiles, failure) = match find_tiles(survey, area, control) {
+                Ok(tiles) => (tiles, None),
+                Err(Error::Cancelled) => return Err(Error::Cancelled),
+                Err(error) => (Vec::new(), Some(error.to_string())),
+            };
+            if survey.index == TileIndex::Page || failure.is_some() || !tiles.is_empty() {
+                found.push(FoundSurvey { survey: survey.clone(), tiles, failure });
+            }
+            control.advance(1);
+        }
+        Ok(found)
+    })
+}
+
+/// The surveys of a table that may cover `area`: all, or the one that is named.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for names that the table does not have, and places that no survey may cover.
+pub fn surveys_at(mut surveys: Vec<OpenSurvey>, name: Option<&str>, area: &SurveyArea) -> Result<Vec<OpenSurvey>> {
+    if let Some(name) = name {
+        let names: Vec<String> = surveys.iter().map(|survey| survey.name.clone()).collect();
+        surveys.retain(|survey| survey.name == name);
+        if surveys.is_empty() {
+            return Err(Error::InvalidParameter {
+                parameter: Parameter::OpenSurvey,
+                value: format!("{name:?}, which is none of {}", names.join(", ")),
+                expected: "a survey of the table",
+            });
+        }
+    }
+    surveys.retain(|survey| survey.may_cover(area));
+    if surveys.is_empty() {
+        let [latitude, longitude] = area.middle_deg();
+        return Err(Error::InvalidParameter {
+            parameter: Parameter::SurveyPlace,
+            value: format!("{latitude}, {longitude}, where no survey of the table lies"),
+            expected: "in a survey of the table, latitude first; https://portal.opentopography.org/datasets lists others",
+        });
+    }
+    Ok(surveys)
+}
+
+/// The survey to take points of: the first with tiles.
+///
+/// # Errors
+/// [`Error::NoSurvey`] where none has tiles, with what each lacks.
+pub fn first_with_tiles(found: &[FoundSurvey]) -> Result<&FoundSurvey> {
+    let is_ready = |found: &&FoundSurvey| !found.tiles.is_empty();
+    if let Some(ready) = found.iter().find(is_ready) {
+        return Ok(ready);
+    }
+    let reason = |found: &FoundSurvey| match &found.failure {
+        Some(failure) => format!("{}: {failure}", found.survey.title),
+        None => format!("{}: choose tiles on {}", found.survey.title, found.survey.page),
+    };
+    let reasons: Vec<String> = found.iter().map(reason).collect();
+    let what = if reasons.is_empty() { "no survey has a tile there".to_owned() } else { reasons.join("; ") };
+    Err(Error::NoSurvey { what })
+}
+
+/// The tiles of a survey in `area`: where several have the same place, the newest.
+///
+/// # Errors
+/// [`Error::Io`] where the service is not reached, [`Error::Malformed`] where its answer is no list of tiles,
+/// [`Error::InvalidParameter`] for places beyond the reference system of the survey, and [`Error::Cancelled`].
+pub fn find_tiles(survey: &OpenSurvey, area: &SurveyArea, control: &Control<'_>) -> Result<Vec<SurveyTile>> {
+    match &survey.index {
+        TileIndex::Squares { side_m, address } => {
+            squares_in(&box_in_crs(survey, area)?, *side_m, |corner| filled_corner(address, corner), control)
+        }
+        TileIndex::List { address } => {
+            let in_crs = address.contains("{x_min}");
+            let area_box = if in_crs { box_in_crs(survey, area)? } else { area.box_deg() };
+            Ok(newest_of(listed(filled_box(address, &area_box), control)?, &area_box))
+        }
+        TileIndex::Page => Ok(Vec::new()),
+    }
+}
+
+/// Lowest and highest x and y of `area` in the system of `survey`, metres.
+fn box_in_crs(survey: &OpenSurvey, area: &SurveyArea) -> Result<[f64; 4]> {
+    let crs = Crs::parse(survey.crs.as_deref().unwrap_or_default())?;
+    let [x, y] = middle_in(&crs.geographic_projection()?, area)?;
+    let radius = area.radius_m();
+    Ok([x - radius, y - radius, x + radius, y + radius])
+}
+
+/// The middle of `area` in a projection, metres.
+pub(super) fn middle_in(projection: &GeographicProjection, area: &SurveyArea) -> Result<[f64; 2]> {
+    let [latitude, longitude] = area.middle_deg().map(f64::to_radians);
+    projection.project(latitude, longitude)
+}
+
+/// The files of the squares that meet a box, of which servers say that they exist.
+fn squares_in(
+    &[x_min, y_min, x_max, y_max]: &[f64; 4],
+    side: f64,
+    address_of: impl Fn([f64; 2]) -> String,
+    control: &Control<'_>,
+) -> Result<Vec<SurveyTile>> {
+    let corners = |low: f64, high: f64| {
+        let first = (low / side).floor() * side;
+        std::iter::successors(Some(first), move |corner| Some(corner + side)).take_while(move |&corner| corner <= high)
+    };
+    let mut tiles = Vec::new();
+    for y in corners(y_min, y_max) {
+        for x in corners(x_min, x_max) {
+            control.check()?;
+            let address = address_of([x, y]);
+            let size = remote::size_of(&address).map_err(Error::io(&hidden(Path::new(&address))))?;
+            tiles.extend(size.map(|bytes| SurveyTile { address, bytes: Some(bytes), date: None }));
+        }
+    }
+    Ok(tiles)
+}
+
+/// The address of the square with a south-west corner, metres.
+fn filled_corner(address: &str, [x, y]: [f64; 2]) -> String {
+    let filled = address.replace("{x_m}", &format!("{x:06.0}")).replace("{y_m}", &format!("{y:06.0}"));
+    filled.replace("{x_km}", &format!("{:.0}", x / 1000.0)).replace("{y_km}", &format!("{:.0}", y / 1000.0))
+}
+
+/// The address of the list of a box, in degrees or metres.
+fn filled_box(address: &str, area_box: &[f64; 4]) -> String {
+    let names = [["{west}", "{x_min}"], ["{south}", "{y_min}"], ["{east}", "{x_max}"], ["{north}", "{y_max}"]];
+    let mut filled = address.to_owned();
+    for ([in_degrees, in_metres], value) in names.into_iter().zip(area_box) {
+        filled = filled.replace(in_degrees, &format!("{value:.6}")).replace(in_metres, &format!("{value:.1}"));
+    }
+    filled
+}
+
+/// All tiles of a list, page by page.
+fn listed(address: String, control: &Control<'_>) -> Result<Vec<(SurveyTile, Option<[f64; 4]>)>> {
+    let (mut tiles, mut next) = (Vec::new(), Some(address));
+    for _ in 0..MAX_PAGES {
+        let Some(address) = next.take() else { break };
+        control.check()?;
+        let path = &hidden(Path::new(&address));
+        let text = remote::text(&address).map_err(Error::io(path))?;
+        let page = ListPage::parse(&text).map_err(|what| Error::malformed(path, what))?;
+        tiles.extend(page.tiles);
+        next = page.next.filter(|next| *next != address);
+        if tiles.len() > MAX_TILES {
+            return Err(Error::malformed(path, "lists over 1000 tiles of a few kilometres: it ignores the area"));
+        }
+    }
+    Ok(tiles)
+}
+
+/// The tiles that are the newest at half or more of the places of the area that they cover, and those without a box.
+///
+/// Surveys of several years in one cloud would contradict each other.
+fn newest_of(mut tiles: Vec<(SurveyTile, Option<[f64; 4]>)>, area_box: &[f64; 4]) -> Vec<SurveyTile> {
+    // dates in ISO 8601 sort as texts do; names end with the year where there is no date
+    tiles.sort_by(|(a, _), (b, _)| b.date.cmp(&a.date).then_with(|| b.address.cmp(&a.address)));
+    tiles.dedup_by(|(a, _), (b, _)| a.address == b.address);
+    let &[west, south, east, north] = area_box;
+    let place = |index: usize| (index as f64 + 0.5) / PLACES as f64;
+    let mut is_taken = [[false; PLACES]; PLACES];
+    let mut kept = Vec::new();
+    for (tile, bounds) in tiles {
+        let Some([left, low, right, high]) = bounds else {
+            kept.push(tile);
+            continue;
+        };
+        let covered: Vec<[usize; 2]> = (0..PLACES * PLACES)
+            .map(|number| [number / PLACES, number % PLACES])
+            .filter(|&[row, column]| {
+                let (x, y) = (west + (east - west) * place(column), south + (north - south) * place(row));
+                (left..=right).contains(&x) && (low..=high).contains(&y)
+            })
+            .collect();
+        let is_new = |&&[row, column]: &&[usize; 2]| !is_taken[row][column];
+        if !covered.is_empty() && 2 * covered.iter().filter(is_new).count() >= covered.len() {
+            kept.push(tile);
+            covered.iter().for_each(|&[row, column]| is_taken[row][column] = true);
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tile(address: &str, date: Option<&str>) -> SurveyTile {
+        SurveyTile { address: address.to_owned(), bytes: None, date: date.map(str::to_owned) }
+    }
+
+    #[test]
+    fn newest_tiles_stay_and_older_ones_fill_what_they_leave_open() {
+        let old = |name: &str, bounds| (tile(name, Some("2016-01-01")), Some(bounds));
+        let new = |name: &str, bounds| (tile(name, Some("2024-01-01")), Some(bounds));
+        let area = [0.0, 0.0, 2.0, 2.0];
+        let names = |tiles| {
+            let mut names: Vec<_> = newest_of(tiles, &area).into_iter().map(|tile| tile.address).collect();
+            names.sort();
+            names
+        };
+        let (west, east) = ([-3.0, -3.0, 1.01, 5.0], [0.99, -3.0, 5.0, 5.0]);
+        // neighbours overlap by a margin
+        assert_eq!(names(vec![old("a", west), old("b", east), new("c", west), new("d", east)]), ["c", "d"]);
+        // the new survey ends in the area
+        assert_eq!(names(vec![old("a", west), old("b", east), new("c", west)]), ["b", "c"]);
+        // tiles beside the area, twice the same, and without a box
+        let beside = new("e", [3.0, 3.0, 4.0, 4.0]);
+        assert_eq!(names(vec![beside, new("c", west), new("c", west), (tile("f", None), None)]), ["c", "f"]);
+    }
+
+    #[test]
+    fn addresses_have_corners_and_boxes() {
+        assert_eq!(filled_corner("a_{x_m}_{y_m}.laz", [85_000.0, 446_000.0]), "a_085000_446000.laz");
+        assert_eq!(filled_corner("a_{x_km}_{y_km}.laz", [690_000.0, 5_334_000.0]), "a_690_5334.laz");
+        let box_deg = [4.35, 52.0, 4.36, 52.01];
+        assert_eq!(
+            filled_box("a?b={west},{south},{east},{north}", &box_deg),
+            "a?b=4.350000,52.000000,4.360000,52.010000"
+        );
+        assert_eq!(filled_box("{x_min} {y_max}", &[1.0, 2.0, 3.0, 4.04]), "1.0 4.0");
+    }
+
+    #[test]
+    fn names_of_files_stay_in_their_folder() {
+        for (address, name) in [
+            ("https://a/b/c.copc.laz?key=/x", "c.copc.laz"),
+            ("https://a/..", ""),
+            ("https://a/b/%2e%2e%2fc d.laz", "_2e_2e_2fc_d.laz"),
+            ("https://a/.hidden.laz", "hidden.laz"),
+        ] {
+            assert_eq!(tile(address, None).file_name(), name);
+        }
+        assert!(tile("https://a/b.las.ZIP", None).is_archive() && !tile("https://a/b.laz", None).is_archive());
+    }
+}

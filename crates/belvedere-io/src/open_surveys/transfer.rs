@@ -1,0 +1,114 @@
+//! Points of an area, and whole tiles, from the servers of a survey.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use super::table::SurveyArea;
+use super::tiles::{FoundSurvey, SurveyTile, first_with_tiles, middle_in};
+use crate::atomic;
+use crate::las::read_las_head;
+use crate::read_cloud::read_cloud;
+use crate::read_options::{ReadOptions, Within};
+use crate::read_report::ReadReport;
+use crate::secrets::hidden;
+use crate::source::Source;
+use belvedere_data::control::Control;
+use belvedere_data::crs::{Crs, CrsKind};
+use belvedere_data::parameter::Parameter;
+use belvedere_data::{Error, PointCloud, Result};
+
+/// Maximum radius of an area that becomes one cloud, metres: 80 million points of a dense survey, 3 GB.
+const MAX_CLOUD_RADIUS: f64 = 1000.0;
+/// Bytes between two looks at whether to go on.
+const BLOCK_BYTES: usize = 1 << 20;
+
+/// Reads the points of `area`: of COPC tiles only the parts that meet it are transferred, of others all.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for a radius above 1 km, [`Error::NoSurvey`] for surveys without tiles, [`Error::Malformed`] for archives, and those of [`read_cloud`].
+pub fn read_area(found: &FoundSurvey, area: &SurveyArea, control: &Control<'_>) -> Result<(PointCloud, ReadReport)> {
+    if area.radius_m() > MAX_CLOUD_RADIUS {
+        return Err(Error::InvalidParameter {
+            parameter: Parameter::SurveyRadius,
+            value: format!("{} m", area.radius_m()),
+            expected: "at most 1000 m for a single cloud; larger areas come as whole tiles",
+        });
+    }
+    let found = first_with_tiles(std::slice::from_ref(found))?;
+    if let Some(archive) = found.tiles.iter().find(|tile| tile.is_archive()) {
+        let what = "is an archive: take whole tiles into a folder, and unpack them";
+        return Err(Error::malformed(&hidden(Path::new(&archive.address)), what));
+    }
+    // the tiles of a survey of a country have systems of their own in each zone
+    let of_file = found.tiles.first().map(|tile| read_las_head(Path::new(&tile.address))).transpose()?;
+    let of_file = of_file.map(|head| head.crs).unwrap_or_default();
+    let names_none = of_file.kind == CrsKind::Unknown;
+    let given = if names_none { found.survey.crs.as_deref() } else { None };
+    let crs = given.map_or(Ok(of_file), Crs::parse)?;
+    let middle = middle_in(&crs.geographic_projection()?, area)?;
+    let [per_x, per_y, _] = crs.metres_per_unit_xyz();
+    let corner = |side: f64| [(middle[0] + side) / per_x, (middle[1] + side) / per_y];
+    let [[west, south], [east, north]] = [corner(-area.radius_m()), corner(area.radius_m())];
+    let within = Within::File { low: [west, south, f64::NEG_INFINITY], high: [east, north, f64::INFINITY] };
+    let mut options = ReadOptions::new().with_points_within(within);
+    options.crs = given.map(str::to_owned);
+    let addresses = found.tiles.iter().map(|tile| Source::path(&tile.address));
+    control.stage("reading tiles", 0, || read_cloud(addresses, &options, control))
+}
+
+/// Writes a whole tile into `folder`, and returns its path. A file of its name and size is left as it is.
+///
+/// # Errors
+/// [`Error::Io`] and [`Error::Cancelled`]; then there is no file.
+pub fn download_tile(tile: &SurveyTile, folder: &Path, control: &Control<'_>) -> Result<PathBuf> {
+    let address = hidden(Path::new(&tile.address));
+    let name = tile.file_name();
+    if name.is_empty() {
+        return Err(Error::malformed(&address, "has no name of a file"));
+    }
+    let path = folder.join(name);
+    let mut remote = Source::path(&tile.address).into_versioned_reader()?;
+    if fs::metadata(&path).is_ok_and(|file| file.is_file() && file.len() == remote.size) {
+        return Ok(path);
+    }
+    control.stage("downloading", usize::try_from(remote.size).unwrap_or_default(), || {
+        atomic::write(&path, |file| {
+            let mut block = vec![0; BLOCK_BYTES];
+            loop {
+                control.check()?;
+                let count = remote.reader.read(&mut block).map_err(Error::io(&address))?;
+                if count == 0 {
+                    return Ok(());
+                }
+                file.write_all(block.get(..count).unwrap_or_default()).map_err(Error::io(&path))?;
+                control.advance(count);
+            }
+        })
+    })?;
+    Ok(path)
+}
+
+/// Writes the origin of points or tiles: survey, licence, attribution, addresses and area, as JSON.
+///
+/// # Errors
+/// [`Error::Io`].
+pub fn write_origin(path: &Path, found: &FoundSurvey, area: &SurveyArea) -> Result<()> {
+    let [latitude, longitude] = area.middle_deg();
+    let FoundSurvey { survey, tiles, .. } = found;
+    let addresses: Vec<_> = tiles.iter().map(|tile| hidden(Path::new(&tile.address))).collect();
+    let origin = serde_json::json!({
+        "survey": survey.title,
+        "licence": survey.licence,
+        "attribution": survey.attribution,
+        "page": survey.page,
+        "latitude_deg": latitude,
+        "longitude_deg": longitude,
+        "radius_m": area.radius_m(),
+        "tiles": addresses,
+    });
+    atomic::write(path, |file| {
+        serde_json::to_writer_pretty(&mut *file, &origin).map_err(|error| Error::io(path)(error.into()))?;
+        writeln!(file).map_err(Error::io(path))
+    })
+}

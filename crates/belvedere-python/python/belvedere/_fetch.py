@@ -1,0 +1,116 @@
+"""Open surveys of a place."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from typing import Any
+
+from . import _core
+from ._cloud import Cloud, cloud_of
+from ._errors import wrong
+from ._inputs import Progress, check_finite, reporter
+
+
+def open_surveys(
+    at: Sequence[float],
+    *,
+    radius: float = 200.0,
+    surveys: str | os.PathLike[str] | None = None,
+    progress: Progress = None,
+) -> list[dict[str, Any]]:
+    """The published point clouds that cover a place.
+
+    Parameters
+    ----------
+    at : (latitude, longitude)
+        The place in degrees, north and east positive.
+    radius : float
+        Distance to the sides of the square around it, 1 to 5000 metres.
+    surveys : path, optional
+        A table of surveys (``.json``) instead of that of the package; the page on data describes its fields.
+    progress : bool or callable, optional
+        True shows a bar; a function is called with stage, items done and items in all, and stops the work by raising.
+
+    Returns
+    -------
+    list of dict
+        For each survey ``name``, ``title``, ``licence``, ``attribution``, ``page`` and ``tiles`` (address, and bytes
+        and date where they are known). Surveys whose tiles people choose on a page have no tiles, and those that
+        were not reached have a ``failure``.
+
+    Raises
+    ------
+    BelvedereError
+        For places that no survey of the table covers.
+    OSError
+        For a table that cannot be read.
+
+    Examples
+    --------
+    >>> for survey in belvedere.open_surveys((52.0116, 4.3571)):  # doctest: +SKIP
+    ...     print(survey["name"], survey["licence"], len(survey["tiles"]))
+    ahn6 CC BY 4.0 1
+    ahn5 CC BY 4.0 1
+    """
+    found: list[dict[str, Any]] = json.loads(_core.open_surveys(_area(at, radius, None, surveys), reporter(progress)))
+    return found
+
+
+def fetch(
+    at: Sequence[float],
+    *,
+    radius: float = 200.0,
+    survey: str | None = None,
+    surveys: str | os.PathLike[str] | None = None,
+    progress: Progress = None,
+) -> Cloud:
+    """The points of an open survey around a place.
+
+    Of COPC tiles only the parts that meet the square around the place are transferred, of others whole tiles.
+
+    Parameters
+    ----------
+    at : (latitude, longitude)
+        The place in degrees, north and east positive.
+    radius : float
+        Distance to the sides of the square around it, 1 to 1000 metres.
+    survey : str, optional
+        Name of the survey, as :func:`open_surveys` lists them; the first with tiles if not given.
+    surveys : path, optional
+        A table of surveys (``.json``) instead of that of the package.
+    progress : bool or callable, optional
+        True shows a bar; a function is called with stage, items done and items in all, and stops the work by raising.
+
+    Returns
+    -------
+    Cloud
+        In the reference system of the survey. Its `report` has the ``survey`` with licence and attribution.
+
+    Raises
+    ------
+    BelvedereError
+        For places that no survey covers, and surveys whose tiles people choose on a page.
+    OSError
+        For servers that do not answer.
+
+    Examples
+    --------
+    >>> cloud = belvedere.fetch((52.0116, 4.3571), radius=150)  # doctest: +SKIP
+    >>> belvedere.Scene(cloud).sun_hours("2026-03-21")  # doctest: +SKIP
+    """
+    core, text, chosen = _core.fetch(_area(at, radius, survey, surveys), reporter(progress))
+    return cloud_of(core, {**json.loads(text), "survey": json.loads(chosen)})
+
+
+def _area(
+    at: Sequence[float], radius: float, survey: str | None, surveys: str | os.PathLike[str] | None
+) -> dict[str, Any]:
+    check_finite(radius=radius)
+    try:
+        latitude, longitude = (float(value) for value in at)
+    except (TypeError, ValueError):
+        raise wrong("at", repr(at), "give latitude and longitude in degrees, such as (52.01, 4.36)") from None
+    table = None if surveys is None else os.fspath(surveys)
+    return {"at": [latitude, longitude], "radius": float(radius), "survey": survey, "surveys": table}
