@@ -216,7 +216,7 @@ pub(crate) struct HorizonArguments {
     /// Elevations below the horizontal plane through the observer
     #[arg(long, value_enum, default_value_t = BelowChoice::Zero, help_heading = "Result")]
     pub(crate) below: BelowChoice,
-    /// Horizon elevations (.csv), in the format of PVGIS (.txt), or a diagram (.png); repeatable
+    /// Horizon elevations (.csv), in the format of PVGIS (.txt) or PV*SOL (.hor), or a diagram (.png); repeatable
     ///
     /// .csv: azimuth and elevation in degrees, with one elevation column for each observer. .txt: the elevations of one
     /// observer, one on each line, clockwise from north. .png: one observer.

@@ -14,7 +14,7 @@ use std::path::Path;
 
 pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summary> {
     for output in &arguments.output {
-        check_output("-o", output, &["csv", "txt", "png"])?;
+        check_output("-o", output, &["csv", "txt", "hor", "png"])?;
     }
     let question = ask::HorizonQuestion {
         observer_height: arguments.eyes.height,
@@ -42,6 +42,7 @@ pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summa
         run.stage("writing", 0, |_| match (extension(output).as_str(), elevations.first()) {
             ("png", Some(one)) => write_png(output, &horizon_picture(one, ends, title)),
             ("txt", Some(one)) => write_lines(output, one.iter().map(|v| format!("{v:.2}"))),
+            ("hor", Some(one)) => write_lines(output, rows_from_south(one)),
             _ => write_columns(output, &answers.found),
         })?;
     }
@@ -51,7 +52,8 @@ pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summa
 
 /// Refuses formats that hold one observer where there are more, or no interval where it is wanted.
 fn check_formats(arguments: &HorizonArguments, count: usize) -> Result<()> {
-    let has_no_interval = |output: &&std::path::PathBuf| arguments.interval.interval && extension(output) == "txt";
+    let has_no_interval =
+        |output: &&std::path::PathBuf| arguments.interval.interval && ["txt", "hor"].contains(&&*extension(output));
     if let Some(output) = arguments.output.iter().find(has_no_interval) {
         let what = format!(
             "{}: the format has no columns of an interval; use .csv, or leave out --interval",
@@ -67,6 +69,17 @@ fn check_formats(arguments: &HorizonArguments, count: usize) -> Result<()> {
         }
         None => Ok(()),
     }
+}
+
+/// Rows of azimuth and elevation in degrees as PV*SOL reads them: from −180 (north) through 0 (south) to below 180, west
+/// positive.
+///
+/// # Source
+/// Valentin Software, help of PV*SOL, "Shading", section on the format `.hor`.
+fn rows_from_south(elevations: &[f64]) -> impl Iterator<Item = String> {
+    let count = elevations.len() as f64;
+    let azimuth = move |index: usize| 360.0 * index as f64 / count - 180.0;
+    elevations.iter().enumerate().map(move |(index, elevation)| format!("{} {elevation:.2}", azimuth(index)))
 }
 
 /// Azimuths, and for each eye a column of elevations, and two of the ends of intervals where they are known.

@@ -159,7 +159,8 @@ fn isovists_and_horizons_of_a_house_are_those_of_its_shape() {
     );
     assert!(json["isovists"][0]["plan_corners_azimuth_deg_range_m"].as_array().unwrap().len() >= 1440);
 
-    place.summary(&format!("horizon {HOUSE} --grid-north --observer {eye} -o sky.csv -o sky.txt -o sky.png"));
+    place
+        .summary(&format!("horizon {HOUSE} --grid-north --observer {eye} -o sky.csv -o sky.txt -o sky.hor -o sky.png"));
     let (names, _) = rows(&place, "sky.csv");
     assert_eq!(names, ["azimuth", "elevation"]);
     assert_eq!(column(&place, "sky.csv", "azimuth"), (0..360).map(f64::from).collect::<Vec<_>>());
@@ -170,6 +171,17 @@ fn isovists_and_horizons_of_a_house_are_those_of_its_shape() {
     assert!(elevations[180] < 2.0 && elevations[45] < 2.0);
     let lines: Vec<f64> = place.text("sky.txt").lines().map(|line| line.parse().unwrap()).collect();
     assert!(lines.iter().zip(&elevations).all(|(line, elevation)| (line - elevation).abs() < 0.0051));
+    // azimuths of PV*SOL count from south, west positive
+    let text = place.text("sky.hor");
+    let lines: Vec<(f64, f64)> = text
+        .lines()
+        .map(|line| {
+            line.split_once(' ').map(|(azimuth, elevation)| (azimuth.parse().unwrap(), elevation.parse().unwrap()))
+        })
+        .collect::<Option<_>>()
+        .unwrap();
+    assert_eq!((lines.len(), lines[0].0, lines[180].0, lines[359].0), (360, -180.0, 0.0, 179.0));
+    assert!(lines.iter().zip(&elevations).all(|((_, elevation), other)| (elevation - other).abs() < 0.0051));
     // true north differs: west of the middle of the grid it is turned by some tenths of a degree
     let run = place.summary(&format!("horizon {HOUSE} --observer {eye} --angle-step-deg 7.5 --below keep -o true.csv"));
     let convergence = run["meridian_convergence_deg"].as_f64().unwrap();
