@@ -6,6 +6,8 @@ mod cameras;
 mod city;
 mod difference;
 mod envelope;
+mod fetch;
+mod glare;
 mod heat;
 mod irradiance;
 mod numbers;
@@ -34,6 +36,8 @@ pub(crate) use cameras::{CameraLensArguments, CameraTargetsArguments, CamerasArg
 pub(crate) use city::{CellFor, City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, MemoryAmount};
 pub(crate) use difference::DifferenceArguments;
 pub(crate) use envelope::{ComfortArguments, CornersArgument, EnvelopeArguments};
+pub(crate) use fetch::FetchArguments;
+pub(crate) use glare::GlareArguments;
 pub(crate) use heat::HeatArguments;
 pub(crate) use irradiance::{ClearSkyChoice, IrradianceArguments, PvArguments, RadiationModel};
 pub(crate) use numbers::{Numbers, Rectangle};
@@ -186,12 +190,12 @@ pub(crate) enum Command {
     Demo(Demo),
     /// Simulate a town and its laser scan, with the exact mesh as ground truth
     Simulate(Simulate),
+    /// Find the open surveys of a place, and take their points
+    Fetch(FetchArguments),
     /// Report what a point cloud contains, what it lacks, and which commands can use it
     Info(Info),
     /// Estimate the scanner positions from the pulses of a cloud
     Trajectory(TrajectoryArguments),
-    /// Find the open surveys of a place, and take their points
-    Fetch(FetchArguments),
     /// Estimate normals and orient them outward
     Normals(NormalsArguments),
     /// Find roofs, their edges and ridges, and walls, with how well each is known
@@ -237,6 +241,8 @@ pub(crate) enum Command {
     SkyView(SkyViewArguments),
     /// Compute yearly solar irradiation and shading loss, also for each roof plane
     Irradiance(IrradianceArguments),
+    /// Compute when panels and glass reflect the sun to observers
+    Glare(GlareArguments),
     /// Compute heat stress of people from weather: UTCI and mean radiant temperature
     Heat(HeatArguments),
     /// Compute the hours of direct sun on a day, over a period, or for a daylight rule

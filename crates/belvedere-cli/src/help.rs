@@ -32,6 +32,7 @@ const GROUPS: [(&str, &[&str]); 7] = [
             "sun-hours",
             "irradiance",
             "heat",
+            "glare",
             "sky-view",
             "sun-calendar",
             "sun-position",
@@ -160,8 +161,8 @@ const SHOWN_OF_ALL: [&str; 3] = ["json", "verbose", "help"];
 const TEXTS: &[(&str, &str)] = &[
     ("demo", include_str!("help/demo.txt")),
     ("simulate", include_str!("help/simulate.txt")),
-    ("info", include_str!("help/info.txt")),
     ("fetch", include_str!("help/fetch.txt")),
+    ("info", include_str!("help/info.txt")),
     ("trajectory", include_str!("help/trajectory.txt")),
     ("normals", include_str!("help/normals.txt")),
     ("surfaces", include_str!("help/surfaces.txt")),
@@ -174,6 +175,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("line-of-sight", include_str!("help/line-of-sight.txt")),
     ("viewshed", include_str!("help/viewshed.txt")),
     ("towers", include_str!("help/towers.txt")),
+    ("glare", include_str!("help/glare.txt")),
     ("landmark", include_str!("help/landmark.txt")),
     ("protected-view", include_str!("help/protected-view.txt")),
     ("cameras", include_str!("help/cameras.txt")),
@@ -230,6 +232,10 @@ pub(crate) fn command() -> Command {
     });
     let command = command.mut_subcommand("sun-calendar", |sub| {
         sub.mut_arg("step", |step| step.help("Time between two sun positions in minutes, 1/6 to 60 [default: 2]"))
+    });
+    let command = command.mut_subcommand("glare", |sub| {
+        sub.mut_arg("step", |step| step.help("Time between two sun positions in minutes, 1/6 to 60 [default: 1]"))
+            .mut_arg("year", |year| year.help("Year of days that are given without a year; without days, all of it"))
     });
     let template = overview(&command);
     command.help_template(template)

@@ -237,6 +237,10 @@ parameters! {
     Mesh => "mesh",
     /// Corner of a mesh.
     MeshVertex => "vertex of the mesh",
+    /// Panel or pane that reflects the sun.
+    Reflector => "reflector",
+    /// Angle by which reflectors spread light.
+    Scatter => "scatter",
     /// Name of an object of a mesh.
     Object => "object",
     /// Size and place of a raster.
@@ -269,16 +273,16 @@ parameters! {
     UpAxis => "axis that is up",
     /// Box within which points are read.
     ReadBox => "box to read",
-    /// Level of detail of CityJSON.
-    LevelOfDetail => "level of detail",
-    /// Columns of results in a file.
-    ResultColumns => "result columns",
     /// Open survey to take points of.
     OpenSurvey => "survey",
     /// Place to find open surveys of.
     SurveyPlace => "place",
     /// Half of the side of an area of an open survey.
     SurveyRadius => "radius",
+    /// Level of detail of CityJSON.
+    LevelOfDetail => "level of detail",
+    /// Columns of results in a file.
+    ResultColumns => "result columns",
     /// Number and size of the frames of a film.
     Frames => "frames of a film",
     /// Display time of a frame of a film.

@@ -5,6 +5,7 @@
 mod animation;
 mod canvas;
 mod curves_picture;
+mod day_chart;
 mod depth_picture;
 mod font;
 mod horizon_picture;
@@ -19,6 +20,7 @@ pub use animation::write_apng;
 pub use belvedere_io::{class_color, in_shadow, ramp, ramp_colors};
 pub use canvas::{Canvas, Colors};
 pub use curves_picture::{Curves, curves_picture};
+pub use day_chart::{DayPiece, day_chart};
 pub use depth_picture::{camera_picture, depth_picture, panorama_picture};
 pub use horizon_picture::horizon_picture;
 pub use map_picture::{MapLegend, MapMark, MapPicture, map_image, map_picture};

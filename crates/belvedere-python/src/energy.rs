@@ -1,9 +1,9 @@
 //! The energy of sun and sky.
 
-use crate::arrays::to_1d;
 use crate::cloud::PyInput;
 use crate::errors::{exception, wrong};
 use crate::remarks::remarks_of;
+use crate::result_columns::{NamedColumns, to_python};
 use crate::scene::PyScene;
 use crate::targets::{RequestedTargets, TargetResults, ground_points, put_to_scene};
 use crate::trees::Through;
@@ -11,13 +11,13 @@ use crate::work::run;
 use belvedere::Frame;
 use belvedere::apps::ask::{self, PvChoice, Roofs, SunPlace};
 use belvedere::apps::irradiance::{
-    BirdParams, CLEAR_SKY_YEAR, ClearSky, Grouping, IrradianceParams, PARTS, RoofColumn, RoofValues, SkyModel,
-    Surroundings, building_columns, roof_columns,
+    BirdParams, CLEAR_SKY_YEAR, ClearSky, Grouping, IrradianceParams, PARTS, SkyModel, Surroundings, building_columns,
+    roof_columns,
 };
 use belvedere::io::{read_footprints, read_weather};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// Source and summation of radiation; missing keywords have the library's defaults.
@@ -146,22 +146,6 @@ impl RoofKeywords {
             ground: ground_points(self.ground.as_deref())?,
         })
     }
-}
-
-/// Names and values of columns.
-type NamedColumns<'py> = Vec<(String, Bound<'py, PyAny>)>;
-
-fn to_python<'py>(py: Python<'py>, columns: Vec<RoofColumn>) -> PyResult<NamedColumns<'py>> {
-    let values = |values: RoofValues| match values {
-        RoofValues::Real(values, _) => Ok::<_, PyErr>(to_1d(py, values).into_any()),
-        // numbers count from 1
-        RoofValues::Whole(values) => {
-            let values = values.into_iter().map(|v| v.and_then(|v| i64::try_from(v).ok()).unwrap_or(0)).collect();
-            Ok(to_1d::<i64>(py, values).into_any())
-        }
-        RoofValues::Words(words) => Ok(PyList::new(py, words)?.into_any()),
-    };
-    columns.into_iter().map(|column| Ok((column.name, values(column.values)?))).collect()
 }
 
 /// Columns of planes and of buildings, those of the hours of each plane if they are wanted, and remarks.

@@ -10,6 +10,8 @@ mod device;
 mod documents;
 mod energy;
 mod errors;
+mod fetch;
+mod glare;
 mod heat;
 mod landmark;
 mod mesh;
@@ -19,6 +21,7 @@ mod pictures;
 mod planning;
 mod raster;
 mod remarks;
+mod result_columns;
 mod scene;
 mod shadow;
 mod simulate;
@@ -50,9 +53,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<system::System>()?;
     module.add_function(wrap_pyfunction!(cloud::read, module)?)?;
     module.add_function(wrap_pyfunction!(device::devices, module)?)?;
+    module.add_function(wrap_pyfunction!(fetch::fetch, module)?)?;
+    module.add_function(wrap_pyfunction!(fetch::open_surveys, module)?)?;
     module.add_function(wrap_pyfunction!(raster::write_geotiff, module)?)?;
     module.add_function(wrap_pyfunction!(simulate::simulate, module)?)?;
     Ok(())
-    module.add_function(wrap_pyfunction!(fetch::fetch, module)?)?;
-    module.add_function(wrap_pyfunction!(fetch::open_surveys, module)?)?;
 }

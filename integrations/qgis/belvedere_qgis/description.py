@@ -22,12 +22,13 @@ GROUPS = {
     "sky-view": "Sun and sky",
     "irradiance": "Sun and sky",
     "heat": "Sun and sky",
+    "glare": "Sun and sky",
     "envelope": "Sun and sky",
     "comfort": "Sun and sky",
     "report": "Sun and sky",
     "surfaces": "Scene",
-}
     "fetch": "Scene",
+}
 TITLES = {
     "viewshed": "Viewshed",
     "line-of-sight": "Line of sight",
@@ -44,13 +45,14 @@ TITLES = {
     "sky-view": "Sky view factor",
     "irradiance": "Solar irradiance",
     "heat": "Heat stress",
+    "glare": "Glare of panels and glass",
     "envelope": "Solar envelope",
     "comfort": "Sun and sky along walks",
     "report": "Sunlight report",
     "surfaces": "Roofs and walls",
+    "fetch": "Points of an open survey",
 }
 # Headings of parameters that few people change.
-    "fetch": "Points of an open survey",
 RARE = ("Lines of sight", "Scene", "Balls", "Global options")
 # Layers that must have a certain geometry; others take any.
 GEOMETRIES = {
@@ -196,10 +198,10 @@ def _kind(described):
         return "crs"
     if named.startswith("X,Y"):
         return "point"
-    if ".geojson" in described["formats"]:
-        return "layer"
     if described["name"] == "--at" and named == "LAT,LON":
         return "place"
+    if ".geojson" in described["formats"]:
+        return "layer"
     if described["type"] == "path":
         return "file"
     # several numbers in one value are typed, as on the command line

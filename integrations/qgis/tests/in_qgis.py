@@ -1,10 +1,14 @@
 """All algorithms in QGIS: `in_qgis.py QGIS_PROCESS PLUGINS_FOLDER MAPS_FOLDER`; called by `integrations/qgis/test`."""
 
+import functools
+import http.server
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from pathlib import Path
 
@@ -103,6 +107,13 @@ def windows():
     return str(path)
 
 
+def pane():
+    """A pane that faces south, as a table."""
+    path = FOLDER / "pane.csv"
+    path.write_text("x,y,z,azimuth,width,height\n85036,447540,8,180,4,3\n", encoding="utf-8")
+    return str(path)
+
+
 def hot_noon():
     """An hour of weather, as PVGIS writes it."""
     path = FOLDER / "weather.csv"
@@ -119,6 +130,28 @@ def mast():
     feature = {"type": "Feature", "geometry": point, "properties": {"tip": 60, "base": 0, "name": "mast"}}
     path.write_text(json.dumps({"type": "FeatureCollection", "crs": crs, "features": [feature]}), encoding="utf-8")
     return str(path)
+
+
+def check_fetch():
+    """Points of a survey whose table and tile are on a server of this test; the place is picked in the system of the map."""
+    handler = functools.partial(http.server.SimpleHTTPRequestHandler, directory=str(FOLDER))
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        address = f"http://127.0.0.1:{server.server_port}"
+        (FOLDER / "tile.laz").write_bytes(DATA.read_bytes())
+        (FOLDER / "list.json").write_text(json.dumps({"features": [{"properties": {"url": f"{address}/tile.laz"}}]}), encoding="utf-8")
+        texts = dict.fromkeys(("name", "title", "licence", "attribution", "page"), "town")
+        index = {"list": {"address": address + "/list.json?{west},{south},{east},{north}"}}
+        table = [{**texts, "areas_deg": [[4, 51, 5, 53]], "index": index}]
+        (FOLDER / "surveys.json").write_text(json.dumps(table), encoding="utf-8")
+        place = {"AT": "85036,447527 [EPSG:28992]", "RADIUS": 25, "SURVEYS": FOLDER / "surveys.json"}
+        status, printed = run("fetch", **place, OUTPUT=FOLDER / "garden.laz")
+        server.shutdown()
+    assert status == 0, printed
+    said = re.search(r"points: (\d+)", printed)
+    assert said and int(said[1]) > 1000, printed
+    assert (FOLDER / "garden.laz").stat().st_size > 1000
+    print(f"fetch: {said[1]} points")
 
 
 def check_algorithms():
@@ -189,6 +222,13 @@ def check_algorithms():
             "PLANES": "roofs.gpkg",
         },
         "towers": {"TOWERS": mast(), "CELL": 4, "OUTPUT": "towers.tif"},
+        "glare": {
+            "REFLECTORS": pane(),
+            "OBSERVER": f"{eye} [EPSG:28992]",
+            "DATE": "2026-06-21",
+            "ZONE": "Europe/Amsterdam",
+            "OUTPUT": "glare.gpkg",
+        },
         "heat": {
             "WEATHER": hot_noon(),
             "DATE": "2026-07-21",
@@ -250,7 +290,9 @@ def check_results():
         assert abs(first.x() - 85036) < 1e-3 and abs(first.y() - 447527) < 1e-3 and -2 < first.z() < 4, first.asWkt()
 
     # rows of tables and outlines that need no style of their own
-    rows = {name: list(QgsVectorLayer(str(FOLDER / f"{name}.gpkg"), name, "ogr").getFeatures()) for name in ("isovist", "horizon", "windows", "surfaces")}
+    tables = ("isovist", "horizon", "windows", "surfaces", "glare")
+    rows = {name: list(QgsVectorLayer(str(FOLDER / f"{name}.gpkg"), name, "ogr").getFeatures()) for name in tables}
+    assert len(rows["glare"]) == 1 and rows["glare"][0]["hours"] >= 0, rows["glare"]
     assert len(rows["isovist"]) == 1 and len(rows["windows"]) == 1 and len(rows["horizon"]) > 100 and len(rows["surfaces"]) > 10, rows
 
     # cameras stand above roofs, and no cell has more of them than there are
@@ -350,7 +392,7 @@ def main():
         return
     application = QgsApplication([], False)
     application.initQgis()
-    for check in (check_algorithms, check_results, check_errors, check_cancelling):
+    for check in (check_fetch, check_algorithms, check_results, check_errors, check_cancelling):
         check()
         print(f"{check.__name__.replace('_', ' ')}: passed")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 ALL = {"viewshed", "line-of-sight", "isovist", "horizon", "towers", "landmark", "protected-view", "window-views", "cameras"} | {
-    *("survey-plan", "shadow", "sun-hours", "sky-view", "irradiance", "heat", "envelope", "comfort", "report", "surfaces")
+    *("survey-plan", "shadow", "sun-hours", "sky-view", "irradiance", "heat", "envelope", "comfort", "report", "surfaces", "fetch", "glare")
 }
 
 
@@ -16,7 +16,8 @@ def parameter(commands, command, flag):
 def test_every_algorithm_has_a_cloud_a_result_and_help(commands):
     assert set(commands) == ALL
     for command in commands.values():
-        assert command.parameters[0].kind == "files" and command.parameters[0].is_required
+        first = "place" if command.name == "fetch" else "files"
+        assert command.parameters[0].kind == first and command.parameters[0].is_required
         assert [output.is_usual for output in command.outputs].count(True) == 1, command.name
         assert command.description and command.summary
         keys = [one.key for one in command.parameters if one.kind != "written"] + [one.key for one in command.outputs]
@@ -51,6 +52,8 @@ def test_every_algorithm_has_a_cloud_a_result_and_help(commands):
         ("envelope", "--protect", {"kind": "layer", "geometry": "any", "is_required": True}),
         ("envelope", "--sun-elevation", {"kind": "choice", "default": 0}),
         ("irradiance", "--threads", {"is_advanced": True}),
+        ("fetch", "--at", {"kind": "place", "is_required": True}),
+        ("fetch", "--radius", {"kind": "number", "default": 200.0}),
     ],
 )
 def test_a_parameter_becomes(commands, command, flag, expected):

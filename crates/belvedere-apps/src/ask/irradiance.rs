@@ -10,10 +10,10 @@ use super::trees::remark_on_leaves;
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::irradiance::{
     ClearSky, IrradianceParams, PeriodReport, PeriodRow, PeriodRows, PlaneHour, PlaneYield, PvSystem, RadiationSource,
-    RoofColumn, RoofIrradiation, RoofRows, RoofsReport, SeasonRadiation, Surroundings, USUAL_TEMPERATURE,
-    clock_contradiction, hour_columns, look_count, period_seasons, plane_hours, roof_irradiation, roof_yields,
-    season_irradiation,
+    RoofIrradiation, RoofRows, RoofsReport, SeasonRadiation, Surroundings, USUAL_TEMPERATURE, clock_contradiction,
+    hour_columns, look_count, period_seasons, plane_hours, roof_irradiation, roof_yields, season_irradiation,
 };
+use crate::result_columns::ResultColumn;
 use crate::roof_planes::{Buildings, GROUND_CELL, RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
 use crate::rows::Obstacles;
 use crate::sum_errors::Intervals;
@@ -200,7 +200,7 @@ impl RoofsResults {
     ///
     /// # Errors
     /// Those of [`plane_hours`].
-    pub fn hours(&self, plane: usize) -> Result<(Vec<PlaneHour>, Vec<RoofColumn>)> {
+    pub fn hours(&self, plane: usize) -> Result<(Vec<PlaneHour>, Vec<ResultColumn>)> {
         let hours = plane_hours(&self.planes[plane], &self.energies[plane], &self.rows, &self.system)?;
         let columns = hour_columns(&self.rows, &hours, self.yields[plane].peak_power);
         Ok((hours, columns))

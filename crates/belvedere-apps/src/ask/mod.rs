@@ -18,6 +18,7 @@ mod cameras;
 mod comfort;
 mod depth_map;
 mod envelope;
+mod glare;
 mod heat;
 mod horizon;
 mod how_sure;
@@ -62,6 +63,7 @@ pub use cameras::{
 pub use comfort::{ComfortQuestion, ComfortResults, ExposureSection, RoutesOrWindows};
 pub use depth_map::{DepthMapQuestion, DepthMapResults, PictureSection, ViewFrom, ViewSection};
 pub use envelope::{EnvelopeQuestion, EnvelopeResults, EnvelopeSection, Protected, ProtectedShape, ProtectedSuns};
+pub use glare::{GlareQuestion, GlareResults, GlareSection, GlareSummary};
 pub use heat::{HeatQuestion, HeatSection};
 pub use horizon::{BelowLevel, HorizonQuestion, HorizonResults};
 pub use how_sure::{
@@ -130,6 +132,8 @@ pub enum Question {
     SunHours(SunHoursQuestion),
     /// Sun and shade at windows or places, from when to when.
     SunCalendar(SunCalendarQuestion),
+    /// Sun that panels and glass reflect to observers.
+    Glare(GlareQuestion),
     /// Visible part of the sky.
     SkyView(SkyViewQuestion),
     /// Energy of sun and sky.
@@ -193,6 +197,7 @@ one_of_all! {
     Shadow: ShadowQuestion,
     SunHours: SunHoursQuestion,
     SunCalendar: SunCalendarQuestion,
+    Glare: GlareQuestion,
     SkyView: SkyViewQuestion,
     Irradiance: IrradianceQuestion,
     Heat: HeatQuestion,

@@ -4,6 +4,7 @@ use super::cameras::CamerasReport;
 use super::comfort::ExposureSection;
 use super::depth_map::{PictureSection, ViewSection};
 use super::envelope::EnvelopeSection;
+use super::glare::GlareSection;
 use super::heat::HeatSection;
 use super::horizon::HorizonsSection;
 use super::how_sure::CertaintySection;
@@ -47,6 +48,9 @@ pub struct Report {
     /// Weather and model of heat.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub heat: Option<HeatSection>,
+    /// Glare of observers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub glare: Option<GlareSection>,
     /// The landmark.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub landmark: Option<LandmarkSection>,

@@ -53,23 +53,8 @@ impl GivenWindows {
     /// [`Error::InvalidParameter`] for an azimuth beyond a full circle, and a tilt that is not 0 to 180 degrees.
     pub fn check(&self) -> Result<()> {
         let Self::Each(windows) = self else { return Ok(()) };
-        for (number, window) in (1..).zip(windows) {
-            if window.azimuth_deg.abs() > 360.0 {
-                return Err(Error::InvalidParameter {
-                    parameter: Parameter::Window,
-                    value: format!("number {number}, with an azimuth of {} degrees", window.azimuth_deg),
-                    expected: "turned to an azimuth of -360 to 360 degrees, clockwise from north",
-                });
-            }
-            if !(0.0..=180.0).contains(&window.tilt_deg) {
-                return Err(Error::InvalidParameter {
-                    parameter: Parameter::Window,
-                    value: format!("number {number}, tilted by {} degrees", window.tilt_deg),
-                    expected: "tilted by 0 (facing up) to 180 degrees",
-                });
-            }
-        }
-        Ok(())
+        let check = |(row, window): (usize, &GivenWindow)| window.check().map_err(|error| with_number((row, error)));
+        windows.iter().enumerate().try_for_each(check)
     }
 
     /// The targets in a frame where grid north has the azimuth `grid_north`, radians. Faces are cut into pieces of
@@ -95,7 +80,25 @@ impl GivenWindows {
 }
 
 impl GivenWindow {
-    fn in_grid(&self, grid_north: f64) -> Window {
+    /// Checks the values that do not depend on a scene.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for an azimuth beyond a full circle, and a tilt that is not 0 to 180 degrees.
+    pub(super) fn check(&self) -> Result<()> {
+        let invalid =
+            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Window, value, expected });
+        if self.azimuth_deg.abs() > 360.0 {
+            let value = format!("with an azimuth of {} degrees", self.azimuth_deg);
+            return invalid(value, "turned to an azimuth of -360 to 360 degrees, clockwise from north");
+        }
+        if !(0.0..=180.0).contains(&self.tilt_deg) {
+            let value = format!("tilted by {} degrees", self.tilt_deg);
+            return invalid(value, "tilted by 0 (facing up) to 180 degrees");
+        }
+        Ok(())
+    }
+
+    pub(super) fn in_grid(&self, grid_north: f64) -> Window {
         Window::new(self.place, self.azimuth_deg.to_radians() - grid_north, self.tilt_deg.to_radians(), self.size)
     }
 }

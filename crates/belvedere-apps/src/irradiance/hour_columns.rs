@@ -1,8 +1,8 @@
 //! Columns of the hours of a plane: radiation, losses by shading and electricity.
 
 use super::period_rows::{PeriodRow, PeriodRows, RowRadiation};
-use super::roof_columns::{RoofColumn, RoofValues};
 use super::yields::PlaneHour;
+use crate::result_columns::{ResultColumn, ResultValues};
 use belvedere_data::weather::RowsHold;
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use std::ops::Range;
 /// Times are the begin of rows that hold means, and the instant of other rows, by the clock of the weather. Columns
 /// that begin with `string_` hold if rows of panels are strings.
 #[must_use]
-pub fn hour_columns(rows: &PeriodRows, hours: &[PlaneHour], peak_power: f64) -> Vec<RoofColumn> {
+pub fn hour_columns(rows: &PeriodRows, hours: &[PlaneHour], peak_power: f64) -> Vec<ResultColumn> {
     let time = |row: &PeriodRow| {
         let before = if rows.rows_hold == RowsHold::Means { 1800.0 * row.hours } else { 0.0 };
         rows.zone.display(row.instant - before)
@@ -19,15 +19,15 @@ pub fn hour_columns(rows: &PeriodRows, hours: &[PlaneHour], peak_power: f64) -> 
     // such as 2026-06-21T12:00:00+01:00
     let part = |name: &str, range: Range<usize>| {
         let cut = |text: &String| text.get(range.clone()).unwrap_or_default().to_owned();
-        RoofColumn { name: name.to_owned(), values: RoofValues::Words(times.iter().map(cut).collect()) }
+        ResultColumn { name: name.to_owned(), values: ResultValues::Words(times.iter().map(cut).collect()) }
     };
     let real = |name: &str, decimals, value: &dyn Fn(&PlaneHour) -> f64| {
         let values = hours.iter().map(value).collect();
-        RoofColumn { name: name.to_owned(), values: RoofValues::Real(values, decimals) }
+        ResultColumn { name: name.to_owned(), values: ResultValues::Real(values, decimals) }
     };
     let air = |name: &str, value: fn(&PeriodRow) -> Option<f64>| {
         let values = rows.rows.iter().map(|row| value(row).unwrap_or(f64::NAN)).collect();
-        RoofColumn { name: name.to_owned(), values: RoofValues::Real(values, 1) }
+        ResultColumn { name: name.to_owned(), values: ResultValues::Real(values, 1) }
     };
     let peak_w = 1000.0 * peak_power;
     vec![

@@ -46,8 +46,8 @@ pub use measures::{ENERGY, ENERGY_NAME, MONTH_COLUMNS, irradiation_measures};
 pub use patch_sky::patch_radiation;
 pub use period::{Grouping, Instant, IrradianceParams, PeriodRadiation, PeriodReport, Surroundings};
 pub use period_rows::{PeriodRow, PeriodRows, RowRadiation};
-pub use pvwatts::{PvPower, PvSystem, cell_temperature, cover_transmission};
-pub use roof_columns::{RoofColumn, RoofRows, RoofValues, building_columns, roof_columns};
+pub use pvwatts::{PvPower, PvSystem, cell_temperature, cover_transmission, glass_reflectance};
+pub use roof_columns::{RoofRows, building_columns, roof_columns};
 pub use roofs::{RoofIrradiation, above_roof, horizon_places, roof_irradiation};
 pub use roofs_report::RoofsReport;
 pub use seasons::{

@@ -154,16 +154,30 @@ pub fn cover_transmission(cosine: f64) -> f64 {
         return 0.0;
     }
     let [index, extinction, thickness] = COVER;
-    let cosine = cosine.min(1.0);
+    let passed = |cosine: f64| {
+        let (reflected, refracted_cosine) = reflected_share(cosine, index);
+        (-extinction * thickness / refracted_cosine).exp() * (1.0 - reflected)
+    };
+    passed(cosine.min(1.0)) / passed(1.0)
+}
+
+/// Share of sunlight that the surface of a panel or a window reflects, 0 to 1. `cosine` is that of the angle between
+/// sun and normal, above 0.
+///
+/// # Source
+/// Fresnel's formulas for unpolarised light on glass with a refractive index of 1.526 (De Soto, Klein & Beckman 2006).
+#[must_use]
+pub fn glass_reflectance(cosine: f64) -> f64 {
+    reflected_share(cosine.clamp(0.0, 1.0), COVER[0]).0
+}
+
+/// Share of unpolarised light that a surface reflects, and the cosine of the angle of the rest to the normal.
+fn reflected_share(cosine: f64, index: f64) -> (f64, f64) {
     let refracted_cosine = (1.0 - (1.0 - cosine * cosine) / (index * index)).sqrt();
-    // Fresnel's formulas for light that swings across and along the plane of incidence
+    // light that swings across and along the plane of incidence
     let across = (cosine - index * refracted_cosine) / (cosine + index * refracted_cosine);
     let along = (index * cosine - refracted_cosine) / (index * cosine + refracted_cosine);
-    let passed = |across: f64, along: f64, cosine: f64| {
-        (-extinction * thickness / cosine).exp() * (1.0 - 0.5 * (across * across + along * along))
-    };
-    let ahead = (1.0 - index) / (1.0 + index);
-    passed(across, along, refracted_cosine) / passed(ahead, ahead, 1.0)
+    (0.5 * (across * across + along * along), refracted_cosine)
 }
 
 #[cfg(test)]
@@ -178,6 +192,8 @@ mod tests {
         assert!((cell_temperature(800.0, 25.0, 2.0) - 62.781).abs() < 5e-4);
         let at = |angle_deg: f64| cover_transmission(angle_deg.to_radians().cos());
         assert!((at(60.0) - 0.94600).abs() < 5e-6, "{}", at(60.0));
+        // of glass in air (index 1.526): (0.526 / 2.526)² straight ahead, all of it at a glance
+        assert!((glass_reflectance(1.0) - 0.043_362).abs() < 1e-6 && (glass_reflectance(0.0) - 1.0).abs() < 1e-12);
         assert!((at(0.0) - 1.0).abs() < 1e-12 && at(90.0) < 1e-9 && at(120.0) == 0.0);
     }
 

@@ -3,29 +3,10 @@
 use super::measures::MONTH_COLUMNS;
 use super::roofs::RoofIrradiation;
 use super::yields::{PlaneYield, PvEnergy, performance_ratio};
+use crate::result_columns::{ResultColumn, ResultValues};
 use crate::roof_planes::{Buildings, RoofPlane};
 use crate::sun::Site;
 use belvedere_data::Frame;
-
-/// A column of a table of roof planes or of buildings.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RoofColumn {
-    /// Its name, with the unit.
-    pub name: String,
-    /// A value for each row.
-    pub values: RoofValues,
-}
-
-/// Values of a column.
-#[derive(Clone, Debug, PartialEq)]
-pub enum RoofValues {
-    /// Numbers, and the decimals that say something.
-    Real(Vec<f64>, usize),
-    /// Whole numbers, where there is one.
-    Whole(Vec<Option<u64>>),
-    /// Words.
-    Words(Vec<String>),
-}
 
 /// Planes of roofs with all that is known of each.
 #[derive(Clone, Copy, Debug)]
@@ -42,47 +23,39 @@ pub struct RoofRows<'a> {
     pub radiation: &'a str,
 }
 
-fn real(name: impl Into<String>, values: Vec<f64>, decimals: usize) -> RoofColumn {
-    RoofColumn { name: name.into(), values: RoofValues::Real(values, decimals) }
-}
-
-fn words(name: &str, values: Vec<String>) -> RoofColumn {
-    RoofColumn { name: name.to_owned(), values: RoofValues::Words(values) }
-}
-
 /// Returns the column of building numbers, and of names where they have some.
-fn building_numbers(numbers: Vec<Option<u64>>, names: &[String]) -> Vec<RoofColumn> {
+fn building_numbers(numbers: Vec<Option<u64>>, names: &[String]) -> Vec<ResultColumn> {
     let name = |number: &Option<u64>| {
         let at = number.and_then(|number| usize::try_from(number).ok()?.checked_sub(1));
         at.and_then(|at| names.get(at)).cloned().unwrap_or_default()
     };
-    let named = (!names.is_empty()).then(|| words("building_name", numbers.iter().map(name).collect()));
-    let number = RoofColumn { name: "building".to_owned(), values: RoofValues::Whole(numbers) };
+    let named = (!names.is_empty()).then(|| ResultColumn::words("building_name", numbers.iter().map(name).collect()));
+    let number = ResultColumn { name: "building".to_owned(), values: ResultValues::Whole(numbers) };
     std::iter::once(number).chain(named).collect()
 }
 
 /// Returns the columns of peak power and electricity, `kwh_m2` being the radiation on the panels of each row. Columns
 /// that begin with `string_` hold if rows of panels are strings, the others if each panel works for itself.
-fn yield_columns(yields: &[PlaneYield], kwh_m2: &[f64]) -> Vec<RoofColumn> {
+fn yield_columns(yields: &[PlaneYield], kwh_m2: &[f64]) -> Vec<ResultColumn> {
     let of_yields = |value: &dyn Fn(&PlaneYield) -> f64| -> Vec<f64> { yields.iter().map(value).collect() };
     let ratio = |(own, kwh_m2): (&PlaneYield, &f64)| performance_ratio(&own.mean, own.peak_power, *kwh_m2);
     vec![
-        real("kwp", of_yields(&|own| own.peak_power), 2),
-        real("dc_kwh", of_yields(&|own| own.mean.total().dc), 0),
-        real("ac_kwh", of_yields(&|own| own.mean.total().ac), 0),
-        real("string_dc_kwh", of_yields(&|own| own.string_limited.total().dc), 0),
-        real("string_ac_kwh", of_yields(&|own| own.string_limited.total().ac), 0),
-        real("kwh_per_kwp", of_yields(&|own| own.mean.total().ac / own.peak_power), 1),
-        real("string_kwh_per_kwp", of_yields(&|own| own.string_limited.total().ac / own.peak_power), 1),
-        real("performance_ratio", yields.iter().zip(kwh_m2).map(ratio).collect(), 3),
+        ResultColumn::real("kwp", of_yields(&|own| own.peak_power), 2),
+        ResultColumn::real("dc_kwh", of_yields(&|own| own.mean.total().dc), 0),
+        ResultColumn::real("ac_kwh", of_yields(&|own| own.mean.total().ac), 0),
+        ResultColumn::real("string_dc_kwh", of_yields(&|own| own.string_limited.total().dc), 0),
+        ResultColumn::real("string_ac_kwh", of_yields(&|own| own.string_limited.total().ac), 0),
+        ResultColumn::real("kwh_per_kwp", of_yields(&|own| own.mean.total().ac / own.peak_power), 1),
+        ResultColumn::real("string_kwh_per_kwp", of_yields(&|own| own.string_limited.total().ac / own.peak_power), 1),
+        ResultColumn::real("performance_ratio", yields.iter().zip(kwh_m2).map(ratio).collect(), 3),
     ]
 }
 
 /// Returns the columns of the electricity of each month.
-fn yield_months(yields: &[PlaneYield]) -> Vec<RoofColumn> {
+fn yield_months(yields: &[PlaneYield]) -> Vec<ResultColumn> {
     let of_month = |name: &str, month: usize, energy: fn(&PlaneYield) -> &PvEnergy| {
         let values = yields.iter().map(|own| energy(own).ac[month]).collect();
-        real(format!("{name}_{:02}", month + 1), values, 1)
+        ResultColumn::real(format!("{name}_{:02}", month + 1), values, 1)
     };
     let alone = (0..12).map(|month| of_month("ac_kwh", month, |own| &own.mean));
     alone.chain((0..12).map(|month| of_month("string_ac_kwh", month, |own| &own.string_limited))).collect()
@@ -92,7 +65,7 @@ fn yield_months(yields: &[PlaneYield]) -> Vec<RoofColumn> {
 /// `frame`, areas, tilt, azimuth from true north (NaN for level planes), radiation, losses, electricity, and months if
 /// the energies have them.
 #[must_use]
-pub fn roof_columns(roofs: RoofRows<'_>, frame: &Frame, site: &Site) -> Vec<RoofColumn> {
+pub fn roof_columns(roofs: RoofRows<'_>, frame: &Frame, site: &Site) -> Vec<ResultColumn> {
     let RoofRows { planes, buildings, energies: rows, yields, radiation } = roofs;
     let of_planes = |value: &dyn Fn(&RoofPlane) -> f64| -> Vec<f64> { planes.iter().map(value).collect() };
     let of_rows = |value: &dyn Fn(&RoofIrradiation) -> f64| -> Vec<f64> { rows.iter().map(value).collect() };
@@ -107,24 +80,24 @@ pub fn roof_columns(roofs: RoofRows<'_>, frame: &Frame, site: &Site) -> Vec<Roof
     let kwh_m2 = of_rows(&|row| row.mean.total());
     let mut columns = building_numbers(buildings.of_plane.clone(), &buildings.names);
     columns.extend([
-        RoofColumn { name: "cells".to_owned(), values: RoofValues::Whole(cells) },
-        real("x", middle(0), 3),
-        real("y", middle(1), 3),
-        real("z", middle(2), 3),
-        real("area_m2", of_planes(&|plane| plane.area), 2),
-        real("panel_area_m2", of_both(&|plane, row| row.panel_area(plane)), 2),
-        real("tilt_deg", of_planes(&|plane| plane.tilt().to_degrees()), 2),
-        real("azimuth_deg", of_planes(&azimuth), 2),
-        real("roughness_m", of_planes(&|plane| plane.roughness), 3),
-        words("radiation", vec![radiation.to_owned(); planes.len()]),
-        real("kwh_m2", kwh_m2.clone(), 1),
-        real("beam_kwh_m2", of_rows(&|row| row.mean.beam), 1),
-        real("sky_kwh_m2", of_rows(&|row| row.mean.diffuse), 1),
-        real("ground_kwh_m2", of_rows(&|row| row.mean.reflected), 1),
-        real("free_kwh_m2", of_rows(&|row| row.mean.unshaded), 1),
-        real("min_loss", of_rows(&|row| row.mean.loss()), 4),
-        real("max_loss", of_rows(&RoofIrradiation::greatest_loss), 4),
-        real("radiation_kwh", of_both(&|plane, row| row.panel_area(plane) * row.mean.total()), 0),
+        ResultColumn { name: "cells".to_owned(), values: ResultValues::Whole(cells) },
+        ResultColumn::real("x", middle(0), 3),
+        ResultColumn::real("y", middle(1), 3),
+        ResultColumn::real("z", middle(2), 3),
+        ResultColumn::real("area_m2", of_planes(&|plane| plane.area), 2),
+        ResultColumn::real("panel_area_m2", of_both(&|plane, row| row.panel_area(plane)), 2),
+        ResultColumn::real("tilt_deg", of_planes(&|plane| plane.tilt().to_degrees()), 2),
+        ResultColumn::real("azimuth_deg", of_planes(&azimuth), 2),
+        ResultColumn::real("roughness_m", of_planes(&|plane| plane.roughness), 3),
+        ResultColumn::words("radiation", vec![radiation.to_owned(); planes.len()]),
+        ResultColumn::real("kwh_m2", kwh_m2.clone(), 1),
+        ResultColumn::real("beam_kwh_m2", of_rows(&|row| row.mean.beam), 1),
+        ResultColumn::real("sky_kwh_m2", of_rows(&|row| row.mean.diffuse), 1),
+        ResultColumn::real("ground_kwh_m2", of_rows(&|row| row.mean.reflected), 1),
+        ResultColumn::real("free_kwh_m2", of_rows(&|row| row.mean.unshaded), 1),
+        ResultColumn::real("min_loss", of_rows(&|row| row.mean.loss()), 4),
+        ResultColumn::real("max_loss", of_rows(&RoofIrradiation::greatest_loss), 4),
+        ResultColumn::real("radiation_kwh", of_both(&|plane, row| row.panel_area(plane) * row.mean.total()), 0),
     ]);
     columns.extend(yield_columns(yields, &kwh_m2));
     if rows.iter().any(|row| row.class.is_some()) {
@@ -133,21 +106,18 @@ pub fn roof_columns(roofs: RoofRows<'_>, frame: &Frame, site: &Site) -> Vec<Roof
         let loss =
             |number: usize| of_rows(&|row| 1.0 - row.expected()[number] / row.mean.unshaded.max(f64::MIN_POSITIVE));
         columns.extend([
-            real("kwh_m2_expected", end(0), 1),
-            real("kwh_m2_low", end(1), 1),
-            real("kwh_m2_high", end(2), 1),
-            real("loss_expected", loss(0), 4),
-            real("loss_low", loss(2), 4),
-            real("loss_high", loss(1), 4),
+            ResultColumn::real("kwh_m2_expected", end(0), 1),
+            ResultColumn::real("kwh_m2_low", end(1), 1),
+            ResultColumn::real("kwh_m2_high", end(2), 1),
+            ResultColumn::real("loss_expected", loss(0), 4),
+            ResultColumn::real("loss_low", loss(2), 4),
+            ResultColumn::real("loss_high", loss(1), 4),
         ]);
     }
     if has_months(rows) {
-        columns.extend(
-            MONTH_COLUMNS
-                .into_iter()
-                .enumerate()
-                .map(|(month, name)| real(name, of_rows(&|row| row.groups.get(month).copied().unwrap_or(f64::NAN)), 2)),
-        );
+        columns.extend(MONTH_COLUMNS.into_iter().enumerate().map(|(month, name)| {
+            ResultColumn::real(name, of_rows(&|row| row.groups.get(month).copied().unwrap_or(f64::NAN)), 2)
+        }));
         columns.extend(yield_months(yields));
     }
     columns
@@ -161,7 +131,7 @@ fn has_months(rows: &[RoofIrradiation]) -> bool {
 /// Returns the sums of `roofs` over each building that has some, by number: planes, areas, radiation, electricity, and
 /// months if the energies have them. Planes of no building are left out.
 #[must_use]
-pub fn building_columns(roofs: RoofRows<'_>) -> Vec<RoofColumn> {
+pub fn building_columns(roofs: RoofRows<'_>) -> Vec<ResultColumn> {
     let RoofRows { planes, buildings, energies, yields, radiation } = roofs;
     let mut numbers: Vec<u64> = buildings.of_plane.iter().copied().flatten().collect();
     numbers.sort_unstable();
@@ -181,11 +151,11 @@ pub fn building_columns(roofs: RoofRows<'_>) -> Vec<RoofColumn> {
     let kwh_m2: Vec<f64> = radiation_kwh.iter().zip(&panel_area).map(|(sum, area)| sum / area).collect();
     let mut columns = building_numbers(numbers.iter().copied().map(Some).collect(), &buildings.names);
     columns.extend([
-        real("planes", sum(&|_| 1.0), 0),
-        real("area_m2", sum(&|plane| planes[plane].area), 2),
-        real("panel_area_m2", panel_area, 2),
-        words("radiation", vec![radiation.to_owned(); numbers.len()]),
-        real("radiation_kwh", radiation_kwh, 0),
+        ResultColumn::real("planes", sum(&|_| 1.0), 0),
+        ResultColumn::real("area_m2", sum(&|plane| planes[plane].area), 2),
+        ResultColumn::real("panel_area_m2", panel_area, 2),
+        ResultColumn::words("radiation", vec![radiation.to_owned(); numbers.len()]),
+        ResultColumn::real("radiation_kwh", radiation_kwh, 0),
     ]);
     columns.extend(yield_columns(&electricity, &kwh_m2));
     if has_months(energies) {

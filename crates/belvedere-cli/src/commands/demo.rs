@@ -169,6 +169,7 @@ fn write_town(folder: &Path, scene: &TriangleScene, scan: &Scan) -> Result<()> {
         ("planned.obj", planned),
         ("neighbours.csv", windows_that_face(scene)),
         ("towers.csv", towers_on_hills(scene)),
+        ("glass.csv", glass_of_planned(scene)),
     ];
     for (name, text) in texts {
         write_text(&folder.join(name), &text)?;
@@ -234,6 +235,20 @@ fn planned_building(town: &TriangleScene) -> TriangleScene {
     let ground = town.mean_ground_height();
     planned.add_object("planned", &[extruded(&footprint, ground - 1.0, ground + PLANNED_M[2])]);
     planned
+}
+
+/// A table of the glass of the planned building: its south and its west facade.
+fn glass_of_planned(town: &TriangleScene) -> String {
+    let Some((low, high)) = town.bounds() else { return String::new() };
+    let [x, y] = [0, 1].map(|axis| f64::midpoint(low[axis], high[axis]));
+    let [length, width, height] = PLANNED_M;
+    let z = town.mean_ground_height() + height / 2.0;
+    let row = |name: &str, [x, y]: [f64; 2], azimuth: f64, side: f64| {
+        format!("{name},{x:.2},{y:.2},{z:.2},{azimuth},{side:.1},{:.1}\n", height - 2.0)
+    };
+    let south = row("south", [x, y - width / 2.0], 180.0, length - 1.0);
+    let west = row("west", [x - length / 2.0, y], 270.0, width - 1.0);
+    format!("name,x,y,z,azimuth,width,height\n{south}{west}")
 }
 
 /// A table of towers on the hills around the town.

@@ -1,6 +1,5 @@
 //! `belvedere irradiance`.
 
-mod columns;
 mod hours;
 mod planes;
 pub(super) mod radiation;

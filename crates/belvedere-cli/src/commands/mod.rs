@@ -15,6 +15,8 @@ mod difference_of_tables;
 mod envelope;
 mod fading;
 mod far_terrain;
+mod fetch;
+mod glare;
 mod heat;
 mod heights;
 mod horizon;
@@ -32,6 +34,7 @@ mod outputs;
 mod protected_view;
 mod query;
 mod report;
+mod result_columns;
 mod shadow;
 mod simulate;
 mod sky_view;
@@ -78,10 +81,10 @@ fn run_command(cli: &Cli) -> Result<Summary> {
     match &cli.command {
         Command::Demo(arguments) => demo::run(arguments, global),
         Command::Simulate(arguments) => simulate::run(arguments, global),
+        Command::Fetch(arguments) => fetch::run(arguments, global),
         Command::Info(arguments) => info::run(arguments, global),
         Command::Trajectory(arguments) => trajectory::run(arguments, global),
         Command::Normals(arguments) => normals::run(arguments, global),
-        Command::Fetch(arguments) => fetch::run(arguments, global),
         Command::Surfaces(arguments) => surfaces::run(arguments, global),
         Command::Balls(arguments) => balls::run(arguments, global),
         Command::Calibrate(arguments) => calibrate::run(arguments, global),
@@ -100,6 +103,7 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         Command::Horizon(arguments) => horizon::run(arguments, global),
         Command::Shadow(arguments) => shadow::run(arguments, global),
         Command::SkyView(arguments) => sky_view::run(arguments, global),
+        Command::Glare(arguments) => glare::run(arguments, global),
         Command::Heat(arguments) => heat::run(arguments, global),
         Command::Irradiance(arguments) => irradiance::run(arguments, global),
         Command::SunHours(arguments) => sun_hours::run(arguments, global),

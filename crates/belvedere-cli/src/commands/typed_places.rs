@@ -21,6 +21,7 @@ pub(super) fn in_file_coordinates(command: &mut Command) -> Result<()> {
         }
         Command::ProtectedView(typed) => (&typed.scene.input, typed.eyes.eye.iter_mut().collect()),
         Command::Isovist(typed) => (&typed.scene.input, typed.eyes.eye.iter_mut().collect()),
+        Command::Glare(typed) => (&typed.scene.input, typed.eyes.eye.iter_mut().collect()),
         Command::Horizon(typed) => (&typed.scene.input, typed.eyes.eye.iter_mut().collect()),
         #[cfg(feature = "view")]
         Command::View(typed) => (&typed.scene.input, typed.observer.iter_mut().collect()),

@@ -32,6 +32,7 @@ const COMMANDS: [&str; 38] = [
     "sun-calendar",
     "window-views",
     "irradiance",
+    "glare",
     "shadow",
     "sky-view",
     "sun-hours",

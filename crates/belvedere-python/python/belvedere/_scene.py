@@ -18,6 +18,7 @@ from ._core import Scene as NativeScene
 from ._documents import Documents
 from ._energy import Energy
 from ._errors import BelvedereWarning, wrong
+from ._glare import Glare
 from ._heat import Heat
 from ._inputs import Progress, Source, as_list, check_finite, native_source, place, reporter
 from ._mesh import Mesh, native_mesh
@@ -30,7 +31,7 @@ from ._sunlight import Sunlight
 from ._towers import Towers
 
 
-class Scene(Sights, Outlook, Towers, Sunlight, Energy, Heat, Planning, Documents, Cameras):
+class Scene(Sights, Outlook, Towers, Sunlight, Energy, Heat, Glare, Planning, Documents, Cameras):
     """A scene that answers what can be seen: medial balls, cut with the space that laser pulses prove empty.
 
     Parameters

@@ -32,6 +32,7 @@ mod exposure;
 mod far_lines;
 mod far_terrain;
 mod far_viewsheds;
+mod glare;
 mod ground;
 mod heat;
 mod horizons;

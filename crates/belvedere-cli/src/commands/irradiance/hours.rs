@@ -1,10 +1,11 @@
 //! The hours of the planes of roofs as files.
 
-use super::columns::write_columns;
+use crate::commands::result_columns::write_columns;
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::apps::ask::RoofsResults;
-use belvedere::apps::irradiance::{RoofColumn, sky_loss_percent};
+use belvedere::apps::irradiance::sky_loss_percent;
+use belvedere::apps::result_columns::ResultColumn;
 use belvedere::io::atomic;
 use std::path::Path;
 
@@ -20,14 +21,14 @@ pub(super) fn write(folder: &Path, roofs: &RoofsResults, run: &CommandContext) -
             control.check()?;
             let (hours, columns) = roofs.hours(number - 1)?;
             write_columns(&folder.join(format!("plane_{number}.csv")), None, &columns)?;
-            let losses = columns.into_iter().filter(|column| column.name == FOR_SAM).map(|column| RoofColumn {
+            let losses = columns.into_iter().filter(|column| column.name == FOR_SAM).map(|column| ResultColumn {
                 name: format!(
                     "beam shading loss of plane {number} in percent (sky diffuse {:.2} percent)",
                     sky_loss_percent(&hours)
                 ),
                 ..column
             });
-            let losses: Vec<RoofColumn> = losses.collect();
+            let losses: Vec<ResultColumn> = losses.collect();
             write_columns(&folder.join(format!("plane_{number}_beam_loss.csv")), None, &losses)?;
             control.advance(1);
         }

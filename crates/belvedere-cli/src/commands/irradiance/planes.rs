@@ -1,17 +1,18 @@
 //! Planes of roofs as files.
 
 use super::super::{check_output, check_parent, extension};
-use super::columns::write_columns;
 use super::hours;
 use crate::arguments::{IrradianceArguments, PvArguments};
 use crate::commands::horizon::write_lines;
+use crate::commands::result_columns::write_columns;
 use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{IrradianceResults, Remark, RoofsResults, Scene};
 use belvedere::apps::horizon::{HorizonParams, horizons};
-use belvedere::apps::irradiance::{RoofColumn, RoofValues, building_columns, horizon_places, roof_columns};
+use belvedere::apps::irradiance::{building_columns, horizon_places, roof_columns};
+use belvedere::apps::result_columns::{ResultColumn, ResultValues};
 use belvedere::apps::sun::Site;
 use belvedere::io::{PolygonArea, atomic, outlines, write_geojson_areas};
 use belvedere::query::SkylinePoint;
@@ -78,14 +79,15 @@ fn write_rows(output: &Path, roofs: &RoofsResults, frame: &Frame, site: &Site) -
 }
 
 /// The value of a column in a row, as a property of an area.
-fn property(column: &RoofColumn, row: usize) -> Value {
+fn property(column: &ResultColumn, row: usize) -> Value {
     match &column.values {
-        RoofValues::Real(values, decimals) => {
+        ResultValues::Clock(hours) => hours.get(row).copied().into(),
+        ResultValues::Real(values, decimals) => {
             let digits = i32::try_from(*decimals).unwrap_or(2);
             rounded(values.get(row).copied().unwrap_or(f64::NAN), digits)
         }
-        RoofValues::Whole(values) => values.get(row).copied().flatten().into(),
-        RoofValues::Words(words) => words.get(row).cloned().into(),
+        ResultValues::Whole(values) => values.get(row).copied().flatten().into(),
+        ResultValues::Words(words) => words.get(row).cloned().into(),
     }
 }
 

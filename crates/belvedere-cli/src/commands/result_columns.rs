@@ -1,7 +1,7 @@
-//! Columns of roofs as tables.
+//! Columns of results as tables.
 
 use anyhow::Result;
-use belvedere::apps::irradiance::{RoofColumn, RoofValues};
+use belvedere::apps::result_columns::{ResultColumn, ResultValues};
 use belvedere::io::{TableCells, write_table};
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use std::path::Path;
 pub(super) fn write_columns(
     output: &Path,
     numbers: Option<(&str, &[Option<u64>])>,
-    columns: &[RoofColumn],
+    columns: &[ResultColumn],
 ) -> Result<()> {
     let texts: Vec<Vec<&str>> =
         columns.iter().map(|column| words_of(&column.values).iter().map(String::as_str).collect()).collect();
@@ -17,15 +17,16 @@ pub(super) fn write_columns(
         numbers.into_iter().map(|(name, cells)| (name, TableCells::Whole(cells))).collect();
     table.extend(columns.iter().zip(&texts).map(|(column, texts)| {
         let cells = match &column.values {
-            RoofValues::Real(values, decimals) => TableCells::Real(values, *decimals),
-            RoofValues::Whole(values) => TableCells::Whole(values),
-            RoofValues::Words(_) => TableCells::Words(texts),
+            ResultValues::Real(values, decimals) => TableCells::Real(values, *decimals),
+            ResultValues::Clock(values) => TableCells::Clock(values),
+            ResultValues::Whole(values) => TableCells::Whole(values),
+            ResultValues::Words(_) => TableCells::Words(texts),
         };
         (&column.name[..], cells)
     }));
     Ok(write_table(output, &table)?)
 }
 
-fn words_of(values: &RoofValues) -> &[String] {
-    if let RoofValues::Words(words) = values { words } else { &[] }
+fn words_of(values: &ResultValues) -> &[String] {
+    if let ResultValues::Words(words) = values { words } else { &[] }
 }

@@ -1,0 +1,372 @@
+//! Glare: sun that panels and glass reflect to observers.
+
+use super::observers::{Eyes, Observers, check_height};
+use super::sections::{LinesSection, PeriodSection};
+use super::sun::{Days, SunPlace, sun_days_above};
+use super::windows::GivenWindow;
+use super::{Answers, Ask, Context, Places, Remark, Scene};
+use crate::glare::{GlareParams, GlareStretch, Reflector, glare, glare_by_hour, glare_of_any};
+use crate::irradiance::{ClearSky, extraterrestrial};
+use crate::result_columns::{ResultColumn, ResultValues};
+use crate::sun::{Binning, Date, Site, SunSchedule, Zone};
+use belvedere_core::ground::GroundPoints;
+use belvedere_core::query::UnprovenAs;
+use belvedere_data::control::Control;
+use belvedere_data::report::{clock_time, counted, rounded};
+use belvedere_data::{Error, Parameter, Result};
+use serde::{Deserialize, Serialize};
+
+/// Default time between two suns, minutes: glare of a house lasts some minutes a day.
+const TIME_STEP_MIN: f64 = 1.0;
+
+/// Sun that reflectors send to observers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct GlareQuestion {
+    /// The reflectors: rectangles with a size.
+    #[serde(skip)]
+    pub reflectors: Vec<GivenWindow>,
+    /// Height above the ground of eyes without one, metres, 0 or more; `None` for 1.7.
+    pub observer_height: Option<f64>,
+    /// Source of ground points.
+    pub ground: GroundPoints,
+    /// The days; a year without dates means all of it. A minute between suns unless they say otherwise.
+    pub days: Days,
+    /// Location on earth, clock, and the north of azimuths of reflectors.
+    pub place: SunPlace,
+    /// Angle by which reflectors spread a beam to each side, degrees, 0 to 11.4; `None` for 0.75.
+    pub scatter_deg: Option<f64>,
+}
+
+/// Glare of each observer.
+#[derive(Clone, Debug)]
+pub struct GlareResults {
+    /// Observers.
+    pub eyes: Eyes,
+    /// Number of reflectors.
+    pub reflector_count: usize,
+    /// The suns.
+    pub schedule: SunSchedule,
+    /// Clock of the hours.
+    pub zone: Zone,
+    /// Stretches of each pair, those of the first observer first.
+    pub pairs: Vec<Vec<GlareStretch>>,
+    /// Stretches of each observer, of all reflectors together.
+    pub of_observers: Vec<Vec<GlareStretch>>,
+}
+
+/// Glare of a reflector, or of all of them, at an observer.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct GlareSummary {
+    /// Hours of glare.
+    pub hours: f64,
+    /// Hours of glare that may leave an after-image.
+    pub after_image_hours: f64,
+    /// Hours of glare that are unproven.
+    pub unproven_hours: f64,
+    /// Number of days with glare.
+    pub days: usize,
+    /// Longest glare without a break, minutes.
+    pub longest_min: f64,
+    /// Earliest and latest time of glare, hours on the clocks; `None` without glare.
+    pub between: Option<[f64; 2]>,
+    /// First and last day of the period with glare; `None` without glare.
+    #[serde(skip)]
+    pub dates: Option<[Date; 2]>,
+}
+
+/// Glare for reports.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GlareSection {
+    observers: usize,
+    reflectors: usize,
+    /// Hours of glare of all observers together, each counted once however many reflectors dazzle.
+    hours: f64,
+    after_image_hours: f64,
+    unproven_hours: f64,
+    scatter_deg: f64,
+    clear_sky: String,
+}
+
+impl GlareSummary {
+    fn of(stretches: &[GlareStretch], schedule: &SunSchedule) -> Self {
+        let sum = |hours: &dyn Fn(&GlareStretch) -> f32| {
+            stretches.iter().fold(0.0, |sum: f64, one| sum + f64::from(hours(one)))
+        };
+        let mut days: Vec<usize> = stretches.iter().map(|stretch| stretch.day).collect();
+        days.dedup();
+        let date = |day: Option<&usize>| Some(schedule.days.get(*day?)?.date);
+        let start = stretches.iter().map(|stretch| f64::from(stretch.start)).reduce(f64::min);
+        let end = stretches.iter().map(|stretch| f64::from(stretch.end)).reduce(f64::max);
+        let longest = stretches.iter().map(|stretch| f64::from(stretch.hours())).fold(0.0, f64::max);
+        Self {
+            hours: sum(&GlareStretch::hours),
+            after_image_hours: sum(&|stretch| stretch.after_image),
+            unproven_hours: sum(&|stretch| stretch.unproven),
+            days: days.len(),
+            longest_min: 60.0 * longest,
+            between: start.zip(end).map(|(start, end)| [start, end]),
+            dates: date(days.first()).zip(date(days.last())).map(|(first, last)| [first, last]),
+        }
+    }
+}
+
+impl GlareQuestion {
+    /// The days with a minute between suns, and a whole year where only that is given.
+    fn stepped(&self) -> Days {
+        let time_step_min = self.days.time_step_min.or(Some(TIME_STEP_MIN));
+        let whole_year = || Some([format!("{}-01-01", self.days.year?), format!("{}-12-31", self.days.year?)]);
+        let between = if self.days.is_empty() { whole_year() } else { self.days.between.clone() };
+        Days { time_step_min, between, ..self.days.clone() }
+    }
+
+    fn params(&self) -> GlareParams {
+        self.scatter_deg.map_or_else(GlareParams::default, |scatter| GlareParams { scatter: scatter.to_radians() })
+    }
+
+    fn schedule(&self, scene: &Scene, context: &mut Context) -> Result<(SunSchedule, Zone, Site)> {
+        let days = self.stepped();
+        let site = self.place.site(scene, context, None)?;
+        let zone = self.place.zone_at(&site, days.times())?;
+        let params = days.params(&self.place);
+        let Some(period) = days.period(&self.place, &site, &zone)? else { return missing_days() };
+        let schedule = SunSchedule::new(&sun_days_above(&site, &zone, &period, &params)?, Binning::Exact)?;
+        context.report.period = Some(PeriodSection::of(&schedule, &zone, &params));
+        Ok((schedule, zone, site))
+    }
+}
+
+fn missing_days<T>() -> Result<T> {
+    Err(Error::InvalidParameter {
+        parameter: Parameter::Period,
+        value: "missing".to_owned(),
+        expected: "given as a year, as days, or as two times",
+    })
+}
+
+impl Ask for GlareQuestion {
+    type Found = GlareResults;
+
+    fn check(&self) -> Result<()> {
+        if self.reflectors.is_empty() {
+            return Err(Error::InvalidParameter {
+                parameter: Parameter::Reflector,
+                value: "missing".to_owned(),
+                expected: "at least one, with place, azimuth, tilt, width and height",
+            });
+        }
+        for (number, reflector) in (1..).zip(&self.reflectors) {
+            let of_window = |error| match error {
+                Error::InvalidParameter { value, expected, .. } => {
+                    let value = format!("number {number}, {value}");
+                    Error::InvalidParameter { parameter: Parameter::Reflector, value, expected }
+                }
+                other => other,
+            };
+            reflector.check().map_err(of_window)?;
+            Reflector::of(&reflector.in_grid(0.0)).map_err(of_window)?;
+        }
+        let days = self.stepped();
+        if days.is_empty() {
+            return missing_days();
+        }
+        check_height(self.observer_height)?;
+        self.params().validate()?;
+        days.check(&self.place)
+    }
+
+    fn answer(
+        &self,
+        scene: &Scene,
+        places: &Places,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Answers<GlareResults>> {
+        let (schedule, zone, site) = self.schedule(scene, context)?;
+        let north = self.place.north.of_scene(scene);
+        context.north(&north);
+        let in_grid = |given: &GivenWindow| Reflector::of(&given.in_grid(north.of_grid));
+        let reflectors = self.reflectors.iter().map(in_grid).collect::<Result<Vec<_>>>()?;
+        context.add(remark_on_reflectors_outside(&self.reflectors, scene));
+        let Observers { eyes, .. } =
+            Observers::of(places, (self.observer_height, self.ground), scene, context, control)?;
+        let blockers = scene.blockers(UnprovenAs::Reported, control)?;
+        context.report.lines_of_sight = Some(LinesSection::of(&blockers, Some(schedule.directions.len())));
+        let params = self.params();
+        let direct = direct_radiation(&schedule, &site);
+        let pairs = control.stage("testing reflections", eyes.eyes.len() * reflectors.len(), || {
+            glare(&blockers, (&eyes.eyes, &reflectors), (&schedule, &direct), &params, control)
+        })?;
+        let of_observers = pairs.chunks(reflectors.len()).map(|own| glare_of_any(own.iter().map(Vec::as_slice)));
+        let of_observers: Vec<Vec<GlareStretch>> = of_observers.collect();
+        let found = GlareResults { eyes, reflector_count: reflectors.len(), schedule, zone, pairs, of_observers };
+        found.summarise(&params, context);
+        Ok(Answers::new(found, Vec::new()))
+    }
+}
+
+/// Direct radiation of a clear sky for each direction of a schedule, W/m².
+fn direct_radiation(schedule: &SunSchedule, site: &Site) -> Vec<f64> {
+    let mut direct = vec![0.0; schedule.directions.len()];
+    for day in &schedule.days {
+        let above = extraterrestrial(day.date.noon_utc());
+        for step in &day.steps {
+            let row = step.direction as usize;
+            let zenith = schedule.directions[row][2].clamp(-1.0, 1.0).acos();
+            direct[row] = ClearSky::default().irradiance(zenith, site.height, above).dni;
+        }
+    }
+    direct
+}
+
+/// A warning of reflectors that lie beside the cloud, where nothing is known to block their light.
+fn remark_on_reflectors_outside(reflectors: &[GivenWindow], scene: &Scene) -> Option<Remark> {
+    let (low, high) = scene.model().bounds().corners();
+    let is_beside = |given: &&GivenWindow| (0..2).any(|axis| !(low[axis]..=high[axis]).contains(&given.place[axis]));
+    let count = reflectors.iter().filter(is_beside).count();
+    let text = format!(
+        "{count} of {} reflectors lie beside the cloud, where nothing is known to block their light: are their places in \
+         the coordinates of the cloud?",
+        reflectors.len()
+    );
+    (count > 0).then(|| Remark::warning("reflectors-outside", text).with("count", count as f64))
+}
+
+impl GlareResults {
+    /// Glare of a pair.
+    #[must_use]
+    pub fn of_pair(&self, observer: usize, reflector: usize) -> GlareSummary {
+        let stretches = self.pairs.get(observer * self.reflector_count + reflector);
+        GlareSummary::of(stretches.map_or(&[], Vec::as_slice), &self.schedule)
+    }
+
+    /// Glare of an observer, of all reflectors together.
+    #[must_use]
+    pub fn of_observer(&self, observer: usize) -> GlareSummary {
+        GlareSummary::of(self.of_observers.get(observer).map_or(&[], Vec::as_slice), &self.schedule)
+    }
+
+    /// A row for each pair, and with several reflectors one for each observer with reflector 0: all of them together.
+    /// `names` are those of the reflectors, where they have some.
+    #[must_use]
+    pub fn columns(&self, names: &[String]) -> Vec<ResultColumn> {
+        let together = (self.reflector_count > 1).then_some(None);
+        let of_observer = |observer: usize| {
+            (0..self.reflector_count).map(Some).chain(together).map(move |reflector| (observer, reflector))
+        };
+        let rows: Vec<(usize, Option<usize>)> = (0..self.of_observers.len()).flat_map(of_observer).collect();
+        let summaries: Vec<GlareSummary> = rows
+            .iter()
+            .map(|&(observer, reflector)| {
+                reflector.map_or_else(|| self.of_observer(observer), |reflector| self.of_pair(observer, reflector))
+            })
+            .collect();
+        let whole = |name: &str, values: Vec<usize>| ResultColumn {
+            name: name.to_owned(),
+            values: ResultValues::Whole(values.into_iter().map(|value| u64::try_from(value).ok()).collect()),
+        };
+        let real = |name: &str, of: &dyn Fn(&GlareSummary) -> f64, decimals| {
+            ResultColumn::real(name, summaries.iter().map(of).collect(), decimals)
+        };
+        let clock = |name: &str, end: usize| ResultColumn {
+            name: name.to_owned(),
+            values: ResultValues::Clock(
+                summaries.iter().map(|one| one.between.map_or(f64::NAN, |between| between[end])).collect(),
+            ),
+        };
+        let day = |name: &str, end: usize| {
+            let date = |one: &GlareSummary| one.dates.map_or_else(String::new, |dates| dates[end].to_string());
+            ResultColumn::words(name, summaries.iter().map(date).collect())
+        };
+        let name = |&(_, reflector): &(usize, Option<usize>)| match reflector {
+            Some(reflector) => names.get(reflector).cloned().unwrap_or_default(),
+            None => "all".to_owned(),
+        };
+        vec![
+            whole("observer", rows.iter().map(|(observer, _)| observer + 1).collect()),
+            whole("reflector", rows.iter().map(|(_, reflector)| reflector.map_or(0, |number| number + 1)).collect()),
+            ResultColumn::words("name", rows.iter().map(name).collect()),
+            real("hours", &|one| one.hours, 3),
+            real("after_image_hours", &|one| one.after_image_hours, 3),
+            real("unproven_hours", &|one| one.unproven_hours, 3),
+            whole("days", summaries.iter().map(|one| one.days).collect()),
+            day("first_day", 0),
+            day("last_day", 1),
+            clock("earliest", 0),
+            clock("latest", 1),
+            real("longest_min", &|one| one.longest_min, 1),
+        ]
+    }
+
+    /// A row for each observer and month: minutes of glare in each hour of the clock, of all reflectors together.
+    #[must_use]
+    pub fn columns_by_hour(&self) -> Vec<ResultColumn> {
+        let minutes: Vec<[[f32; 24]; 12]> =
+            self.of_observers.iter().map(|stretches| glare_by_hour(stretches, &self.schedule)).collect();
+        let rows = || (0..minutes.len()).flat_map(|observer| (0..12).map(move |month| (observer, month)));
+        let number = |name: &str, of: &dyn Fn((usize, usize)) -> usize| ResultColumn {
+            name: name.to_owned(),
+            values: ResultValues::Whole(rows().map(|row| u64::try_from(of(row) + 1).ok()).collect()),
+        };
+        let hour = |hour: usize| {
+            let values = rows().map(|(observer, month)| f64::from(minutes[observer][month][hour])).collect();
+            ResultColumn::real(format!("min_{hour:02}"), values, 1)
+        };
+        let ends = [number("observer", &|(observer, _)| observer), number("month", &|(_, month)| month)];
+        ends.into_iter().chain((0..24).map(hour)).collect()
+    }
+
+    fn summarise(&self, params: &GlareParams, context: &mut Context) {
+        let observers = self.of_observers.len();
+        let all: Vec<GlareSummary> = (0..observers).map(|observer| self.of_observer(observer)).collect();
+        let sum = |hours: &dyn Fn(&GlareSummary) -> f64| rounded(all.iter().map(hours).sum(), 3);
+        let section = GlareSection {
+            observers,
+            reflectors: self.reflector_count,
+            hours: sum(&|one| one.hours),
+            after_image_hours: sum(&|one| one.after_image_hours),
+            unproven_hours: sum(&|one| one.unproven_hours),
+            scatter_deg: rounded(params.scatter.to_degrees(), 2),
+            clear_sky: ClearSky::default().to_string(),
+        };
+        let days = self.schedule.days.len();
+        let possible = self.schedule.possible_hours();
+        context.headline(format!(
+            "Glare of {} at {}, {} with {possible:.0} h of sun",
+            counted(self.reflector_count, "reflector"),
+            counted(observers, "observer"),
+            counted(days, "day")
+        ));
+        let mut order: Vec<usize> = (0..observers).collect();
+        order.sort_by(|&a, &b| all[b].hours.total_cmp(&all[a].hours));
+        for &observer in order.iter().take(MAX_LISTED) {
+            let name = if observers == 1 { String::new() } else { format!("observer {}: ", observer + 1) };
+            context.headline(format!("{name}{}", all[observer].in_words()));
+        }
+        context.report.glare = Some(section);
+    }
+}
+
+/// Maximum number of observers in the headline.
+const MAX_LISTED: usize = 5;
+
+impl GlareSummary {
+    fn in_words(&self) -> String {
+        let (Some([from, to]), Some([first, last])) = (self.between, self.dates) else { return "no glare".to_owned() };
+        let after = match self.after_image_hours > 0.0 {
+            true => format!(", {:.1} h of it with possible after-images", self.after_image_hours),
+            false => ", too weak for after-images".to_owned(),
+        };
+        let when = match first == last {
+            true => format!("on {first}"),
+            false => format!("on {} from {first} to {last}", counted(self.days, "day")),
+        };
+        format!(
+            "{:.1} h {when}, between {} and {}, {:.0} min at most without a break{after}",
+            self.hours,
+            clock_time(from),
+            clock_time(to),
+            self.longest_min
+        )
+    }
+}

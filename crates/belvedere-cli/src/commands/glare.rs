@@ -1,0 +1,133 @@
+//! `belvedere glare`.
+
+use super::result_columns::write_columns;
+use super::surroundings::min_count;
+use super::windows::{FaceChoice, WindowFile};
+use super::{check_output, extension};
+use crate::arguments::{GlareArguments, Global, Usage};
+use crate::run::CommandContext;
+use crate::summary::Summary;
+use anyhow::Result;
+use belvedere::Frame;
+use belvedere::apps::ask::{self, Ask, Days, GivenWindow, GivenWindows, GlareResults, Places};
+use belvedere::figures::{DayPiece, day_chart, write_png};
+use belvedere::io::is_mesh;
+use std::path::Path;
+
+/// Maximum number of days of a chart.
+const MAX_DAYS: usize = 731;
+/// Colours of glare, and of glare that may leave an after-image.
+const WEAK: [u8; 3] = [86, 160, 211];
+const STRONG: [u8; 3] = [217, 95, 2];
+const MONTHS: [&str; 12] = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
+
+pub(crate) fn run(arguments: &GlareArguments, global: &Global) -> Result<Summary> {
+    for output in &arguments.output {
+        check_output("-o", output, &["csv", "png"])?;
+    }
+    if let Some(output) = &arguments.by_hour {
+        check_output("--by-hour", output, &["csv"])?;
+    }
+    if is_mesh(&arguments.reflectors) {
+        return Err(Usage("--reflectors: give a table (.csv) of rectangles, not a mesh".to_owned()).into());
+    }
+    check_charts(arguments, min_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
+    let mut run = CommandContext::new(global);
+    // wrong reflectors must not be found out after the balls were made
+    let mut question = question(arguments, read(arguments, &Frame::default(), &mut run)?.0)?;
+    question.check()?;
+    let scene = arguments.eyes.scene(&arguments.scene, Some(&arguments.far), &mut run)?;
+    let (reflectors, names) = read(arguments, scene.frame(), &mut run)?;
+    question.reflectors = reflectors;
+    let standing = arguments.eyes.standing((scene.frame(), &scene.model().bounds()), &mut run)?;
+    check_charts(arguments, standing.len())?;
+    let answers = run.ask(&scene, &question, &Places::Eyes(standing))?;
+    let found = &answers.found;
+    for output in &arguments.output {
+        run.stage("writing", 0, |_| match extension(output).as_str() {
+            "png" => write_chart(output, found),
+            _ => write_columns(output, None, &found.columns(&names)),
+        })?;
+    }
+    let mut written: Vec<String> = arguments.output.iter().map(|path| path.display().to_string()).collect();
+    if let Some(output) = &arguments.by_hour {
+        run.stage("writing", 0, |_| write_columns(output, None, &found.columns_by_hour()))?;
+        written.push(output.display().to_string());
+    }
+    run.summary.add("written", written);
+    Ok(run.finish())
+}
+
+fn question(arguments: &GlareArguments, reflectors: Vec<GivenWindow>) -> Result<ask::GlareQuestion> {
+    let days = arguments.when.days();
+    let days = if arguments.when.is_given() { days } else { Days { year: Some(arguments.when.year), ..days } };
+    Ok(ask::GlareQuestion {
+        reflectors,
+        observer_height: arguments.eyes.height,
+        ground: arguments.eyes.ground.points(),
+        days,
+        place: arguments.sun.place(&arguments.north)?,
+        scatter_deg: arguments.scatter,
+    })
+}
+
+/// The reflectors of the table in a frame, and their names.
+fn read(
+    arguments: &GlareArguments,
+    frame: &Frame,
+    run: &mut CommandContext,
+) -> Result<(Vec<GivenWindow>, Vec<String>)> {
+    let file = WindowFile::read(&arguments.reflectors, &FaceChoice::default(), frame, run)?;
+    let names = file.buildings(&[]);
+    match file.given {
+        GivenWindows::Each(reflectors) => Ok((reflectors, names)),
+        GivenWindows::Faces(_) => Ok((Vec::new(), names)),
+    }
+}
+
+/// Refuses charts of several observers.
+fn check_charts(arguments: &GlareArguments, count: usize) -> Result<()> {
+    match arguments.output.iter().find(|output| count > 1 && extension(output) == "png") {
+        Some(output) => {
+            let output = output.display();
+            let what = format!("{output}: a chart is of a single observer, but there are {count}; use .csv");
+            Err(Usage(what).into())
+        }
+        None => Ok(()),
+    }
+}
+
+/// Draws the glare of the first observer.
+fn write_chart(output: &Path, found: &GlareResults) -> Result<()> {
+    let days = &found.schedule.days;
+    if days.len() > MAX_DAYS {
+        let what =
+            format!("{}: a chart holds two years, but there are {} days; use .csv", output.display(), days.len());
+        return Err(Usage(what).into());
+    }
+    let label = |(row, day): (usize, &belvedere::apps::sun::DayOfLight)| match (day.date.day(), row) {
+        (1, _) => MONTHS
+            .get(usize::from(day.date.month().unsigned_abs()).wrapping_sub(1))
+            .copied()
+            .unwrap_or_default()
+            .to_owned(),
+        (_, 0) => day.date.to_string(),
+        _ => String::new(),
+    };
+    let labels: Vec<String> = days.iter().enumerate().map(label).collect();
+    let light = days.iter().map(|day| match (day.steps.first(), day.steps.last()) {
+        (Some(first), Some(last)) => [f64::from(first.start), f64::from(last.start + last.hours)],
+        _ => [0.0; 2],
+    });
+    let light: Vec<[f64; 2]> = light.collect();
+    let pieces = found.of_observers.first().into_iter().flatten().map(|stretch| DayPiece {
+        day: stretch.day,
+        hours: [f64::from(stretch.start), f64::from(stretch.end)],
+        color: if stretch.after_image > 0.0 { STRONG } else { WEAK },
+    });
+    let pieces: Vec<DayPiece> = pieces.collect();
+    let summary = found.of_observer(0);
+    let title = format!("Glare, {:.1} h on {} of {} days", summary.hours, summary.days, days.len());
+    let legend = [(STRONG, "after-images possible"), (WEAK, "weaker")];
+    Ok(write_png(output, &day_chart(&labels, &light, &pieces, &legend, &title))?)
+}
