@@ -22,8 +22,8 @@ pub struct DayPiece {
     pub color: [u8; 3],
 }
 
-/// A chart of `labels.len()` days: `light` is the time between sunrise and sunset of each, later pieces lie over earlier
-/// ones. A label that is not empty begins a month; `legend` names colours.
+/// A chart of `labels.len()` days: `light` is the time between sunrise and sunset of each, later pieces lie over
+/// earlier ones. A label that is not empty begins a month; `legend` names colours.
 #[must_use]
 pub fn day_chart(
     labels: &[String],

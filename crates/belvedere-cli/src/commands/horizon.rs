@@ -71,8 +71,8 @@ fn check_formats(arguments: &HorizonArguments, count: usize) -> Result<()> {
     }
 }
 
-/// Rows of azimuth and elevation in degrees as PV*SOL reads them: from −180 (north) through 0 (south) to below 180, west
-/// positive.
+/// Rows of azimuth and elevation in degrees as PV*SOL reads them: from −180 (north) through 0 (south) to below 180,
+/// west positive.
 ///
 /// # Source
 /// Valentin Software, help of PV*SOL, "Shading", section on the format `.hor`.

@@ -26,7 +26,8 @@ const BLOCK_BYTES: usize = 1 << 20;
 /// Reads the points of `area`: of COPC tiles only the parts that meet it are transferred, of others all.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a radius above 1 km, [`Error::NoSurvey`] for surveys without tiles, [`Error::Malformed`] for archives, and those of [`read_cloud`].
+/// [`Error::InvalidParameter`] for a radius above 1 km, [`Error::NoSurvey`] for surveys without tiles,
+/// [`Error::Malformed`] for archives, and those of [`read_cloud`].
 pub fn read_area(found: &FoundSurvey, area: &SurveyArea, control: &Control<'_>) -> Result<(PointCloud, ReadReport)> {
     if area.radius_m() > MAX_CLOUD_RADIUS {
         return Err(Error::InvalidParameter {
