@@ -4,7 +4,7 @@ use crate::cloud::{Cloud, json};
 use crate::work::run;
 use belvedere::control::Control;
 use belvedere::io::open_surveys::{
-    FoundSurvey, SurveyArea, find_surveys, first_with_tiles, known_surveys, read_area, read_surveys, surveys_at,
+    FoundSurvey, SurveyArea, best_covering, find_surveys, known_surveys, read_area, read_surveys, surveys_at,
 };
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -38,18 +38,18 @@ pub(crate) fn open_surveys(py: Python<'_>, area: AreaKeywords, progress: Option<
     json(&found)
 }
 
-/// The points of an area, the report on reading them, and their survey, both as JSON.
+/// The points of an area, the report on reading them and their survey, both as JSON, and a warning.
 #[pyfunction]
 pub(crate) fn fetch(
     py: Python<'_>,
     area: AreaKeywords,
     progress: Option<Py<PyAny>>,
-) -> PyResult<(Cloud, String, String)> {
+) -> PyResult<(Cloud, String, String, Option<String>)> {
     let (cloud, report, chosen) = run(py, progress, move |control| {
         let (area, found) = area.find(control)?;
-        let chosen = first_with_tiles(&found)?;
+        let chosen = best_covering(&found)?;
         let (cloud, report) = read_area(chosen, &area, control)?;
         Ok((cloud, report, chosen.clone()))
     })?;
-    Ok((Cloud(Arc::new(cloud)), json(&report)?, json(&chosen)?))
+    Ok((Cloud(Arc::new(cloud)), json(&report)?, json(&chosen)?, chosen.part_in_words()))
 }

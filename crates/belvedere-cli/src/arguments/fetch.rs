@@ -15,7 +15,7 @@ pub(crate) struct FetchArguments {
     #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, default_value_t = 200.0,
         help_heading = "Place")]
     pub(crate) radius: f64,
-    /// Survey to take, by the name that the list shows [default: the first with points there]
+    /// Survey to take, by the name that the list shows [default: the first that covers the square]
     #[arg(long, value_name = "NAME", help_heading = "Surveys")]
     pub(crate) survey: Option<String>,
     /// Table of surveys (.json) instead of the table of the program

@@ -6,8 +6,8 @@ use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::io::open_surveys::{
-    FoundSurvey, SurveyArea, SurveyTile, download_tile, find_surveys, first_with_tiles, known_surveys, read_area,
-    read_surveys, surveys_at, write_origin,
+    FoundSurvey, MAX_CLOUD_RADIUS, SurveyArea, SurveyTile, best_covering, download_tile, find_surveys, known_surveys,
+    read_area, read_surveys, surveys_at, write_origin,
 };
 use belvedere::io::{atomic, write_cloud};
 use belvedere::report::counted;
@@ -38,8 +38,11 @@ pub(crate) fn run(arguments: &FetchArguments, global: &Global) -> Result<Summary
         list(&found, arguments, &mut run.summary);
         return Ok(run.finish());
     };
-    let chosen = first_with_tiles(&found)?;
+    let chosen = best_covering(&found)?;
     run.summary.add("survey", json!(chosen));
+    if let Some(text) = chosen.part_in_words() {
+        run.summary.warn("survey-covers-a-part", text);
+    }
     if is_folder(output) {
         let files = download(chosen, output, &area, &mut run)?;
         run.summary.answer(&format!("{} of {}", counted(files, "tile"), chosen.survey.title));
@@ -74,12 +77,15 @@ fn list(found: &[FoundSurvey], arguments: &FetchArguments, summary: &mut Summary
     let [latitude, longitude] = arguments.at.0;
     summary.answer(&format!("surveys within {} m of {latitude}, {longitude}:", arguments.radius));
     let (ready, others): (Vec<_>, Vec<_>) = found.iter().partition(|found| !found.tiles.is_empty());
-    for FoundSurvey { survey, tiles, .. } in &ready {
+    for found in &ready {
+        let FoundSurvey { survey, tiles, covered_percent, .. } = found;
         let bytes: Option<u64> = tiles.iter().map(|tile| tile.bytes).sum();
         let size = bytes.map_or_else(String::new, |bytes| format!(", {:.0} MB", bytes as f64 / MEGABYTE));
         let density = survey.points_per_m2.map_or_else(String::new, |density| format!(", {density} points/m²"));
+        let part = if found.is_whole() { String::new() } else { format!(", covers {covered_percent:.0} %") };
         let tiles = counted(tiles.len(), "tile");
-        summary.answer(&format!("  {}: {}{density}, {tiles}{size}, {}", survey.name, survey.title, survey.licence));
+        summary
+            .answer(&format!("  {}: {}{density}, {tiles}{size}{part}, {}", survey.name, survey.title, survey.licence));
     }
     for FoundSurvey { survey, failure, .. } in &others {
         let why = if failure.is_some() { "not reached; its page is" } else { "choose tiles on" };
@@ -88,9 +94,11 @@ fn list(found: &[FoundSurvey], arguments: &FetchArguments, summary: &mut Summary
     if found.is_empty() {
         summary.answer("  none has a tile there; https://portal.opentopography.org/datasets lists others");
     }
-    if !ready.is_empty() {
-        let at = format!("--at {latitude},{longitude}");
-        summary.answer(&format!("next: belvedere fetch {at} --radius {} -o place.laz", arguments.radius));
+    if let Ok(best) = best_covering(found) {
+        let is_whole_tiles = arguments.radius > MAX_CLOUD_RADIUS || best.tiles.iter().any(SurveyTile::is_archive);
+        let output = if is_whole_tiles { "tiles" } else { "place.laz" };
+        let at = format!("--at {latitude},{longitude} --radius {}", arguments.radius);
+        summary.answer(&format!("next: belvedere fetch {at} --survey {} -o {output}", best.survey.name));
     }
     summary.add("surveys", found.iter().map(|found| json!(found)).collect::<Vec<Value>>());
 }

@@ -39,9 +39,11 @@ fn surveys_of_a_place_are_listed_with_licence_and_next_step() {
     }
     let found = place.summary(&format!("fetch {AT} --surveys surveys.json"));
     assert_eq!(found["surveys"][0]["tiles"].as_array().unwrap().len(), 1);
+    let wide = place.run(&format!("fetch {AT} --radius 3000 --surveys surveys.json"));
+    assert!(wide.stdout.contains("-o tiles") && !wide.stdout.contains("place.laz"), "{wide:?}");
     // the next step works as printed
     let next = run.stdout.lines().find_map(|line| line.trim().strip_prefix("next: belvedere ")).unwrap();
-    place.summary(&format!("{next} --surveys surveys.json --survey town"));
+    place.summary(&format!("{next} --surveys surveys.json"));
     assert!(fs::metadata(place.path("place.laz")).unwrap().len() <= tile.len() as u64);
 }
 
@@ -74,6 +76,7 @@ fn fetch_refuses_what_no_survey_has_and_names_services_that_fail() {
         ("--at 52.0,4.37 --radius 20000", &["--radius", "5000"]),
         ("--at 52.0,4.37 -o garden.csv", &["-o", ".laz"]),
         ("--at 95,4", &["--at", "latitude"]),
+        ("--at 52.0,4.37 --radius 3000 -o garden.laz", &["--radius", "1000"]),
     ] {
         place.refusal(2, &format!("fetch {flags} --surveys surveys.json"), words);
     }

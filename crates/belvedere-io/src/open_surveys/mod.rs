@@ -9,5 +9,5 @@ mod tiles;
 mod transfer;
 
 pub use table::{OpenSurvey, SurveyArea, TileIndex, known_surveys, read_surveys};
-pub use tiles::{FoundSurvey, SurveyTile, find_surveys, find_tiles, first_with_tiles, surveys_at};
-pub use transfer::{download_tile, read_area, write_origin};
+pub use tiles::{FoundSurvey, SurveyTile, best_covering, find_surveys, find_tiles, surveys_at};
+pub use transfer::{MAX_CLOUD_RADIUS, download_tile, read_area, write_origin};

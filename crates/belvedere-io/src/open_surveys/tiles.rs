@@ -18,6 +18,8 @@ const MAX_PAGES: usize = 20;
 const MAX_TILES: usize = 1000;
 /// Places of the area a side at which the newest tile is looked for.
 const PLACES: usize = 32;
+/// Minimum share of an area whose tiles count as all of it, percent: boxes of tiles in degrees are rounded.
+const WHOLE_PERCENT: f64 = 99.0;
 
 /// A file of a survey.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -40,6 +42,8 @@ pub struct FoundSurvey {
     pub survey: OpenSurvey,
     /// Its tiles in the area; none where people choose them on its page.
     pub tiles: Vec<SurveyTile>,
+    /// Share of the area that they cover, percent.
+    pub covered_percent: f64,
     /// Reason why its tiles are not known, and advice.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
@@ -71,13 +75,13 @@ pub fn find_surveys(surveys: &[OpenSurvey], area: &SurveyArea, control: &Control
     control.stage("asking for tiles", surveys.len(), || {
         let mut found = Vec::new();
         for survey in surveys {
-            let (tiles, failure) = match find_tiles(survey, area, control) {
-                Ok(tiles) => (tiles, None),
+            let own = match find_tiles(survey, area, control) {
                 Err(Error::Cancelled) => return Err(Error::Cancelled),
-                Err(error) => (Vec::new(), Some(error.to_string())),
+                Err(error) => FoundSurvey { failure: Some(error.to_string()), ..FoundSurvey::without_tiles(survey) },
+                Ok(own) => own,
             };
-            if survey.index == TileIndex::Page || failure.is_some() || !tiles.is_empty() {
-                found.push(FoundSurvey { survey: survey.clone(), tiles, failure });
+            if survey.index == TileIndex::Page || own.failure.is_some() || !own.tiles.is_empty() {
+                found.push(own);
             }
             control.advance(1);
         }
@@ -113,14 +117,17 @@ pub fn surveys_at(mut surveys: Vec<OpenSurvey>, name: Option<&str>, area: &Surve
     Ok(surveys)
 }
 
-/// The survey to take points of: the first with tiles.
+/// The survey to take points of: the first that covers the whole area, else the one that covers the largest share.
 ///
 /// # Errors
 /// [`Error::NoSurvey`] where none has tiles, with what each lacks.
-pub fn first_with_tiles(found: &[FoundSurvey]) -> Result<&FoundSurvey> {
-    let is_ready = |found: &&FoundSurvey| !found.tiles.is_empty();
-    if let Some(ready) = found.iter().find(is_ready) {
-        return Ok(ready);
+pub fn best_covering(found: &[FoundSurvey]) -> Result<&FoundSurvey> {
+    let ready = || found.iter().filter(|found| !found.tiles.is_empty());
+    let first = ready().find(|found| found.is_whole());
+    // the first of those that cover as much
+    let best = first.or_else(|| ready().rev().max_by(|a, b| a.covered_percent.total_cmp(&b.covered_percent)));
+    if let Some(best) = best {
+        return Ok(best);
     }
     let reason = |found: &FoundSurvey| match &found.failure {
         Some(failure) => format!("{}: {failure}", found.survey.title),
@@ -131,23 +138,48 @@ pub fn first_with_tiles(found: &[FoundSurvey]) -> Result<&FoundSurvey> {
     Err(Error::NoSurvey { what })
 }
 
+impl FoundSurvey {
+    fn without_tiles(survey: &OpenSurvey) -> Self {
+        Self { survey: survey.clone(), tiles: Vec::new(), covered_percent: 0.0, failure: None }
+    }
+
+    /// A warning where the tiles cover a part of the area only.
+    #[must_use]
+    pub fn part_in_words(&self) -> Option<String> {
+        let text = format!(
+            "tiles of {} cover {:.0} % of the square: what stands in the rest is unknown; look whether another survey \
+             covers more",
+            self.survey.title, self.covered_percent
+        );
+        (!self.is_whole()).then_some(text)
+    }
+
+    /// True if the tiles cover all of the area, but for its outermost metres.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.covered_percent >= WHOLE_PERCENT
+    }
+}
+
 /// The tiles of a survey in `area`: where several have the same place, the newest.
 ///
 /// # Errors
 /// [`Error::Io`] where the service is not reached, [`Error::Malformed`] where its answer is no list of tiles,
 /// [`Error::InvalidParameter`] for places beyond the reference system of the survey, and [`Error::Cancelled`].
-pub fn find_tiles(survey: &OpenSurvey, area: &SurveyArea, control: &Control<'_>) -> Result<Vec<SurveyTile>> {
-    match &survey.index {
+pub fn find_tiles(survey: &OpenSurvey, area: &SurveyArea, control: &Control<'_>) -> Result<FoundSurvey> {
+    let (tiles, covered) = match &survey.index {
         TileIndex::Squares { side_m, address } => {
-            squares_in(&box_in_crs(survey, area)?, *side_m, |corner| filled_corner(address, corner), control)
+            squares_in(&box_in_crs(survey, area)?, *side_m, |corner| filled_corner(address, corner), control)?
         }
         TileIndex::List { address } => {
             let in_crs = address.contains("{x_min}");
             let area_box = if in_crs { box_in_crs(survey, area)? } else { area.box_deg() };
-            Ok(newest_of(listed(filled_box(address, &area_box), control)?, &area_box))
+            newest_of(listed(filled_box(address, &area_box), control)?, &area_box)
         }
-        TileIndex::Page => Ok(Vec::new()),
-    }
+        TileIndex::Page => (Vec::new(), 0.0),
+    };
+    let covered_percent = (1e4 * covered).round() / 100.0;
+    Ok(FoundSurvey { tiles, covered_percent, ..FoundSurvey::without_tiles(survey) })
 }
 
 /// Lowest and highest x and y of `area` in the system of `survey`, metres.
@@ -164,27 +196,31 @@ pub(super) fn middle_in(projection: &GeographicProjection, area: &SurveyArea) ->
     projection.project(latitude, longitude)
 }
 
-/// The files of the squares that meet a box, of which servers say that they exist.
+/// The files of the squares that meet a box, of which servers say that they exist, and the share of it that they cover.
 fn squares_in(
     &[x_min, y_min, x_max, y_max]: &[f64; 4],
     side: f64,
     address_of: impl Fn([f64; 2]) -> String,
     control: &Control<'_>,
-) -> Result<Vec<SurveyTile>> {
+) -> Result<(Vec<SurveyTile>, f64)> {
     let corners = |low: f64, high: f64| {
         let first = (low / side).floor() * side;
         std::iter::successors(Some(first), move |corner| Some(corner + side)).take_while(move |&corner| corner <= high)
     };
-    let mut tiles = Vec::new();
+    let width = |corner: f64, low: f64, high: f64| (high.min(corner + side) - low.max(corner)) / (high - low);
+    let (mut tiles, mut covered) = (Vec::new(), 0.0);
     for y in corners(y_min, y_max) {
         for x in corners(x_min, x_max) {
             control.check()?;
             let address = address_of([x, y]);
             let size = remote::size_of(&address).map_err(Error::io(&hidden(Path::new(&address))))?;
-            tiles.extend(size.map(|bytes| SurveyTile { address, bytes: Some(bytes), date: None }));
+            if size.is_some() {
+                covered += width(x, x_min, x_max) * width(y, y_min, y_max);
+                tiles.push(SurveyTile { address, bytes: size, date: None });
+            }
         }
     }
-    Ok(tiles)
+    Ok((tiles, covered))
 }
 
 /// The address of the square with a south-west corner, metres.
@@ -221,20 +257,22 @@ fn listed(address: String, control: &Control<'_>) -> Result<Vec<(SurveyTile, Opt
     Ok(tiles)
 }
 
-/// The tiles that are the newest at half or more of the places of the area that they cover, and those without a box.
+/// The tiles that are the newest at half or more of the places of the area that they cover, and those without a box;
+/// and the share of the area that they cover, as far as boxes tell.
 ///
 /// Surveys of several years in one cloud would contradict each other.
-fn newest_of(mut tiles: Vec<(SurveyTile, Option<[f64; 4]>)>, area_box: &[f64; 4]) -> Vec<SurveyTile> {
+fn newest_of(mut tiles: Vec<(SurveyTile, Option<[f64; 4]>)>, area_box: &[f64; 4]) -> (Vec<SurveyTile>, f64) {
     // dates in ISO 8601 sort as texts do; names end with the year where there is no date
     tiles.sort_by(|(a, _), (b, _)| b.date.cmp(&a.date).then_with(|| b.address.cmp(&a.address)));
     tiles.dedup_by(|(a, _), (b, _)| a.address == b.address);
     let &[west, south, east, north] = area_box;
     let place = |index: usize| (index as f64 + 0.5) / PLACES as f64;
     let mut is_taken = [[false; PLACES]; PLACES];
-    let mut kept = Vec::new();
+    let (mut kept, mut is_unbounded) = (Vec::new(), false);
     for (tile, bounds) in tiles {
         let Some([left, low, right, high]) = bounds else {
             kept.push(tile);
+            is_unbounded = true;
             continue;
         };
         let covered: Vec<[usize; 2]> = (0..PLACES * PLACES)
@@ -250,7 +288,9 @@ fn newest_of(mut tiles: Vec<(SurveyTile, Option<[f64; 4]>)>, area_box: &[f64; 4]
             covered.iter().for_each(|&[row, column]| is_taken[row][column] = true);
         }
     }
-    kept
+    let taken = is_taken.as_flattened().iter().filter(|taken| **taken).count();
+    let share = if is_unbounded { 1.0 } else { taken as f64 / (PLACES * PLACES) as f64 };
+    (kept, share)
 }
 
 #[cfg(test)]
@@ -267,18 +307,23 @@ mod tests {
         let new = |name: &str, bounds| (tile(name, Some("2024-01-01")), Some(bounds));
         let area = [0.0, 0.0, 2.0, 2.0];
         let names = |tiles| {
-            let mut names: Vec<_> = newest_of(tiles, &area).into_iter().map(|tile| tile.address).collect();
+            let (kept, share) = newest_of(tiles, &area);
+            let mut names: Vec<_> = kept.into_iter().map(|tile| tile.address).collect();
             names.sort();
-            names
+            (names, share)
         };
         let (west, east) = ([-3.0, -3.0, 1.01, 5.0], [0.99, -3.0, 5.0, 5.0]);
         // neighbours overlap by a margin
-        assert_eq!(names(vec![old("a", west), old("b", east), new("c", west), new("d", east)]), ["c", "d"]);
+        let (found, share) = names(vec![old("a", west), old("b", east), new("c", west), new("d", east)]);
+        assert_eq!((found, share), (vec!["c".to_owned(), "d".to_owned()], 1.0));
         // the new survey ends in the area
-        assert_eq!(names(vec![old("a", west), old("b", east), new("c", west)]), ["b", "c"]);
+        let (found, share) = names(vec![old("a", west), old("b", east), new("c", west)]);
+        assert_eq!((found, share), (vec!["b".to_owned(), "c".to_owned()], 1.0));
+        assert_eq!(names(vec![new("c", west)]).1, 0.5);
         // tiles beside the area, twice the same, and without a box
         let beside = new("e", [3.0, 3.0, 4.0, 4.0]);
-        assert_eq!(names(vec![beside, new("c", west), new("c", west), (tile("f", None), None)]), ["c", "f"]);
+        let (found, _) = names(vec![beside, new("c", west), new("c", west), (tile("f", None), None)]);
+        assert_eq!(found, ["c", "f"]);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::table::SurveyArea;
-use super::tiles::{FoundSurvey, SurveyTile, first_with_tiles, middle_in};
+use super::tiles::{FoundSurvey, SurveyTile, best_covering, middle_in};
 use crate::atomic;
 use crate::las::read_las_head;
 use crate::read_cloud::read_cloud;
@@ -19,7 +19,7 @@ use belvedere_data::parameter::Parameter;
 use belvedere_data::{Error, PointCloud, Result};
 
 /// Maximum radius of an area that becomes one cloud, metres: 80 million points of a dense survey, 3 GB.
-const MAX_CLOUD_RADIUS: f64 = 1000.0;
+pub const MAX_CLOUD_RADIUS: f64 = 1000.0;
 /// Bytes between two looks at whether to go on.
 const BLOCK_BYTES: usize = 1 << 20;
 
@@ -36,7 +36,7 @@ pub fn read_area(found: &FoundSurvey, area: &SurveyArea, control: &Control<'_>) 
             expected: "at most 1000 m for a single cloud; larger areas come as whole tiles",
         });
     }
-    let found = first_with_tiles(std::slice::from_ref(found))?;
+    let found = best_covering(std::slice::from_ref(found))?;
     if let Some(archive) = found.tiles.iter().find(|tile| tile.is_archive()) {
         let what = "is an archive: take whole tiles into a folder, and unpack them";
         return Err(Error::malformed(&hidden(Path::new(&archive.address)), what));

@@ -4,8 +4,8 @@ use belvedere_data::control::Control;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, PointCloud};
 use belvedere_io::open_surveys::{
-    FoundSurvey, OpenSurvey, SurveyArea, SurveyTile, TileIndex, download_tile, find_surveys, find_tiles, read_area,
-    surveys_at, write_origin,
+    FoundSurvey, OpenSurvey, SurveyArea, SurveyTile, TileIndex, best_covering, download_tile, find_surveys, find_tiles,
+    read_area, surveys_at, write_origin,
 };
 
 use crate::sources::{cloud, file};
@@ -67,9 +67,8 @@ fn sorted(cloud: &PointCloud) -> Vec<([i64; 3], u16)> {
     points
 }
 
-fn found(survey: OpenSurvey, area: &SurveyArea) -> FoundSurvey {
-    let tiles = find_tiles(&survey, area, &Control::none()).unwrap();
-    FoundSurvey { survey, tiles, failure: None }
+fn found(survey: &OpenSurvey, area: &SurveyArea) -> FoundSurvey {
+    find_tiles(survey, area, &Control::none()).unwrap()
 }
 
 #[test]
@@ -78,7 +77,7 @@ fn points_of_an_area_are_those_of_its_squares_within_it() {
     let server = WebServer::start(tiles(&cloud), Manner::Parts);
     let middle = [154_995.0, 463_003.0];
     let area = area(middle, 20.0);
-    let found = found(squares(&server), &area);
+    let found = found(&squares(&server), &area);
     assert_eq!(found.tiles.len(), 4);
     let (taken, _) = read_area(&found, &area, &Control::none()).unwrap();
     // a place in degrees comes back within a micrometre, and points lie on millimetres
@@ -98,10 +97,19 @@ fn squares_without_a_file_are_no_tiles_and_a_place_without_any_is_left_out() {
     files.remove(0);
     let server = WebServer::start(files, Manner::Parts);
     let there = find_tiles(&squares(&server), &area([155_000.0, 463_000.0], 20.0), &Control::none()).unwrap();
-    let addresses: Vec<_> = there.into_iter().map(|tile| tile.address).collect();
+    // a quarter of the square is missing
+    assert_eq!((there.covered_percent, there.is_whole()), (75.0, false));
+    assert!(there.part_in_words().unwrap().contains("75 %"));
+    let addresses: Vec<_> = there.tiles.iter().map(|tile| tile.address.clone()).collect();
     assert_eq!(addresses, NAMES[1..].iter().map(|name| server.address(name)).collect::<Vec<_>>());
     let elsewhere = area([150_000.0, 463_000.0], 20.0);
     assert_eq!(find_surveys(&[squares(&server)], &elsewhere, &Control::none()).unwrap(), []);
+    // one that covers all of it comes before a newer one that does not
+    let older = FoundSurvey { covered_percent: 100.0, ..there.clone() };
+    let least = FoundSurvey { covered_percent: 10.0, ..there.clone() };
+    let best = |found: &[FoundSurvey]| best_covering(found).unwrap().covered_percent;
+    assert_eq!(best(&[there.clone(), older]), 100.0);
+    assert_eq!(best(&[least, there]), 75.0);
 }
 
 #[test]
@@ -154,7 +162,7 @@ fn whole_tiles_are_files_byte_for_byte_and_come_once() {
         let server = WebServer::start(files.clone(), manner);
         let folder = folder.path().join(format!("{manner:?}"));
         std::fs::create_dir(&folder).unwrap();
-        let found = found(squares(&server), &area([154_950.0, 462_950.0], 20.0));
+        let found = found(&squares(&server), &area([154_950.0, 462_950.0], 20.0));
         let path = download_tile(&found.tiles[0], &folder, &Control::none()).unwrap();
         assert_eq!(path, folder.join(NAMES[0]));
         assert!(std::fs::read(&path).unwrap() == files[0].1, "{manner:?}");
@@ -183,7 +191,12 @@ fn names_and_places_beyond_the_table_are_refused_and_the_origin_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("place.origin.json");
     let tile = SurveyTile { address: "https://a.example/b.laz?sig=secret".to_owned(), bytes: None, date: None };
-    write_origin(&path, &FoundSurvey { survey: surveys[0].clone(), tiles: vec![tile], failure: None }, &here).unwrap();
+    write_origin(
+        &path,
+        &FoundSurvey { survey: surveys[0].clone(), tiles: vec![tile], covered_percent: 100.0, failure: None },
+        &here,
+    )
+    .unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     let origin: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!((&origin["licence"], &origin["radius_m"]), (&"CC BY 4.0".into(), &50.0.into()));
@@ -192,7 +205,8 @@ fn names_and_places_beyond_the_table_are_refused_and_the_origin_is_written() {
 
 #[test]
 fn archives_are_refused_with_the_way_around() {
-    let mut found = found(squares(&WebServer::start(tiles(&cloud(100)), Manner::Parts)), &area([155e3, 463e3], 5.0));
+    let server = WebServer::start(tiles(&cloud(100)), Manner::Parts);
+    let mut found = found(&squares(&server), &area([155e3, 463e3], 5.0));
     found.tiles[0].address = "https://a.example/b.las.zip".to_owned();
     let error = read_area(&found, &area([155e3, 463e3], 5.0), &Control::none()).unwrap_err().to_string();
     assert!(error.contains("b.las.zip") && error.contains("unpack"), "{error}");

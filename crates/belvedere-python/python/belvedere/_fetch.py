@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from collections.abc import Sequence
 from typing import Any
 
 from . import _core
 from ._cloud import Cloud, cloud_of
-from ._errors import wrong
+from ._errors import BelvedereWarning, wrong
 from ._inputs import Progress, check_finite, reporter
 
 
@@ -20,7 +21,10 @@ def open_surveys(
     surveys: str | os.PathLike[str] | None = None,
     progress: Progress = None,
 ) -> list[dict[str, Any]]:
-    """The published point clouds that cover a place.
+    """The published point clouds that may cover a place.
+
+    Surveys are found by boxes around their areas, and by their tiles where a service tells them. The list is empty
+    where a survey has no tile.
 
     Parameters
     ----------
@@ -36,8 +40,8 @@ def open_surveys(
     Returns
     -------
     list of dict
-        For each survey ``name``, ``title``, ``licence``, ``attribution``, ``page`` and ``tiles`` (address, and bytes
-        and date where they are known). Surveys whose tiles people choose on a page have no tiles, and those that
+        For each survey ``name``, ``title``, ``licence``, ``attribution``, ``page``, ``tiles`` (address, and bytes and
+        date where they are known) and ``covered_percent``, the share of the square that they cover. Surveys whose tiles people choose on a page have no tiles, and those that
         were not reached have a ``failure``.
 
     Raises
@@ -68,7 +72,7 @@ def fetch(
 ) -> Cloud:
     """The points of an open survey around a place.
 
-    Of COPC tiles only the parts that meet the square around the place are transferred, of others whole tiles.
+    COPC files are read in part. Other files are downloaded whole, and points outside the square are then dropped.
 
     Parameters
     ----------
@@ -77,7 +81,7 @@ def fetch(
     radius : float
         Distance to the sides of the square around it, 1 to 1000 metres.
     survey : str, optional
-        Name of the survey, as :func:`open_surveys` lists them; the first with tiles if not given.
+        Name of the survey, as :func:`open_surveys` lists them; the first that covers the square if not given.
     surveys : path, optional
         A table of surveys (``.json``) instead of that of the package.
     progress : bool or callable, optional
@@ -95,12 +99,19 @@ def fetch(
     OSError
         For servers that do not answer.
 
+    Warns
+    -----
+    BelvedereWarning
+        Where the tiles cover a part of the square only.
+
     Examples
     --------
     >>> cloud = belvedere.fetch((52.0116, 4.3571), radius=150)  # doctest: +SKIP
     >>> belvedere.Scene(cloud).sun_hours("2026-03-21")  # doctest: +SKIP
     """
-    core, text, chosen = _core.fetch(_area(at, radius, survey, surveys), reporter(progress))
+    core, text, chosen, part = _core.fetch(_area(at, radius, survey, surveys), reporter(progress))
+    if part is not None:
+        warnings.warn(part, BelvedereWarning, stacklevel=2)
     return cloud_of(core, {**json.loads(text), "survey": json.loads(chosen)})
 
 
