@@ -15,6 +15,7 @@ use belvedere_data::vector::{cross, dot, length, sub, to_f32, unit};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 
 /// Half of the angle that the sun subtends, radians: 9.3 mrad (Ho et al. 2011).
 const SUN_RADIUS: f64 = 0.00465;
@@ -50,6 +51,19 @@ pub struct GlareParams {
     /// Angle by which the surface spreads a beam beyond the width of the sun, to each side, radians, 0 to 0.2. Default:
     /// 13.1 mrad (0.75°), twice the slope error of 6.55 mrad of smooth glass (Ho et al. 2011).
     pub scatter: f64,
+    /// Minimum angle between the reflection and the sun itself, as the eye sees both, radians, 0 to π: nearer to it the
+    /// sun dazzles anyway. Default: 0. German authorities take 10° (LAI 2012, annex 2).
+    pub min_separation: f64,
+}
+
+/// Glare at an eye.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct EyeGlare {
+    /// Stretches of each reflector.
+    pub of_reflectors: Vec<Vec<GlareStretch>>,
+    /// Stretches in which any of them dazzles. A step has an after-image if one of them gives it, and is unproven if
+    /// all are.
+    pub of_any: Vec<GlareStretch>,
 }
 
 /// Time without a break in which a reflector dazzles an observer.
@@ -76,7 +90,7 @@ struct Reflection {
 
 impl Default for GlareParams {
     fn default() -> Self {
-        Self { scatter: 0.0131 }
+        Self { scatter: 0.0131, min_separation: 0.0 }
     }
 }
 
@@ -86,11 +100,17 @@ impl GlareParams {
     /// # Errors
     /// [`Error::InvalidParameter`].
     pub fn validate(&self) -> Result<()> {
-        if (0.0..=0.2).contains(&self.scatter) {
-            return Ok(());
+        let invalid = |parameter, radians: f64, expected| {
+            let value = format!("{} degrees", radians.to_degrees());
+            Err(Error::InvalidParameter { parameter, value, expected })
+        };
+        if !(0.0..=0.2).contains(&self.scatter) {
+            return invalid(Parameter::Scatter, self.scatter, "0 to 11.4 degrees");
         }
-        let value = format!("{} degrees", self.scatter.to_degrees());
-        Err(Error::InvalidParameter { parameter: Parameter::Scatter, value, expected: "0 to 11.4 degrees" })
+        if !(0.0..=PI).contains(&self.min_separation) {
+            return invalid(Parameter::MinSeparation, self.min_separation, "0 to 180 degrees");
+        }
+        Ok(())
     }
 }
 
@@ -132,6 +152,17 @@ impl Reflector {
         std::array::from_fn(|i| self.center[i] + across * self.sides[0][i] + along * self.sides[1][i])
     }
 
+    /// The place before its middle that light leaves from.
+    #[must_use]
+    pub fn front(&self) -> [f64; 3] {
+        self.lifted(self.center)
+    }
+
+    /// A place in front of one on the surface.
+    fn lifted(&self, place: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|i| place[i] + TARGET_LIFT * self.normal[i])
+    }
+
     /// The direction in which `eye` sees the sun in the plane of the reflector; `None` where one of them is behind it.
     fn mirrored(&self, eye: [f64; 3], to_sun: [f64; 3]) -> Option<[f64; 3]> {
         let cosine = dot(self.normal, to_sun);
@@ -162,7 +193,7 @@ impl Reflector {
         let from_center = sub(eye, self.center);
         let distance = length(from_center).max(f64::MIN_POSITIVE);
         let area = 4.0 * self.half[0] * self.half[1] * dot(self.normal, from_center).abs() / distance;
-        2.0 * (area / std::f64::consts::PI).sqrt() / distance
+        2.0 * (area / PI).sqrt() / distance
     }
 }
 
@@ -184,8 +215,7 @@ fn nearest_on_edge(eye: [f64; 3], towards: [f64; 3], from: [f64; 3], to: [f64; 3
     tried.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_else(|| at(0.0))
 }
 
-/// Computes the stretches of glare of each pair of `eyes`, local metres, and `reflectors`: a list for each, those of
-/// the first eye first. `direct` is the direct radiation of each direction of `schedule`, W/m², (D). An eye that is not
+/// Computes the glare of `reflectors` at each of `eyes`, local metres. `direct` is the direct radiation of each direction of `schedule`, W/m², (D). An eye that is not
 /// finite has none. Progress counts pairs.
 ///
 /// The sun counts as a disc, and the reflector spreads its beam by [`GlareParams::scatter`]. The line from the place of
@@ -199,29 +229,43 @@ pub fn glare(
     (schedule, direct): (&SunSchedule, &[f64]),
     params: &GlareParams,
     control: &Control<'_>,
-) -> Result<Vec<Vec<GlareStretch>>> {
+) -> Result<Vec<EyeGlare>> {
     params.validate()?;
     let expected = schedule.directions.len();
     if direct.len() != expected {
         return Err(Error::LengthMismatch { what: "direct radiation", expected, found: direct.len() });
     }
-    let reach = SUN_RADIUS + params.scatter;
-    let of_pair = |pair: usize| {
-        control.check()?;
-        let (eye, reflector) = (eyes[pair / reflectors.len()], &reflectors[pair % reflectors.len()]);
-        let reflections: Vec<Option<Reflection>> = match eye.iter().all(|v| v.is_finite()) {
-            true => schedule
-                .directions
-                .par_iter()
-                .zip(direct)
-                .map(|(&to_sun, &direct)| reflection(scene, (eye, reflector), (to_sun, direct), reach))
-                .collect(),
-            false => vec![None; expected],
-        };
-        control.advance(1);
-        Ok(stretches(schedule, &reflections))
+    let of_pair = |eye: [f64; 3], reflector: &Reflector| -> Vec<Option<Reflection>> {
+        if !eye.iter().all(|v| v.is_finite()) {
+            return vec![None; expected];
+        }
+        let suns = schedule.directions.par_iter().zip(direct);
+        suns.map(|(&to_sun, &direct)| reflection(scene, (eye, reflector), (to_sun, direct), params)).collect()
     };
-    (0..eyes.len() * reflectors.len()).map(of_pair).collect()
+    let of_eye = |&eye: &[f64; 3]| {
+        let mut any = vec![None; expected];
+        let mut of_reflectors = Vec::new();
+        for reflector in reflectors {
+            control.check()?;
+            let reflections = of_pair(eye, reflector);
+            any = any.into_iter().zip(&reflections).map(|(any, &own)| Reflection::either(any, own)).collect();
+            of_reflectors.push(stretches(schedule, &reflections));
+            control.advance(1);
+        }
+        Ok(EyeGlare { of_reflectors, of_any: stretches(schedule, &any) })
+    };
+    eyes.iter().map(of_eye).collect()
+}
+
+impl Reflection {
+    /// What two reflections at the same time are together.
+    fn either(a: Option<Self>, b: Option<Self>) -> Option<Self> {
+        let (Some(one), Some(other)) = (a, b) else { return a.or(b) };
+        Some(Self {
+            has_after_image: one.has_after_image || other.has_after_image,
+            is_unproven: one.is_unproven && other.is_unproven,
+        })
+    }
 }
 
 /// The reflection of a sun in a reflector that reaches an eye.
@@ -229,10 +273,15 @@ fn reflection(
     scene: &MedialScene,
     (eye, reflector): ([f64; 3], &Reflector),
     (to_sun, direct): ([f64; 3], f64),
-    reach: f64,
+    params: &GlareParams,
 ) -> Option<Reflection> {
+    let reach = SUN_RADIUS + params.scatter;
     let place = reflector.nearest_place(eye, to_sun, reach)?;
-    let start: [f64; 3] = std::array::from_fn(|i| place[i] + TARGET_LIFT * reflector.normal[i]);
+    let seen = unit(sub(place, eye))?;
+    if length(cross(seen, to_sun)).atan2(dot(seen, to_sun)) < params.min_separation {
+        return None;
+    }
+    let start = reflector.lifted(place);
     let to_eye = sub(eye, start);
     let distance = length(to_eye);
     let to_eye = unit(to_eye)?;
@@ -283,26 +332,6 @@ fn stretches(schedule: &SunSchedule, reflections: &[Option<Reflection>]) -> Vec<
     joined
 }
 
-/// Returns the time in which any of several reflectors dazzles: their stretches joined. Hours of after-images and
-/// unproven hours are at most as long as a stretch.
-#[must_use]
-pub fn glare_of_any<'a>(reflectors: impl IntoIterator<Item = &'a [GlareStretch]>) -> Vec<GlareStretch> {
-    let mut all: Vec<GlareStretch> = reflectors.into_iter().flatten().copied().collect();
-    all.sort_by(|a, b| a.day.cmp(&b.day).then(a.start.total_cmp(&b.start)));
-    let mut joined: Vec<GlareStretch> = Vec::new();
-    for stretch in all {
-        match joined.last_mut() {
-            Some(last) if last.day == stretch.day && stretch.start <= last.end + ROUNDING => {
-                last.end = last.end.max(stretch.end);
-                last.after_image = (last.after_image + stretch.after_image).min(last.hours());
-                last.unproven = (last.unproven + stretch.unproven).min(last.hours());
-            }
-            _ => joined.push(stretch),
-        }
-    }
-    joined
-}
-
 /// Minutes of stretches in each hour of the clock, of each month, (12, 24).
 #[must_use]
 pub fn glare_by_hour(stretches: &[GlareStretch], schedule: &SunSchedule) -> [[f32; 24]; 12] {
@@ -325,7 +354,7 @@ mod tests {
 
     /// A pane of 2 m by 1 m in a wall that faces south, 10 m up.
     fn pane() -> Reflector {
-        Reflector::of(&Window::new([0.0, 0.0, 10.0], std::f64::consts::PI, FRAC_PI_2, Some([2.0, 1.0]))).unwrap()
+        Reflector::of(&Window::new([0.0, 0.0, 10.0], PI, FRAC_PI_2, Some([2.0, 1.0]))).unwrap()
     }
 
     fn direction(azimuth_deg: f64, elevation_deg: f64) -> [f64; 3] {
@@ -373,7 +402,7 @@ mod tests {
                 let seen = unit(sub(place, eye)).unwrap();
                 length(cross(seen, towards)).atan2(dot(seen, towards))
             };
-            let found = angle_to(reflector.nearest_place(eye, sun, std::f64::consts::PI).unwrap());
+            let found = angle_to(reflector.nearest_place(eye, sun, PI).unwrap());
             let steps = 200;
             let part = |step: i32, half: f64| half * (2.0 * f64::from(step) / f64::from(steps) - 1.0);
             let grid = (0..=steps).flat_map(|i| (0..=steps).map(move |j| [i, j]));
@@ -395,11 +424,12 @@ mod tests {
     }
 
     #[test]
-    fn stretches_join_and_hours_of_the_clock_add_up() {
-        let stretch = |start: f32, end: f32| GlareStretch { day: 0, start, end, after_image: 0.1, unproven: 0.0 };
-        let any = glare_of_any([&[stretch(8.0, 8.5), stretch(10.0, 10.25)][..], &[stretch(8.25, 9.5)]]);
-        assert_eq!(any.iter().map(|one| [one.start, one.end]).collect::<Vec<_>>(), [[8.0, 9.5], [10.0, 10.25]]);
-        assert!((any[0].after_image - 0.2).abs() < 1e-6);
+    fn two_reflections_together_are_strong_if_one_is_and_unproven_if_both_are() {
+        let one = |has_after_image, is_unproven| Some(Reflection { has_after_image, is_unproven });
+        assert_eq!(Reflection::either(one(true, true), one(false, false)), one(true, false));
+        assert_eq!(Reflection::either(one(false, true), one(false, true)), one(false, true));
+        assert_eq!(Reflection::either(None, one(false, true)), one(false, true));
+        assert_eq!(Reflection::either(None, None), None);
     }
 
     #[test]
@@ -409,7 +439,8 @@ mod tests {
         }
         assert!(Reflector::of(&Window::new([f64::NAN; 3], 0.0, 0.5, Some([1.0, 1.0]))).is_err());
         for scatter in [-0.01, 0.3, f64::NAN] {
-            assert!(GlareParams { scatter }.validate().is_err());
+            assert!(GlareParams { scatter, ..GlareParams::default() }.validate().is_err());
+            assert!(GlareParams { min_separation: 20.0 * scatter, ..GlareParams::default() }.validate().is_err());
         }
         assert!(GlareParams::default().validate().is_ok());
     }

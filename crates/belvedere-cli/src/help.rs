@@ -236,6 +236,9 @@ pub(crate) fn command() -> Command {
     let command = command.mut_subcommand("glare", |sub| {
         sub.mut_arg("step", |step| step.help("Time between two sun positions in minutes, 1/6 to 60 [default: 1]"))
             .mut_arg("year", |year| year.help("Year of days that are given without a year; without days, all of it"))
+            .mut_arg("min_elevation", |least| {
+                least.help("Minimum elevation of the sun in degrees; lower suns are ignored [default: 0]")
+            })
     });
     let template = overview(&command);
     command.help_template(template)

@@ -86,6 +86,7 @@ pub(crate) fn flags_of(parameter: Parameter) -> &'static [&'static str] {
         Parameter::Window => &["--windows", "--reflectors"],
         Parameter::Reflector => &["--reflectors"],
         Parameter::Scatter => &["--scatter-deg"],
+        Parameter::MinSeparation => &["--from-sun-deg"],
         Parameter::RoofLength => &["--panel"],
         Parameter::RoofAngle => &["--min-area"],
         Parameter::ModuleEfficiency => &["--module-efficiency"],

@@ -241,6 +241,8 @@ parameters! {
     Reflector => "reflector",
     /// Angle by which reflectors spread light.
     Scatter => "scatter",
+    /// Minimum angle between a reflection and the sun itself.
+    MinSeparation => "angle from the sun",
     /// Name of an object of a mesh.
     Object => "object",
     /// Size and place of a raster.

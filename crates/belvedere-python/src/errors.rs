@@ -78,6 +78,7 @@ fn keyword(parameter: Parameter) -> &'static str {
         Parameter::Spacing => "spacing",
         Parameter::Reflector => "reflectors",
         Parameter::Scatter => "scatter_deg",
+        Parameter::MinSeparation => "from_sun_deg",
         Parameter::SurveyPlace => "at",
         Parameter::SunCell => "sun_cell_deg",
         Parameter::SunDirection => "sun",

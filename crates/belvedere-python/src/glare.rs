@@ -24,6 +24,7 @@ pub(crate) struct GlareKeywords {
     observer_height: Option<f64>,
     ground: Option<String>,
     scatter_deg: Option<f64>,
+    from_sun_deg: Option<f64>,
 }
 
 /// Columns of pairs, those by hour, and remarks.
@@ -52,6 +53,7 @@ impl PyScene {
             days: days.chosen(),
             place: place.chosen()?,
             scatter_deg: keywords.scatter_deg,
+            from_sun_deg: keywords.from_sun_deg,
         };
         let eyes = ask::Places::Eyes(standing_observers(&observers, &scene)?);
         let answers = run(py, progress, move |control| ask::ask(&scene, &question, &eyes, control))?;

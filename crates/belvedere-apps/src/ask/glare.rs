@@ -2,15 +2,16 @@
 
 use super::observers::{Eyes, Observers, check_height};
 use super::sections::{LinesSection, PeriodSection};
-use super::sun::{Days, SunPlace, sun_days_above};
+use super::sun::{Days, SunPlace, remark_on_solar_hours, sun_days_above};
 use super::windows::GivenWindow;
 use super::{Answers, Ask, Context, Places, Remark, Scene};
-use crate::glare::{GlareParams, GlareStretch, Reflector, glare, glare_by_hour, glare_of_any};
+use crate::eyes::{EyeFault, fault_of};
+use crate::glare::{EyeGlare, GlareParams, GlareStretch, Reflector, glare, glare_by_hour};
 use crate::irradiance::{ClearSky, extraterrestrial};
 use crate::result_columns::{ResultColumn, ResultValues};
 use crate::sun::{Binning, Date, Site, SunSchedule, Zone};
 use belvedere_core::ground::GroundPoints;
-use belvedere_core::query::UnprovenAs;
+use belvedere_core::query::{MedialScene, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::report::{clock_time, counted, rounded};
 use belvedere_data::{Error, Parameter, Result};
@@ -36,6 +37,8 @@ pub struct GlareQuestion {
     pub place: SunPlace,
     /// Angle by which reflectors spread a beam to each side, degrees, 0 to 11.4; `None` for 0.75.
     pub scatter_deg: Option<f64>,
+    /// Minimum angle between a reflection and the sun itself, degrees, 0 to 180; `None` for 0.
+    pub from_sun_deg: Option<f64>,
 }
 
 /// Glare of each observer.
@@ -49,10 +52,8 @@ pub struct GlareResults {
     pub schedule: SunSchedule,
     /// Clock of the hours.
     pub zone: Zone,
-    /// Stretches of each pair, those of the first observer first.
-    pub pairs: Vec<Vec<GlareStretch>>,
-    /// Stretches of each observer, of all reflectors together.
-    pub of_observers: Vec<Vec<GlareStretch>>,
+    /// Glare of each observer; none for one that cannot look.
+    pub of_observers: Vec<EyeGlare>,
 }
 
 /// Glare of a reflector, or of all of them, at an observer.
@@ -68,6 +69,8 @@ pub struct GlareSummary {
     pub days: usize,
     /// Longest glare without a break, minutes.
     pub longest_min: f64,
+    /// Maximum of a day, minutes.
+    pub max_day_min: f64,
     /// Earliest and latest time of glare, hours on the clocks; `None` without glare.
     pub between: Option<[f64; 2]>,
     /// First and last day of the period with glare; `None` without glare.
@@ -93,9 +96,9 @@ impl GlareSummary {
         let sum = |hours: &dyn Fn(&GlareStretch) -> f32| {
             stretches.iter().fold(0.0, |sum: f64, one| sum + f64::from(hours(one)))
         };
-        let mut days: Vec<usize> = stretches.iter().map(|stretch| stretch.day).collect();
-        days.dedup();
-        let date = |day: Option<&usize>| Some(schedule.days.get(*day?)?.date);
+        let of_days: Vec<&[GlareStretch]> = stretches.chunk_by(|a, b| a.day == b.day).collect();
+        let of_day = |day: &&[GlareStretch]| day.iter().map(|stretch| f64::from(stretch.hours())).sum::<f64>();
+        let date = |day: Option<&&[GlareStretch]>| Some(schedule.days.get(day?.first()?.day)?.date);
         let start = stretches.iter().map(|stretch| f64::from(stretch.start)).reduce(f64::min);
         let end = stretches.iter().map(|stretch| f64::from(stretch.end)).reduce(f64::max);
         let longest = stretches.iter().map(|stretch| f64::from(stretch.hours())).fold(0.0, f64::max);
@@ -103,10 +106,11 @@ impl GlareSummary {
             hours: sum(&GlareStretch::hours),
             after_image_hours: sum(&|stretch| stretch.after_image),
             unproven_hours: sum(&|stretch| stretch.unproven),
-            days: days.len(),
+            days: of_days.len(),
             longest_min: 60.0 * longest,
+            max_day_min: 60.0 * of_days.iter().map(of_day).fold(0.0, f64::max),
             between: start.zip(end).map(|(start, end)| [start, end]),
-            dates: date(days.first()).zip(date(days.last())).map(|(first, last)| [first, last]),
+            dates: date(of_days.first()).zip(date(of_days.last())).map(|(first, last)| [first, last]),
         }
     }
 }
@@ -121,7 +125,11 @@ impl GlareQuestion {
     }
 
     fn params(&self) -> GlareParams {
-        self.scatter_deg.map_or_else(GlareParams::default, |scatter| GlareParams { scatter: scatter.to_radians() })
+        let usual = GlareParams::default();
+        GlareParams {
+            scatter: self.scatter_deg.map_or(usual.scatter, f64::to_radians),
+            min_separation: self.from_sun_deg.map_or(usual.min_separation, f64::to_radians),
+        }
     }
 
     fn schedule(&self, scene: &Scene, context: &mut Context) -> Result<(SunSchedule, Zone, Site)> {
@@ -194,12 +202,14 @@ impl Ask for GlareQuestion {
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, Some(schedule.directions.len())));
         let params = self.params();
         let direct = direct_radiation(&schedule, &site);
-        let pairs = control.stage("testing reflections", eyes.eyes.len() * reflectors.len(), || {
+        context.add(remark_on_reflectors_inside(&reflectors, &blockers));
+        let of_observers = control.stage("testing reflections", eyes.eyes.len() * reflectors.len(), || {
             glare(&blockers, (&eyes.eyes, &reflectors), (&schedule, &direct), &params, control)
         })?;
-        let of_observers = pairs.chunks(reflectors.len()).map(|own| glare_of_any(own.iter().map(Vec::as_slice)));
-        let of_observers: Vec<Vec<GlareStretch>> = of_observers.collect();
-        let found = GlareResults { eyes, reflector_count: reflectors.len(), schedule, zone, pairs, of_observers };
+        let found = GlareResults { eyes, reflector_count: reflectors.len(), schedule, zone, of_observers };
+        let all = (0..found.of_observers.len()).filter_map(|observer| found.of_observer(observer)?.between);
+        let hours = all.reduce(|[from, to], [start, end]| [from.min(start), to.max(end)]);
+        context.add(remark_on_solar_hours("glare is", hours.map(|v| v.map(|v| rounded(v, 2))), (&found.zone, &site)));
         found.summarise(&params, context);
         Ok(Answers::new(found, Vec::new()))
     }
@@ -232,18 +242,36 @@ fn remark_on_reflectors_outside(reflectors: &[GivenWindow], scene: &Scene) -> Op
     (count > 0).then(|| Remark::warning("reflectors-outside", text).with("count", count as f64))
 }
 
+/// A warning of reflectors in an obstacle, such as the wall that they belong to: no light leaves them.
+fn remark_on_reflectors_inside(reflectors: &[Reflector], scene: &MedialScene) -> Option<Remark> {
+    let is_inside =
+        |reflector: &&Reflector| matches!(fault_of(scene, None, reflector.front()), Some(EyeFault::InsideObstacle(_)));
+    let count = reflectors.iter().filter(is_inside).count();
+    let text = format!(
+        "the middle of {count} of {} reflectors lies inside an obstacle, such as the wall behind it: no light leaves it; \
+         move it outward",
+        reflectors.len()
+    );
+    (count > 0).then(|| Remark::warning("reflectors-inside-obstacle", text).with("count", count as f64))
+}
+
 impl GlareResults {
-    /// Glare of a pair.
+    /// Glare of a pair; `None` for an observer that cannot look.
     #[must_use]
-    pub fn of_pair(&self, observer: usize, reflector: usize) -> GlareSummary {
-        let stretches = self.pairs.get(observer * self.reflector_count + reflector);
-        GlareSummary::of(stretches.map_or(&[], Vec::as_slice), &self.schedule)
+    pub fn of_pair(&self, observer: usize, reflector: usize) -> Option<GlareSummary> {
+        let stretches = self.of_observers.get(observer)?.of_reflectors.get(reflector)?;
+        self.can_look(observer).then(|| GlareSummary::of(stretches, &self.schedule))
     }
 
-    /// Glare of an observer, of all reflectors together.
+    /// Glare of an observer, of all reflectors together; `None` for one that cannot look.
     #[must_use]
-    pub fn of_observer(&self, observer: usize) -> GlareSummary {
-        GlareSummary::of(self.of_observers.get(observer).map_or(&[], Vec::as_slice), &self.schedule)
+    pub fn of_observer(&self, observer: usize) -> Option<GlareSummary> {
+        let stretches = &self.of_observers.get(observer)?.of_any;
+        self.can_look(observer).then(|| GlareSummary::of(stretches, &self.schedule))
+    }
+
+    fn can_look(&self, observer: usize) -> bool {
+        self.eyes.eyes.get(observer).is_some_and(|eye| eye[0].is_finite())
     }
 
     /// A row for each pair, and with several reflectors one for each observer with reflector 0: all of them together.
@@ -255,27 +283,34 @@ impl GlareResults {
             (0..self.reflector_count).map(Some).chain(together).map(move |reflector| (observer, reflector))
         };
         let rows: Vec<(usize, Option<usize>)> = (0..self.of_observers.len()).flat_map(of_observer).collect();
-        let summaries: Vec<GlareSummary> = rows
+        let summaries: Vec<Option<GlareSummary>> = rows
             .iter()
-            .map(|&(observer, reflector)| {
-                reflector.map_or_else(|| self.of_observer(observer), |reflector| self.of_pair(observer, reflector))
+            .map(|&(observer, reflector)| match reflector {
+                Some(reflector) => self.of_pair(observer, reflector),
+                None => self.of_observer(observer),
             })
             .collect();
-        let whole = |name: &str, values: Vec<usize>| ResultColumn {
+        let whole = |name: &str, values: Vec<Option<usize>>| ResultColumn {
             name: name.to_owned(),
-            values: ResultValues::Whole(values.into_iter().map(|value| u64::try_from(value).ok()).collect()),
+            values: ResultValues::Whole(values.into_iter().map(|value| u64::try_from(value?).ok()).collect()),
         };
         let real = |name: &str, of: &dyn Fn(&GlareSummary) -> f64, decimals| {
-            ResultColumn::real(name, summaries.iter().map(of).collect(), decimals)
+            let values = summaries.iter().map(|one| one.as_ref().map_or(f64::NAN, of)).collect();
+            ResultColumn::real(name, values, decimals)
         };
         let clock = |name: &str, end: usize| ResultColumn {
             name: name.to_owned(),
             values: ResultValues::Clock(
-                summaries.iter().map(|one| one.between.map_or(f64::NAN, |between| between[end])).collect(),
+                summaries
+                    .iter()
+                    .map(|one| one.and_then(|one| one.between).map_or(f64::NAN, |ends| ends[end]))
+                    .collect(),
             ),
         };
         let day = |name: &str, end: usize| {
-            let date = |one: &GlareSummary| one.dates.map_or_else(String::new, |dates| dates[end].to_string());
+            let date = |one: &Option<GlareSummary>| {
+                one.and_then(|one| one.dates).map_or_else(String::new, |dates| dates[end].to_string())
+            };
             ResultColumn::words(name, summaries.iter().map(date).collect())
         };
         let name = |&(_, reflector): &(usize, Option<usize>)| match reflector {
@@ -283,26 +318,30 @@ impl GlareResults {
             None => "all".to_owned(),
         };
         vec![
-            whole("observer", rows.iter().map(|(observer, _)| observer + 1).collect()),
-            whole("reflector", rows.iter().map(|(_, reflector)| reflector.map_or(0, |number| number + 1)).collect()),
+            whole("observer", rows.iter().map(|(observer, _)| Some(observer + 1)).collect()),
+            whole("reflector", rows.iter().map(|(_, reflector)| Some(reflector.map_or(0, |own| own + 1))).collect()),
             ResultColumn::words("name", rows.iter().map(name).collect()),
             real("hours", &|one| one.hours, 3),
             real("after_image_hours", &|one| one.after_image_hours, 3),
             real("unproven_hours", &|one| one.unproven_hours, 3),
-            whole("days", summaries.iter().map(|one| one.days).collect()),
+            whole("days", summaries.iter().map(|one| Some(one.as_ref()?.days)).collect()),
             day("first_day", 0),
             day("last_day", 1),
             clock("earliest", 0),
             clock("latest", 1),
             real("longest_min", &|one| one.longest_min, 1),
+            real("max_day_min", &|one| one.max_day_min, 1),
         ]
     }
 
     /// A row for each observer and month: minutes of glare in each hour of the clock, of all reflectors together.
     #[must_use]
     pub fn columns_by_hour(&self) -> Vec<ResultColumn> {
-        let minutes: Vec<[[f32; 24]; 12]> =
-            self.of_observers.iter().map(|stretches| glare_by_hour(stretches, &self.schedule)).collect();
+        let of_observer = |(observer, glare): (usize, &EyeGlare)| match self.can_look(observer) {
+            true => glare_by_hour(&glare.of_any, &self.schedule),
+            false => [[f32::NAN; 24]; 12],
+        };
+        let minutes: Vec<[[f32; 24]; 12]> = self.of_observers.iter().enumerate().map(of_observer).collect();
         let rows = || (0..minutes.len()).flat_map(|observer| (0..12).map(move |month| (observer, month)));
         let number = |name: &str, of: &dyn Fn((usize, usize)) -> usize| ResultColumn {
             name: name.to_owned(),
@@ -318,8 +357,11 @@ impl GlareResults {
 
     fn summarise(&self, params: &GlareParams, context: &mut Context) {
         let observers = self.of_observers.len();
-        let all: Vec<GlareSummary> = (0..observers).map(|observer| self.of_observer(observer)).collect();
-        let sum = |hours: &dyn Fn(&GlareSummary) -> f64| rounded(all.iter().map(hours).sum(), 3);
+        let all: Vec<(usize, GlareSummary)> =
+            (0..observers).filter_map(|observer| Some((observer, self.of_observer(observer)?))).collect();
+        let sum = |hours: &dyn Fn(&GlareSummary) -> f64| {
+            rounded(all.iter().fold(0.0, |sum: f64, (_, one)| sum + hours(one)), 3)
+        };
         let section = GlareSection {
             observers,
             reflectors: self.reflector_count,
@@ -337,11 +379,11 @@ impl GlareResults {
             counted(observers, "observer"),
             counted(days, "day")
         ));
-        let mut order: Vec<usize> = (0..observers).collect();
-        order.sort_by(|&a, &b| all[b].hours.total_cmp(&all[a].hours));
-        for &observer in order.iter().take(MAX_LISTED) {
+        let mut order: Vec<&(usize, GlareSummary)> = all.iter().collect();
+        order.sort_by(|(_, a), (_, b)| b.hours.total_cmp(&a.hours));
+        for (observer, own) in order.into_iter().take(MAX_LISTED) {
             let name = if observers == 1 { String::new() } else { format!("observer {}: ", observer + 1) };
-            context.headline(format!("{name}{}", all[observer].in_words()));
+            context.headline(format!("{name}{}", own.in_words()));
         }
         context.report.glare = Some(section);
     }
@@ -362,11 +404,11 @@ impl GlareSummary {
             false => format!("on {} from {first} to {last}", counted(self.days, "day")),
         };
         format!(
-            "{:.1} h {when}, between {} and {}, {:.0} min at most without a break{after}",
+            "{:.1} h {when}, between {} and {}, at most {:.0} min a day{after}",
             self.hours,
             clock_time(from),
             clock_time(to),
-            self.longest_min
+            self.max_day_min
         )
     }
 }

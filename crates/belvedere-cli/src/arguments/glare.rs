@@ -20,6 +20,12 @@ pub(crate) struct GlareArguments {
     #[arg(long = "scatter-deg", value_name = "DEG", value_parser = finite::<f64>, allow_negative_numbers = true,
         help_heading = "Reflectors")]
     pub(crate) scatter: Option<f64>,
+    /// Count only reflections that lie at least so far from the sun itself, in degrees, 0 to 180 [default: 0]
+    ///
+    /// Nearer to the sun, it dazzles anyway. German authorities take 10.
+    #[arg(long = "from-sun-deg", value_name = "DEG", value_parser = finite::<f64>, allow_negative_numbers = true,
+        help_heading = "Reflectors")]
+    pub(crate) from_sun: Option<f64>,
     #[command(flatten, next_help_heading = "Reflectors")]
     pub(crate) north: NorthArguments,
     #[command(flatten)]

@@ -68,6 +68,7 @@ fn question(arguments: &GlareArguments, reflectors: Vec<GivenWindow>) -> Result<
         days,
         place: arguments.sun.place(&arguments.north)?,
         scatter_deg: arguments.scatter,
+        from_sun_deg: arguments.from_sun,
     })
 }
 
@@ -120,14 +121,16 @@ fn write_chart(output: &Path, found: &GlareResults) -> Result<()> {
         _ => [0.0; 2],
     });
     let light: Vec<[f64; 2]> = light.collect();
-    let pieces = found.of_observers.first().into_iter().flatten().map(|stretch| DayPiece {
+    let pieces = found.of_observers.first().into_iter().flat_map(|own| &own.of_any).map(|stretch| DayPiece {
         day: stretch.day,
         hours: [f64::from(stretch.start), f64::from(stretch.end)],
         color: if stretch.after_image > 0.0 { STRONG } else { WEAK },
     });
     let pieces: Vec<DayPiece> = pieces.collect();
-    let summary = found.of_observer(0);
-    let title = format!("Glare, {:.1} h on {} of {} days", summary.hours, summary.days, days.len());
+    let title = match found.of_observer(0) {
+        Some(own) => format!("Glare, {:.1} h on {} of {} days", own.hours, own.days, days.len()),
+        None => "Glare: the observer cannot look".to_owned(),
+    };
     let legend = [(STRONG, "after-images possible"), (WEAK, "weaker")];
     Ok(write_png(output, &day_chart(&labels, &light, &pieces, &legend, &title))?)
 }

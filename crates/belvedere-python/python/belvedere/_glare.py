@@ -35,6 +35,7 @@ class Glare:
         time_step_min: float | None = None,
         min_sun_elevation_deg: float | None = None,
         scatter_deg: float | None = None,
+        from_sun_deg: float | None = None,
         observer_height: float | None = None,
         ground: str | None = None,
         location: npt.ArrayLike | None = None,
@@ -54,11 +55,13 @@ class Glare:
         date, period, min_sun_elevation_deg, zone : optional
             As for `sun_hours`.
         year : int, optional
-            Year of dates; without dates, all of it counts.
+            Year of dates. Without dates all of it counts, a minute after the other.
         time_step_min : float, optional
             Minutes between two suns; 1 if not given.
         scatter_deg : float, optional
             Angle by which a surface spreads the beam to each side, 0 (a perfect mirror) to 11; 0.75 if not given.
+        from_sun_deg : float, optional
+            Count only reflections at least so far from the sun itself, degrees; 0 if not given.
         observer_height, ground : optional
             As for `horizon`.
         location, grid_north, progress : optional
@@ -69,18 +72,20 @@ class Glare:
         Table
             A row for each observer and reflector: ``hours`` of glare, ``after_image_hours``, ``unproven_hours``,
             ``days``, ``first_day`` and ``last_day`` (numpy dates), ``earliest`` and ``latest`` (hours on the clocks of
-            `zone`), ``longest_min``. Numbers count from 1; reflector 0 is all of them together. ``table.hours`` has a
-            table for each observer: minutes of glare in each hour (columns) of each month (rows).
+            `zone`), ``longest_min`` without a break, and ``max_day_min``, the maximum of a day. Numbers count from 1;
+            of several reflectors, number 0 is all of them together. NaN for observers that cannot look.
+            ``table.hours`` has a table for each observer: minutes of glare in each hour (columns) of each month (rows).
 
         Raises
         ------
         BelvedereError
-            For reflectors without a size, without days, where no observer is left, and for parameters out of range.
+            For reflectors without a size, without days and year, where no observer is left, and for parameters out of range.
 
         Warns
         -----
         BelvedereWarning
-            Of reflectors beside the cloud and of observers that cannot look.
+            Of reflectors beside the cloud or inside an obstacle, of observers that cannot look, and of glare in solar
+            time where no `zone` is given.
 
         References
         ----------
@@ -98,6 +103,7 @@ class Glare:
             time_step_min=time_step_min,
             min_sun_elevation_deg=min_sun_elevation_deg,
             scatter_deg=scatter_deg,
+            from_sun_deg=from_sun_deg,
             observer_height=observer_height,
         )
         columns = table_columns(
@@ -112,6 +118,7 @@ class Glare:
             "observer_height": observer_height,
             "ground": ground,
             "scatter_deg": scatter_deg,
+            "from_sun_deg": from_sun_deg,
         }
         pairs, by_hour, given = self._core.glare(
             keywords,
