@@ -215,8 +215,8 @@ fn nearest_on_edge(eye: [f64; 3], towards: [f64; 3], from: [f64; 3], to: [f64; 3
     tried.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_else(|| at(0.0))
 }
 
-/// Computes the glare of `reflectors` at each of `eyes`, local metres. `direct` is the direct radiation of each direction of `schedule`, W/m², (D). An eye that is not
-/// finite has none. Progress counts pairs.
+/// Computes the glare of `reflectors` at each of `eyes`, local metres. `direct` is the direct radiation of each
+/// direction of `schedule`, W/m², (D). An eye that is not finite has none. Progress counts pairs.
 ///
 /// The sun counts as a disc, and the reflector spreads its beam by [`GlareParams::scatter`]. The line from the place of
 /// the reflector nearest to the mirrored sun must be free to the sun and to the eye.
