@@ -141,8 +141,9 @@ impl Reflector {
         if !size.iter().all(|side| (SIDES[0]..=SIDES[1]).contains(side)) {
             return invalid(format!("{} m by {} m", size[0], size[1]), "with sides of 0.01 to 10000 m");
         }
-        // one that looks straight up has its width east
-        let across = unit(cross([0.0, 0.0, 1.0], normal)).unwrap_or([1.0, 0.0, 0.0]);
+        // the level side, by the azimuth also where it looks straight up; without one east
+        let (sin, cos) = window.azimuth.sin_cos();
+        let across = if window.azimuth.is_finite() { [-cos, sin, 0.0] } else { [1.0, 0.0, 0.0] };
         let sides = [across, cross(normal, across)];
         Ok(Self { center: window.center, normal, sides, half: size.map(|side| side / 2.0) })
     }
@@ -339,9 +340,13 @@ pub fn glare_by_hour(stretches: &[GlareStretch], schedule: &SunSchedule) -> [[f3
     for stretch in stretches {
         let Some(day) = schedule.days.get(stretch.day) else { continue };
         let month = usize::from(day.date.month().unsigned_abs()).saturating_sub(1).min(11);
-        for (hour, sum) in minutes[month].iter_mut().enumerate() {
-            let hour = to_f32(hour as f64);
-            *sum += 60.0 * (stretch.end.min(hour + 1.0) - stretch.start.max(hour)).max(0.0);
+        // the day of the sun may reach beyond the date
+        for shift in [-24.0, 0.0, 24.0] {
+            let (start, end) = (stretch.start + shift, stretch.end + shift);
+            for (hour, sum) in minutes[month].iter_mut().enumerate() {
+                let hour = to_f32(hour as f64);
+                *sum += 60.0 * (end.min(hour + 1.0) - start.max(hour)).max(0.0);
+            }
         }
     }
     minutes
@@ -430,6 +435,14 @@ mod tests {
         assert_eq!(Reflection::either(one(false, true), one(false, true)), one(false, true));
         assert_eq!(Reflection::either(None, one(false, true)), one(false, true));
         assert_eq!(Reflection::either(None, None), None);
+    }
+
+    #[test]
+    fn level_panels_lie_as_their_azimuth_says() {
+        let of = |tilt: f64| Reflector::of(&Window::new([0.0; 3], FRAC_PI_2, tilt, Some([20.0, 1.0]))).unwrap();
+        for (level, tilted) in of(0.0).sides.iter().zip(of(1e-9).sides) {
+            assert!(length(sub(*level, tilted)) < 1e-6, "{level:?} {tilted:?}");
+        }
     }
 
     #[test]

@@ -52,10 +52,13 @@ pub fn day_chart(
         let row = (hours.clamp(0.0, 24.0) * HOUR as f64).round() as usize;
         top + height - row
     };
-    let fill = |sheet: &mut Picture, number: usize, [from, to]: [f64; 2], color| {
-        let (high, low) = (row(to), row(from));
-        if number < labels.len() && high < low {
-            sheet.fill_rectangle([left + number * day, high], [day, low - high], color);
+    let fill = |sheet: &mut Picture, number: usize, hours: [f64; 2], color| {
+        // hours before and after the day are drawn at its other end
+        for shift in [-24.0, 0.0, 24.0] {
+            let [low, high] = hours.map(|hour| row(hour + shift));
+            if number < labels.len() && high < low {
+                sheet.fill_rectangle([left + number * day, high], [day, low - high], color);
+            }
         }
     };
     for (number, &hours) in light.iter().enumerate() {
@@ -90,6 +93,11 @@ mod tests {
         let count = (0..chart.height).flat_map(|y| (0..chart.width).map(move |x| [x, y]));
         let of_piece: Vec<[usize; 2]> = count.filter(|&[x, y]| chart.get(x, y) == Some(red)).collect();
         assert_eq!(of_piece.len(), DAY * HOUR);
+        // an hour before midnight and an hour after it
+        let late = DayPiece { hours: [23.0, 25.0], ..piece };
+        let chart = day_chart(&labels, &[], &[late], &[], "");
+        let count = (0..chart.height).flat_map(|y| (0..chart.width).map(move |x| [x, y]));
+        assert_eq!(count.filter(|&[x, y]| chart.get(x, y) == Some(red)).count(), 2 * DAY * HOUR);
         // beyond the days and upside down there is nothing to draw
         let odd = [
             DayPiece { day: 365, ..piece },

@@ -209,16 +209,42 @@ impl Seek for Remote {
     }
 }
 
-/// Returns the size of the file at `address`, bytes; `None` if the server has no such file.
+/// A file on a server.
+#[cfg(feature = "las")]
+pub(crate) struct FoundFile {
+    /// Its size, where the server says it.
+    pub(crate) bytes: Option<u64>,
+}
+
+/// Finds the file at `address`, without its content; `None` if the server has no such file, or a page in its place.
 ///
 /// # Errors
-/// Those of [`Remote::open`].
+/// Those of connecting and of the server.
 #[cfg(feature = "las")]
-pub(crate) fn size_of(address: &str) -> Result<Option<u64>> {
-    match Remote::open(address) {
-        Ok(file) => Ok(Some(file.size())),
+pub(crate) fn find(address: &str) -> Result<Option<FoundFile>> {
+    let found = patiently(|| {
+        let response = AGENT
+            .get(address)
+            .header(header::RANGE, "bytes=0-0")
+            .header(header::ACCEPT_ENCODING, "identity")
+            .call()
+            .map_err(|error| Failure { may_pass: is_passing(&error), error: Error::other(described(&error)) })?;
+        let text = |name| text_of(response.headers(), name);
+        let is_page = text(header::CONTENT_TYPE).is_some_and(|kind| kind.starts_with("text/html"));
+        let of_range = text(header::CONTENT_RANGE).and_then(ContentRange::parse).map(|range| range.size);
+        match response.status().as_u16() {
+            200 | 206 if is_page => Ok(None),
+            206 => Ok(Some(FoundFile { bytes: of_range })),
+            200 => {
+                let bytes = text(header::CONTENT_LENGTH).and_then(|length| length.parse().ok());
+                Ok(Some(FoundFile { bytes }))
+            }
+            status => Err(of_status(status)),
+        }
+    });
+    match found {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(error),
+        other => other,
     }
 }
 
@@ -228,7 +254,9 @@ pub(crate) fn size_of(address: &str) -> Result<Option<u64>> {
 /// Those of connecting and of the server, and answers of more than 32 MiB.
 #[cfg(feature = "las")]
 pub(crate) fn text(address: &str) -> Result<String> {
+    let mut pace = Pace::new(NO_PROGRESS);
     patiently(|| {
+        let start = Instant::now();
         let mut response = AGENT
             .get(address)
             .header(header::ACCEPT_ENCODING, "identity")
@@ -238,9 +266,7 @@ pub(crate) fn text(address: &str) -> Result<String> {
         if status != 200 {
             return Err(of_status(status));
         }
-        let mut bytes = Vec::new();
-        let mut reader = response.body_mut().with_config().limit(MAX_TEXT + 1).reader().take(MAX_TEXT + 1);
-        reader.read_to_end(&mut bytes).map_err(broken)?;
+        let bytes = read_body(response.body_mut(), MAX_TEXT + 1, (start, &mut pace))?;
         if bytes.len() as u64 > MAX_TEXT {
             return Err(lasting("the answer has more than 32 MiB; look at the page of the service".to_owned()));
         }
@@ -354,6 +380,16 @@ fn text_of(headers: &HeaderMap, name: header::HeaderName) -> Option<&str> {
 
 /// All of a body of `length` bytes, for which is waited since `start`.
 fn body(body: &mut Body, length: u64, (start, pace): (Instant, &mut Pace)) -> std::result::Result<Vec<u8>, Failure> {
+    let bytes = read_body(body, length, (start, pace))?;
+    if bytes.len() as u64 == length { Ok(bytes) } else { Err(broken(ErrorKind::UnexpectedEof.into())) }
+}
+
+/// A body up to its end, or to `length` bytes.
+fn read_body(
+    body: &mut Body,
+    length: u64,
+    (start, pace): (Instant, &mut Pace),
+) -> std::result::Result<Vec<u8>, Failure> {
     let mut reader = body.with_config().limit(length.saturating_add(1)).reader().take(length);
     let (mut bytes, mut block) = (Vec::new(), vec![0; BLOCK_BYTES]);
     loop {
@@ -369,7 +405,7 @@ fn body(body: &mut Body, length: u64, (start, pace): (Instant, &mut Pace)) -> st
     }
     pace.bytes += bytes.len() as u64;
     pace.waited += start.elapsed();
-    if bytes.len() as u64 == length { Ok(bytes) } else { Err(broken(ErrorKind::UnexpectedEof.into())) }
+    Ok(bytes)
 }
 
 fn broken(error: Error) -> Failure {

@@ -38,18 +38,20 @@ pub(crate) fn open_surveys(py: Python<'_>, area: AreaKeywords, progress: Option<
     json(&found)
 }
 
-/// The points of an area, the report on reading them and their survey, both as JSON, and a warning.
+/// The points of an area, the report on reading them and their survey, both as JSON, and warnings.
 #[pyfunction]
 pub(crate) fn fetch(
     py: Python<'_>,
     area: AreaKeywords,
     progress: Option<Py<PyAny>>,
-) -> PyResult<(Cloud, String, String, Option<String>)> {
-    let (cloud, report, chosen) = run(py, progress, move |control| {
+) -> PyResult<(Cloud, String, String, Vec<String>)> {
+    let (cloud, report, chosen, warnings) = run(py, progress, move |control| {
+        SurveyArea::around(area.at, area.radius)?.check_cloud()?;
         let (area, found) = area.find(control)?;
         let chosen = best_covering(&found)?;
         let (cloud, report) = read_area(chosen, &area, control)?;
-        Ok((cloud, report, chosen.clone()))
+        let warnings = found.iter().filter_map(FoundSurvey::failure_in_words).chain(chosen.part_in_words()).collect();
+        Ok((cloud, report, chosen.clone(), warnings))
     })?;
-    Ok((Cloud(Arc::new(cloud)), json(&report)?, json(&chosen)?, chosen.part_in_words()))
+    Ok((Cloud(Arc::new(cloud)), json(&report)?, json(&chosen)?, warnings))
 }

@@ -61,6 +61,9 @@ def test_the_program_takes_what_is_built_for_every_parameter(commands, binary, t
     table.write_text("x,y\n1,2\n")
     seen = 0
     for command in commands.values():
+        if command.name == "fetch":
+            # it misses no cloud, and goes to the internet: see the test in QGIS
+            continue
         for one in command.parameters:
             if one.kind in ("files", "written"):
                 continue

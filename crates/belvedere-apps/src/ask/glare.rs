@@ -3,7 +3,7 @@
 use super::observers::{Eyes, Observers, check_height};
 use super::sections::{LinesSection, PeriodSection};
 use super::sun::{Days, SunPlace, remark_on_solar_hours, sun_days_above};
-use super::windows::GivenWindow;
+use super::windows::{GivenWindow, with_number};
 use super::{Answers, Ask, Context, Places, Remark, Scene};
 use crate::eyes::{EyeFault, fault_of};
 use crate::glare::{EyeGlare, GlareParams, GlareStretch, Reflector, glare, glare_by_hour};
@@ -88,6 +88,7 @@ pub struct GlareSection {
     after_image_hours: f64,
     unproven_hours: f64,
     scatter_deg: f64,
+    from_sun_deg: f64,
     clear_sky: String,
 }
 
@@ -163,16 +164,9 @@ impl Ask for GlareQuestion {
                 expected: "at least one, with place, azimuth, tilt, width and height",
             });
         }
-        for (number, reflector) in (1..).zip(&self.reflectors) {
-            let of_window = |error| match error {
-                Error::InvalidParameter { value, expected, .. } => {
-                    let value = format!("number {number}, {value}");
-                    Error::InvalidParameter { parameter: Parameter::Reflector, value, expected }
-                }
-                other => other,
-            };
-            reflector.check().map_err(of_window)?;
-            Reflector::of(&reflector.in_grid(0.0)).map_err(of_window)?;
+        for (row, reflector) in self.reflectors.iter().enumerate() {
+            let checked = reflector.check().and_then(|()| Reflector::of(&reflector.in_grid(0.0)));
+            checked.map_err(|error| with_number((row, error)))?;
         }
         let days = self.stepped();
         if days.is_empty() {
@@ -324,7 +318,7 @@ impl GlareResults {
             real("hours", &|one| one.hours, 3),
             real("after_image_hours", &|one| one.after_image_hours, 3),
             real("unproven_hours", &|one| one.unproven_hours, 3),
-            whole("days", summaries.iter().map(|one| Some(one.as_ref()?.days)).collect()),
+            real("days", &|one| one.days as f64, 0),
             day("first_day", 0),
             day("last_day", 1),
             clock("earliest", 0),
@@ -369,6 +363,7 @@ impl GlareResults {
             after_image_hours: sum(&|one| one.after_image_hours),
             unproven_hours: sum(&|one| one.unproven_hours),
             scatter_deg: rounded(params.scatter.to_degrees(), 2),
+            from_sun_deg: rounded(params.min_separation.to_degrees(), 2),
             clear_sky: ClearSky::default().to_string(),
         };
         let days = self.schedule.days.len();

@@ -104,7 +104,7 @@ impl GivenWindow {
 }
 
 /// The error of a window with its number, from 1.
-fn with_number((row, error): (usize, Error)) -> Error {
+pub(super) fn with_number((row, error): (usize, Error)) -> Error {
     match error {
         Error::InvalidParameter { parameter, value, expected } => {
             Error::InvalidParameter { parameter, value: format!("number {}, {value}", row + 1), expected }

@@ -219,7 +219,8 @@ pub(crate) struct HorizonArguments {
     /// Horizon elevations (.csv), in the format of PVGIS (.txt) or PV*SOL (.hor), or a diagram (.png); repeatable
     ///
     /// .csv: azimuth and elevation in degrees, with one elevation column for each observer. .txt: the elevations of one
-    /// observer, one on each line, clockwise from north. .png: one observer.
+    /// observer, one on each line, clockwise from north. .hor: azimuth (0 south, 90 west) and elevation of one
+    /// observer. .png: one observer.
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     #[command(flatten)]

@@ -6,7 +6,7 @@ use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::io::open_surveys::{
-    FoundSurvey, MAX_CLOUD_RADIUS, SurveyArea, SurveyTile, best_covering, download_tile, find_surveys, known_surveys,
+    FoundSurvey, MAX_CLOUD_RADIUS, SurveyArea, SurveyTile, best_covering, download_tiles, find_surveys, known_surveys,
     read_area, read_surveys, surveys_at, write_origin,
 };
 use belvedere::io::{atomic, write_cloud};
@@ -26,12 +26,14 @@ pub(crate) fn run(arguments: &FetchArguments, global: &Global) -> Result<Summary
         }
     }
     let area = SurveyArea::around(arguments.at.0, arguments.radius)?;
+    if arguments.output.as_deref().is_some_and(|output| !is_folder(output)) {
+        area.check_cloud()?;
+    }
     let table = arguments.surveys.as_deref().map_or_else(known_surveys, read_surveys)?;
     let surveys = surveys_at(table, arguments.survey.as_deref(), &area)?;
     let mut run = CommandContext::new(global);
     let found = find_surveys(&surveys, &area, &run.control())?;
-    for (found, failure) in found.iter().filter_map(|found| Some((found, found.failure.as_ref()?))) {
-        let text = format!("{} was not reached, and may have points there: {failure}", found.survey.title);
+    for text in found.iter().filter_map(FoundSurvey::failure_in_words) {
         run.summary.warn("survey-not-reached", text);
     }
     let Some(output) = &arguments.output else {
@@ -65,11 +67,9 @@ pub(crate) fn run(arguments: &FetchArguments, global: &Global) -> Result<Summary
 /// Writes whole tiles and their origin into a folder; returns their number.
 fn download(found: &FoundSurvey, folder: &Path, area: &SurveyArea, run: &mut CommandContext) -> Result<usize> {
     atomic::make_folder(folder)?;
-    for tile in &found.tiles {
-        download_tile(tile, folder, &run.control())?;
-    }
-    write_origin(&folder.join("origin.json"), found, area)?;
-    Ok(found.tiles.len())
+    let paths = download_tiles(found, folder, &run.control())?;
+    write_origin(&folder.join(format!("{}.origin.json", found.survey.name)), found, area)?;
+    Ok(paths.len())
 }
 
 /// Adds the surveys as the answer.
@@ -98,7 +98,8 @@ fn list(found: &[FoundSurvey], arguments: &FetchArguments, summary: &mut Summary
         let is_whole_tiles = arguments.radius > MAX_CLOUD_RADIUS || best.tiles.iter().any(SurveyTile::is_archive);
         let output = if is_whole_tiles { "tiles" } else { "place.laz" };
         let at = format!("--at {latitude},{longitude} --radius {}", arguments.radius);
-        summary.answer(&format!("next: belvedere fetch {at} --survey {} -o {output}", best.survey.name));
+        let table = arguments.surveys.as_ref().map(|path| format!(" --surveys {}", path.display())).unwrap_or_default();
+        summary.answer(&format!("next: belvedere fetch {at}{table} --survey {} -o {output}", best.survey.name));
     }
     summary.add("surveys", found.iter().map(|found| json!(found)).collect::<Vec<Value>>());
 }

@@ -43,6 +43,7 @@ pub(crate) fn run(arguments: &GlareArguments, global: &Global) -> Result<Summary
     check_charts(arguments, standing.len())?;
     let answers = run.ask(&scene, &question, &Places::Eyes(standing))?;
     let found = &answers.found;
+    check_days(arguments, found.schedule.days.len())?;
     for output in &arguments.output {
         run.stage("writing", 0, |_| match extension(output).as_str() {
             "png" => write_chart(output, found),
@@ -98,14 +99,20 @@ fn check_charts(arguments: &GlareArguments, count: usize) -> Result<()> {
     }
 }
 
+/// Refuses charts of more than two years.
+fn check_days(arguments: &GlareArguments, count: usize) -> Result<()> {
+    match arguments.output.iter().find(|output| count > MAX_DAYS && extension(output) == "png") {
+        Some(output) => {
+            let what = format!("{}: a chart holds two years, but there are {count} days; use .csv", output.display());
+            Err(Usage(what).into())
+        }
+        None => Ok(()),
+    }
+}
+
 /// Draws the glare of the first observer.
 fn write_chart(output: &Path, found: &GlareResults) -> Result<()> {
     let days = &found.schedule.days;
-    if days.len() > MAX_DAYS {
-        let what =
-            format!("{}: a chart holds two years, but there are {} days; use .csv", output.display(), days.len());
-        return Err(Usage(what).into());
-    }
     let label = |(row, day): (usize, &belvedere::apps::sun::DayOfLight)| match (day.date.day(), row) {
         (1, _) => MONTHS
             .get(usize::from(day.date.month().unsigned_abs()).wrapping_sub(1))

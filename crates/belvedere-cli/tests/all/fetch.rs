@@ -43,7 +43,7 @@ fn surveys_of_a_place_are_listed_with_licence_and_next_step() {
     assert!(wide.stdout.contains("-o tiles") && !wide.stdout.contains("place.laz"), "{wide:?}");
     // the next step works as printed
     let next = run.stdout.lines().find_map(|line| line.trim().strip_prefix("next: belvedere ")).unwrap();
-    place.summary(&format!("{next} --surveys surveys.json"));
+    place.summary(next);
     assert!(fs::metadata(place.path("place.laz")).unwrap().len() <= tile.len() as u64);
 }
 
@@ -73,6 +73,7 @@ fn fetch_refuses_what_no_survey_has_and_names_services_that_fail() {
     for (flags, words) in [
         ("--at 4.37,52.0", &["--at", "latitude first"][..]),
         ("--at 52.0,4.37 --survey ahn9", &["--survey", "town, club"]),
+        ("--at 48.85,2.35 --survey town", &["--survey", "does not cover 48.85, 2.35"]),
         ("--at 52.0,4.37 --radius 20000", &["--radius", "5000"]),
         ("--at 52.0,4.37 -o garden.csv", &["-o", ".laz"]),
         ("--at 95,4", &["--at", "latitude"]),

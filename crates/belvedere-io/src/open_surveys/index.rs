@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::tiles::SurveyTile;
 use crate::source::web_address;
+use belvedere_data::shown::without_secrets;
 
 /// Ends of addresses of point clouds, the best first: windows of COPC are read without the rest, archives not at all.
 const ENDS: [&str; 5] = [".copc.laz", ".laz", ".las", ".laz.zip", ".las.zip"];
@@ -17,6 +18,10 @@ const ENDS: [&str; 5] = [".copc.laz", ".laz", ".las", ".laz.zip", ".las.zip"];
 pub(super) struct ListPage {
     /// Tiles with their box in the coordinates of the list; `None` where it has none.
     pub(super) tiles: Vec<(SurveyTile, Option<[f64; 4]>)>,
+    /// Number of rows, with those of other products.
+    pub(super) row_count: u64,
+    /// Number of rows of all pages, where the service says it.
+    pub(super) total: Option<u64>,
     /// Address of the next page.
     pub(super) next: Option<String>,
 }
@@ -33,13 +38,18 @@ impl ListPage {
         let tiles = rows.iter().filter_map(tile_of).collect();
         let links = page.get("links").and_then(Value::as_array);
         let next = links.into_iter().flatten().find(|link| link.get("rel").and_then(Value::as_str) == Some("next"));
-        let next = next.and_then(|link| link.get("href")?.as_str()).filter(|href| is_address(href));
-        Ok(Self { tiles, next: next.map(str::to_owned) })
+        let next = next.and_then(|link| link.get("href")?.as_str());
+        if let Some(odd) = next.filter(|href| !is_address(href)) {
+            return Err(format!("names a next page that is no address: {}", without_secrets(odd)));
+        }
+        let total = ["total", "numberMatched"].into_iter().find_map(|name| page.get(name)?.as_u64());
+        Ok(Self { tiles, row_count: rows.len() as u64, total, next: next.map(str::to_owned) })
     }
 }
 
 fn no_list(text: &str) -> String {
     let start: String = text.chars().take(80).collect();
+    let start = without_secrets(&start);
     format!("the service sends no list of tiles, but {start:?}; its address may have changed: look at its page")
 }
 
@@ -167,8 +177,11 @@ mod tests {
             assert_eq!(page.unwrap().tiles, [], "{address}");
         }
         let odd = r#"{"features": [{"bbox": [5, 5, 4, 6], "geometry": {"coordinates": [[[]], {}, "a"]},
-            "properties": {"url": "https://a.example/b.laz", "sizeInBytes": -3}}], "links": [{"rel": "next", "href": "b"}]}"#;
+            "properties": {"url": "https://a.example/b.laz", "sizeInBytes": -3}}], "total": 7}"#;
         let page = ListPage::parse(odd).unwrap();
         assert_eq!((page.next, page.tiles[0].1, page.tiles[0].0.bytes), (None, None, None));
+        assert_eq!((page.row_count, page.total), (1, Some(7)));
+        let relative = r#"{"features": [], "links": [{"rel": "next", "href": "?page=2"}]}"#;
+        assert!(ListPage::parse(relative).unwrap_err().contains("no address"));
     }
 }

@@ -8,6 +8,6 @@ mod table;
 mod tiles;
 mod transfer;
 
-pub use table::{OpenSurvey, SurveyArea, TileIndex, known_surveys, read_surveys};
+pub use table::{MAX_CLOUD_RADIUS, OpenSurvey, SurveyArea, TileIndex, known_surveys, read_surveys};
 pub use tiles::{FoundSurvey, SurveyTile, best_covering, find_surveys, find_tiles, surveys_at};
-pub use transfer::{MAX_CLOUD_RADIUS, download_tile, read_area, write_origin};
+pub use transfer::{download_tiles, read_area, write_origin};

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::tiles::without_key;
 use crate::source::Source;
 use belvedere_data::parameter::Parameter;
 use belvedere_data::{Error, Result};
@@ -15,6 +16,8 @@ const METRES_PER_DEGREE: f64 = 111_195.0;
 const MAX_LATITUDE: f64 = 85.0;
 /// Radii of areas, metres: a courtyard, and what the index of a national survey answers at once.
 const RADII: [f64; 2] = [1.0, 5000.0];
+/// Maximum radius of an area that becomes one cloud, metres: 80 million points of a dense survey, 3 GB.
+pub const MAX_CLOUD_RADIUS: f64 = 1000.0;
 
 /// A survey whose points are published.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,11 +53,13 @@ pub enum TileIndex {
     Squares {
         /// Side of a square.
         side_m: f64,
+        #[serde(serialize_with = "without_key")]
         /// Address with `{x_m}` and `{y_m}`, metres with six digits, or `{x_km}` and `{y_km}`.
         address: String,
     },
     /// A list of tiles as JSON, from a service: GeoJSON of WFS, items of STAC, products of The National Map.
     List {
+        #[serde(serialize_with = "without_key")]
         /// Address with the corners of the area: `{west}`, `{south}`, `{east}`, `{north}` in degrees, or `{x_min}`,
         /// `{y_min}`, `{x_max}`, `{y_max}` in the system of the survey.
         address: String,
@@ -105,6 +110,21 @@ impl SurveyArea {
     #[must_use]
     pub fn radius_m(&self) -> f64 {
         self.radius_m
+    }
+
+    /// Checks that the points of the area fit into one cloud.
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a radius above 1 km.
+    pub fn check_cloud(&self) -> Result<()> {
+        if self.radius_m <= MAX_CLOUD_RADIUS {
+            return Ok(());
+        }
+        Err(Error::InvalidParameter {
+            parameter: Parameter::SurveyRadius,
+            value: format!("{} m", self.radius_m),
+            expected: "at most 1000 m for a single cloud; larger areas come as whole tiles",
+        })
     }
 
     /// West, south, east and north, degrees.
@@ -159,6 +179,9 @@ impl OpenSurvey {
                     || address.contains("{x_km}") && address.contains("{y_km}");
                 if !(has_corner && self.crs.is_some()) {
                     return Err("needs `crs`, and an address with {x_m} and {y_m} or {x_km} and {y_km}".to_owned());
+                }
+                if address.contains("{x_km}") && (side_m / 1000.0).fract() != 0.0 {
+                    return Err("names squares by kilometres, but their side is not of whole kilometres".to_owned());
                 }
                 if !(10.0..=100_000.0).contains(side_m) {
                     return Err("has squares with a side beyond 10 m to 100 km".to_owned());
@@ -227,6 +250,10 @@ mod tests {
                 "{y_m}",
             ),
             (r#""crs": "EPSG:2154", "index": {"squares": {"side_m": 0, "address": "https://a/{x_m}_{y_m}"}}"#, "10 m"),
+            (
+                r#""crs": "EPSG:2154", "index": {"squares": {"side_m": 500, "address": "https://a/{x_km}_{y_km}"}}"#,
+                "whole",
+            ),
             (r#""index": {"list": {"address": "https://a/{west}"}}"#, "{south}"),
             (r#""index": "page", "color": 1"#, "color"),
         ] {

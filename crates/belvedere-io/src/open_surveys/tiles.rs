@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::index::ListPage;
 use super::table::{OpenSurvey, SurveyArea, TileIndex};
@@ -16,15 +16,18 @@ use belvedere_data::{Error, Result};
 /// Maximum number of pages of a list, and of tiles: an area of a few kilometres has far fewer, and services err.
 const MAX_PAGES: usize = 20;
 const MAX_TILES: usize = 1000;
-/// Places of the area a side at which the newest tile is looked for.
+/// Places of a box a side at which tiles are looked for.
 const PLACES: usize = 32;
+/// Share of a tile from which newer tiles cover it.
+const COVERED: f64 = 0.9;
 /// Minimum share of an area whose tiles count as all of it, percent: boxes of tiles in degrees are rounded.
 const WHOLE_PERCENT: f64 = 99.0;
 
 /// A file of a survey.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SurveyTile {
-    /// Its address.
+    /// Its address; without a key where it is written down.
+    #[serde(serialize_with = "without_key")]
     pub address: String,
     /// Its size, where the service or its server says it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -47,6 +50,11 @@ pub struct FoundSurvey {
     /// Reason why its tiles are not known, and advice.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
+}
+
+/// Writes an address without user, password and key.
+pub(super) fn without_key<S: Serializer>(address: &str, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+    serializer.collect_str(&hidden(Path::new(address)).display())
 }
 
 impl SurveyTile {
@@ -108,6 +116,13 @@ pub fn surveys_at(mut surveys: Vec<OpenSurvey>, name: Option<&str>, area: &Surve
     surveys.retain(|survey| survey.may_cover(area));
     if surveys.is_empty() {
         let [latitude, longitude] = area.middle_deg();
+        if let Some(name) = name {
+            return Err(Error::InvalidParameter {
+                parameter: Parameter::OpenSurvey,
+                value: format!("{name}, which does not cover {latitude}, {longitude}"),
+                expected: "one that covers the place (latitude first), or left out",
+            });
+        }
         return Err(Error::InvalidParameter {
             parameter: Parameter::SurveyPlace,
             value: format!("{latitude}, {longitude}, where no survey of the table lies"),
@@ -154,6 +169,13 @@ impl FoundSurvey {
         (!self.is_whole()).then_some(text)
     }
 
+    /// A warning where the service was not reached.
+    #[must_use]
+    pub fn failure_in_words(&self) -> Option<String> {
+        let failure = self.failure.as_ref()?;
+        Some(format!("{} was not reached, and may have points there: {failure}", self.survey.title))
+    }
+
     /// True if the tiles cover all of the area, but for its outermost metres.
     #[must_use]
     pub fn is_whole(&self) -> bool {
@@ -174,7 +196,7 @@ pub fn find_tiles(survey: &OpenSurvey, area: &SurveyArea, control: &Control<'_>)
         TileIndex::List { address } => {
             let in_crs = address.contains("{x_min}");
             let area_box = if in_crs { box_in_crs(survey, area)? } else { area.box_deg() };
-            newest_of(listed(filled_box(address, &area_box), control)?, &area_box)
+            newest_of(list_tiles(filled_box(address, &area_box), control)?, &area_box)
         }
         TileIndex::Page => (Vec::new(), 0.0),
     };
@@ -207,16 +229,21 @@ fn squares_in(
         let first = (low / side).floor() * side;
         std::iter::successors(Some(first), move |corner| Some(corner + side)).take_while(move |&corner| corner <= high)
     };
+    let count = corners(x_min, x_max).take(MAX_TILES).count() * corners(y_min, y_max).take(MAX_TILES).count();
+    if count > MAX_TILES {
+        let what = format!("has squares of {side} m, more than {MAX_TILES} of them in the area: take a smaller radius");
+        return Err(Error::malformed(&hidden(Path::new(&address_of([x_min, y_min]))), what));
+    }
     let width = |corner: f64, low: f64, high: f64| (high.min(corner + side) - low.max(corner)) / (high - low);
     let (mut tiles, mut covered) = (Vec::new(), 0.0);
     for y in corners(y_min, y_max) {
         for x in corners(x_min, x_max) {
             control.check()?;
             let address = address_of([x, y]);
-            let size = remote::size_of(&address).map_err(Error::io(&hidden(Path::new(&address))))?;
-            if size.is_some() {
+            let file = remote::find(&address).map_err(Error::io(&hidden(Path::new(&address))))?;
+            if let Some(file) = file {
                 covered += width(x, x_min, x_max) * width(y, y_min, y_max);
-                tiles.push(SurveyTile { address, bytes: size, date: None });
+                tiles.push(SurveyTile { address, bytes: file.bytes, date: None });
             }
         }
     }
@@ -240,8 +267,8 @@ fn filled_box(address: &str, area_box: &[f64; 4]) -> String {
 }
 
 /// All tiles of a list, page by page.
-fn listed(address: String, control: &Control<'_>) -> Result<Vec<(SurveyTile, Option<[f64; 4]>)>> {
-    let (mut tiles, mut next) = (Vec::new(), Some(address));
+fn list_tiles(address: String, control: &Control<'_>) -> Result<Vec<(SurveyTile, Option<[f64; 4]>)>> {
+    let (mut tiles, mut next, mut row_count) = (Vec::new(), Some(address), 0);
     for _ in 0..MAX_PAGES {
         let Some(address) = next.take() else { break };
         control.check()?;
@@ -249,48 +276,65 @@ fn listed(address: String, control: &Control<'_>) -> Result<Vec<(SurveyTile, Opt
         let text = remote::text(&address).map_err(Error::io(path))?;
         let page = ListPage::parse(&text).map_err(|what| Error::malformed(path, what))?;
         tiles.extend(page.tiles);
+        row_count += page.row_count;
         next = page.next.filter(|next| *next != address);
-        if tiles.len() > MAX_TILES {
-            return Err(Error::malformed(path, "lists over 1000 tiles of a few kilometres: it ignores the area"));
+        let is_cut = next.is_none() && page.total.is_some_and(|total| total > row_count);
+        if tiles.len() > MAX_TILES || is_cut {
+            let what = format!("lists {row_count} rows, and not all that there are: take a smaller radius");
+            return Err(Error::malformed(path, what));
         }
     }
-    Ok(tiles)
+    match next {
+        Some(address) => {
+            let what = format!("has more than {MAX_PAGES} pages: take a smaller radius");
+            Err(Error::malformed(&hidden(Path::new(&address)), what))
+        }
+        None => Ok(tiles),
+    }
 }
 
-/// The tiles that are the newest at half or more of the places of the area that they cover, and those without a box;
-/// and the share of the area that they cover, as far as boxes tell.
+/// The tiles that meet the area, without those that newer ones cover; and the share of the area that they cover, as far
+/// as boxes tell.
 ///
-/// Surveys of several years in one cloud would contradict each other.
+/// Surveys of several years in one cloud would contradict each other. Boxes in degrees reach beyond the squares of
+/// their tiles, so that neighbours of one survey overlap: these stay.
 fn newest_of(mut tiles: Vec<(SurveyTile, Option<[f64; 4]>)>, area_box: &[f64; 4]) -> (Vec<SurveyTile>, f64) {
     // dates in ISO 8601 sort as texts do; names end with the year where there is no date
     tiles.sort_by(|(a, _), (b, _)| b.date.cmp(&a.date).then_with(|| b.address.cmp(&a.address)));
     tiles.dedup_by(|(a, _), (b, _)| a.address == b.address);
-    let &[west, south, east, north] = area_box;
-    let place = |index: usize| (index as f64 + 0.5) / PLACES as f64;
-    let mut is_taken = [[false; PLACES]; PLACES];
-    let (mut kept, mut is_unbounded) = (Vec::new(), false);
+    let mut kept: Vec<(SurveyTile, Option<[f64; 4]>)> = Vec::new();
     for (tile, bounds) in tiles {
-        let Some([left, low, right, high]) = bounds else {
-            kept.push(tile);
-            is_unbounded = true;
+        let part = bounds.map(|bounds| common_part(&bounds, area_box));
+        if part.is_some_and(|part| part.is_none()) {
             continue;
-        };
-        let covered: Vec<[usize; 2]> = (0..PLACES * PLACES)
-            .map(|number| [number / PLACES, number % PLACES])
-            .filter(|&[row, column]| {
-                let (x, y) = (west + (east - west) * place(column), south + (north - south) * place(row));
-                (left..=right).contains(&x) && (low..=high).contains(&y)
-            })
-            .collect();
-        let is_new = |&&[row, column]: &&[usize; 2]| !is_taken[row][column];
-        if !covered.is_empty() && 2 * covered.iter().filter(is_new).count() >= covered.len() {
-            kept.push(tile);
-            covered.iter().for_each(|&[row, column]| is_taken[row][column] = true);
+        }
+        let covers = |other: &&(SurveyTile, Option<[f64; 4]>)| other.0.date > tile.date || other.1 == bounds;
+        let newer: Vec<[f64; 4]> = kept.iter().filter(covers).filter_map(|(_, bounds)| *bounds).collect();
+        let is_covered = part.flatten().is_some_and(|part| covered_share(&part, &newer) >= COVERED);
+        if !is_covered {
+            kept.push((tile, bounds));
         }
     }
-    let taken = is_taken.as_flattened().iter().filter(|taken| **taken).count();
-    let share = if is_unbounded { 1.0 } else { taken as f64 / (PLACES * PLACES) as f64 };
-    (kept, share)
+    let boxes: Option<Vec<[f64; 4]>> = kept.iter().map(|(_, bounds)| *bounds).collect();
+    let share = boxes.map_or(1.0, |boxes| covered_share(area_box, &boxes));
+    (kept.into_iter().map(|(tile, _)| tile).collect(), share)
+}
+
+/// The part of a box that lies in another; `None` if they do not meet.
+fn common_part(a: &[f64; 4], b: &[f64; 4]) -> Option<[f64; 4]> {
+    let part = [a[0].max(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].min(b[3])];
+    (part[0] < part[2] && part[1] < part[3]).then_some(part)
+}
+
+/// The share of a box that others cover, at places of a grid.
+fn covered_share(&[west, south, east, north]: &[f64; 4], others: &[[f64; 4]]) -> f64 {
+    let place = |index: usize| (index as f64 + 0.5) / PLACES as f64;
+    let is_covered = |number: &usize| {
+        let x = west + (east - west) * place(number % PLACES);
+        let y = south + (north - south) * place(number / PLACES);
+        others.iter().any(|&[left, low, right, high]| (left..=right).contains(&x) && (low..=high).contains(&y))
+    };
+    (0..PLACES * PLACES).filter(is_covered).count() as f64 / (PLACES * PLACES) as f64
 }
 
 #[cfg(test)]
@@ -320,9 +364,15 @@ mod tests {
         let (found, share) = names(vec![old("a", west), old("b", east), new("c", west)]);
         assert_eq!((found, share), (vec!["b".to_owned(), "c".to_owned()], 1.0));
         assert_eq!(names(vec![new("c", west)]).1, 0.5);
+        // an old tile below a new one that covers a part of it
+        assert_eq!(names(vec![old("a", [-3.0, -3.0, 5.0, 5.0]), new("c", west)]).0, ["a", "c"]);
+        // neighbours of one date, of which the area has a narrow strip within the box of the other
+        let (wide, strip) = ([-3.0, -3.0, 1.99, 5.0], [1.96, -3.0, 5.0, 5.0]);
+        assert_eq!(names(vec![new("a", wide), new("b", strip)]).0, ["a", "b"]);
+        assert_eq!(names(vec![new("a", [-3.0, -3.0, 2.0, 5.0]), new("b", strip)]).0, ["a", "b"]);
         // tiles beside the area, twice the same, and without a box
         let beside = new("e", [3.0, 3.0, 4.0, 4.0]);
-        let (found, _) = names(vec![beside, new("c", west), new("c", west), (tile("f", None), None)]);
+        let (found, _) = names(vec![beside, new("c", west), new("c", west), new("b", west), (tile("f", None), None)]);
         assert_eq!(found, ["c", "f"]);
     }
 

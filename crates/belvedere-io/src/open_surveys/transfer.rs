@@ -15,11 +15,8 @@ use crate::secrets::hidden;
 use crate::source::Source;
 use belvedere_data::control::Control;
 use belvedere_data::crs::{Crs, CrsKind};
-use belvedere_data::parameter::Parameter;
 use belvedere_data::{Error, PointCloud, Result};
 
-/// Maximum radius of an area that becomes one cloud, metres: 80 million points of a dense survey, 3 GB.
-pub const MAX_CLOUD_RADIUS: f64 = 1000.0;
 /// Bytes between two looks at whether to go on.
 const BLOCK_BYTES: usize = 1 << 20;
 
@@ -29,13 +26,7 @@ const BLOCK_BYTES: usize = 1 << 20;
 /// [`Error::InvalidParameter`] for a radius above 1 km, [`Error::NoSurvey`] for surveys without tiles,
 /// [`Error::Malformed`] for archives, and those of [`read_cloud`].
 pub fn read_area(found: &FoundSurvey, area: &SurveyArea, control: &Control<'_>) -> Result<(PointCloud, ReadReport)> {
-    if area.radius_m() > MAX_CLOUD_RADIUS {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::SurveyRadius,
-            value: format!("{} m", area.radius_m()),
-            expected: "at most 1000 m for a single cloud; larger areas come as whole tiles",
-        });
-    }
+    area.check_cloud()?;
     let found = best_covering(std::slice::from_ref(found))?;
     if let Some(archive) = found.tiles.iter().find(|tile| tile.is_archive()) {
         let what = "is an archive: take whole tiles into a folder, and unpack them";
@@ -58,23 +49,41 @@ pub fn read_area(found: &FoundSurvey, area: &SurveyArea, control: &Control<'_>) 
     control.stage("reading tiles", 0, || read_cloud(addresses, &options, control))
 }
 
-/// Writes a whole tile into `folder`, and returns its path. A file of its name and size is left as it is.
+/// Writes the whole tiles of a survey into `folder`, and returns their paths. A file of the name and size of a tile is
+/// left as it is.
 ///
 /// # Errors
-/// [`Error::Io`] and [`Error::Cancelled`]; then there is no file.
-pub fn download_tile(tile: &SurveyTile, folder: &Path, control: &Control<'_>) -> Result<PathBuf> {
-    let address = hidden(Path::new(&tile.address));
-    let name = tile.file_name();
-    if name.is_empty() {
-        return Err(Error::malformed(&address, "has no name of a file"));
+/// [`Error::Io`], [`Error::Malformed`] for an address without a name, and [`Error::Cancelled`]; then the tiles before
+/// are there.
+pub fn download_tiles(found: &FoundSurvey, folder: &Path, control: &Control<'_>) -> Result<Vec<PathBuf>> {
+    let mut paths: Vec<PathBuf> = Vec::new();
+    for tile in &found.tiles {
+        let name = tile.file_name();
+        if name.is_empty() {
+            return Err(Error::malformed(&hidden(Path::new(&tile.address)), "has no name of a file"));
+        }
+        // tiles of several folders may have the same name
+        let mut path = folder.join(&name);
+        for number in 2.. {
+            if !paths.contains(&path) {
+                break;
+            }
+            path = folder.join(format!("{number}_{name}"));
+        }
+        download(tile, &path, control)?;
+        paths.push(path);
     }
-    let path = folder.join(name);
+    Ok(paths)
+}
+
+fn download(tile: &SurveyTile, path: &Path, control: &Control<'_>) -> Result<()> {
+    let address = hidden(Path::new(&tile.address));
     let mut remote = Source::path(&tile.address).into_versioned_reader()?;
-    if fs::metadata(&path).is_ok_and(|file| file.is_file() && file.len() == remote.size) {
-        return Ok(path);
+    if fs::metadata(path).is_ok_and(|file| file.is_file() && file.len() == remote.size) {
+        return Ok(());
     }
     control.stage("downloading", usize::try_from(remote.size).unwrap_or_default(), || {
-        atomic::write(&path, |file| {
+        atomic::write(path, |file| {
             let mut block = vec![0; BLOCK_BYTES];
             loop {
                 control.check()?;
@@ -82,12 +91,11 @@ pub fn download_tile(tile: &SurveyTile, folder: &Path, control: &Control<'_>) ->
                 if count == 0 {
                     return Ok(());
                 }
-                file.write_all(block.get(..count).unwrap_or_default()).map_err(Error::io(&path))?;
+                file.write_all(block.get(..count).unwrap_or_default()).map_err(Error::io(path))?;
                 control.advance(count);
             }
         })
-    })?;
-    Ok(path)
+    })
 }
 
 /// Writes the origin of points or tiles: survey, licence, attribution, addresses and area, as JSON.

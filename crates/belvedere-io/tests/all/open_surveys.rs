@@ -4,8 +4,8 @@ use belvedere_data::control::Control;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, PointCloud};
 use belvedere_io::open_surveys::{
-    FoundSurvey, OpenSurvey, SurveyArea, SurveyTile, TileIndex, best_covering, download_tile, find_surveys, find_tiles,
-    read_area, surveys_at, write_origin,
+    FoundSurvey, OpenSurvey, SurveyArea, SurveyTile, TileIndex, best_covering, download_tiles, find_surveys,
+    find_tiles, read_area, surveys_at, write_origin,
 };
 
 use crate::sources::{cloud, file};
@@ -163,18 +163,55 @@ fn whole_tiles_are_files_byte_for_byte_and_come_once() {
         let folder = folder.path().join(format!("{manner:?}"));
         std::fs::create_dir(&folder).unwrap();
         let found = found(&squares(&server), &area([154_950.0, 462_950.0], 20.0));
-        let path = download_tile(&found.tiles[0], &folder, &Control::none()).unwrap();
-        assert_eq!(path, folder.join(NAMES[0]));
+        assert_eq!(found.tiles[0].bytes, Some(files[0].1.len() as u64), "{manner:?}");
+        let download = || download_tiles(&found, &folder, &Control::none()).unwrap();
+        assert_eq!(download(), [folder.join(NAMES[0])]);
+        let path = folder.join(NAMES[0]);
         assert!(std::fs::read(&path).unwrap() == files[0].1, "{manner:?}");
         let written = std::fs::metadata(&path).unwrap().modified().unwrap();
-        download_tile(&found.tiles[0], &folder, &Control::none()).unwrap();
+        download();
         assert_eq!(std::fs::metadata(&path).unwrap().modified().unwrap(), written);
         // an unfinished one of another program
         std::fs::write(&path, b"LASF").unwrap();
-        download_tile(&found.tiles[0], &folder, &Control::none()).unwrap();
+        download();
         assert!(std::fs::read(&path).unwrap() == files[0].1);
         assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1);
     }
+}
+
+#[test]
+fn tiles_of_one_name_are_two_files_and_keys_are_not_written_down() {
+    let files = tiles(&cloud(1000));
+    let servers = [0, 1].map(|number: usize| WebServer::start([("t.laz", files[number].1.clone())], Manner::Parts));
+    let tile = |server: &WebServer| SurveyTile { address: server.address("t.laz?sig=secret"), bytes: None, date: None };
+    let found = FoundSurvey {
+        tiles: servers.iter().map(tile).collect(),
+        ..found(&survey("two", TileIndex::Page), &area([155e3, 463e3], 5.0))
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let paths = download_tiles(&found, folder.path(), &Control::none()).unwrap();
+    assert_eq!(paths, ["t.laz", "2_t.laz"].map(|name| folder.path().join(name)));
+    for (path, (_, bytes)) in paths.iter().zip(&files) {
+        assert!(std::fs::read(path).unwrap() == *bytes);
+    }
+    let text = serde_json::to_string(&found).unwrap();
+    assert!(text.contains("t.laz") && !text.contains("secret"), "{text}");
+}
+
+#[test]
+fn lists_that_hold_a_part_of_their_rows_are_refused() {
+    let list = r#"{"items": [{"properties": {"url": "https://a.example/b.laz"}}], "total": 201}"#;
+    let server = WebServer::start([("list", list.as_bytes().to_vec())], Manner::Whole);
+    let address = server.address("list") + "?{west},{south},{east},{north}";
+    let error = find_tiles(&survey("cut", TileIndex::List { address }), &area([155e3, 463e3], 5.0), &Control::none());
+    let error = error.unwrap_err().to_string();
+    assert!(error.contains("1 rows, and not all") && error.contains("smaller radius"), "{error}");
+    // small squares would be a million requests
+    let address = server.address("{x_m}_{y_m}.laz");
+    let small = survey("small", TileIndex::Squares { side_m: 10.0, address });
+    let error = find_tiles(&small, &area([155e3, 463e3], 5000.0), &Control::none()).unwrap_err().to_string();
+    assert!(error.contains("more than 1000"), "{error}");
+    assert_eq!(server.sent().0, 1);
 }
 
 #[test]
@@ -185,6 +222,9 @@ fn names_and_places_beyond_the_table_are_refused_and_the_origin_is_written() {
     assert_eq!((names(None).unwrap(), names(Some("b")).unwrap()), (2, 1));
     let error = names(Some("ahn3")).unwrap_err().to_string();
     assert!(error.contains("\"ahn3\"") && error.contains("a, b"), "{error}");
+    let elsewhere = SurveyArea::around([48.85, 2.35], 50.0).unwrap();
+    let error = surveys_at(surveys.clone(), Some("a"), &elsewhere).unwrap_err().to_string();
+    assert!(error.contains("does not cover 48.85, 2.35"), "{error}");
     let swapped = SurveyArea::around([5.4, 52.2], 50.0).unwrap();
     let error = surveys_at(surveys.clone(), None, &swapped).unwrap_err().to_string();
     assert!(error.contains("5.4, 52.2") && error.contains("latitude first"), "{error}");

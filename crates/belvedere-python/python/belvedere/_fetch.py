@@ -40,9 +40,9 @@ def open_surveys(
     Returns
     -------
     list of dict
-        For each survey ``name``, ``title``, ``licence``, ``attribution``, ``page``, ``tiles`` (address, and bytes and
-        date where they are known) and ``covered_percent``, the share of the square that they cover. Surveys whose tiles people choose on a page have no tiles, and those that
-        were not reached have a ``failure``.
+        For each survey ``name``, ``title``, ``licence``, ``attribution``, ``page``, ``tiles`` (address without its key,
+        and bytes and date where they are known) and ``covered_percent``, the share of the square that they cover.
+        Surveys whose tiles people choose on a page have no tiles, and those that were not reached have a ``failure``.
 
     Raises
     ------
@@ -95,23 +95,23 @@ def fetch(
     Raises
     ------
     BelvedereError
-        For places that no survey covers, and surveys whose tiles people choose on a page.
+        For places that no survey covers, surveys whose tiles people choose on a page, and services that do not answer.
     OSError
-        For servers that do not answer.
+        For tiles whose server does not answer, and a table that cannot be read.
 
     Warns
     -----
     BelvedereWarning
-        Where the tiles cover a part of the square only.
+        Where a survey was not reached, and where tiles cover a part of the square only.
 
     Examples
     --------
     >>> cloud = belvedere.fetch((52.0116, 4.3571), radius=150)  # doctest: +SKIP
     >>> belvedere.Scene(cloud).sun_hours("2026-03-21")  # doctest: +SKIP
     """
-    core, text, chosen, part = _core.fetch(_area(at, radius, survey, surveys), reporter(progress))
-    if part is not None:
-        warnings.warn(part, BelvedereWarning, stacklevel=2)
+    core, text, chosen, given = _core.fetch(_area(at, radius, survey, surveys), reporter(progress))
+    for warning in given:
+        warnings.warn(warning, BelvedereWarning, stacklevel=2)
     return cloud_of(core, {**json.loads(text), "survey": json.loads(chosen)})
 
 

@@ -79,7 +79,8 @@ class Glare:
         Raises
         ------
         BelvedereError
-            For reflectors without a size, without days and year, where no observer is left, and for parameters out of range.
+            For reflectors without a size, without days and year, where no observer is left, and for parameters out of
+            range.
 
         Warns
         -----

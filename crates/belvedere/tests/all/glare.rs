@@ -1,6 +1,7 @@
 //! Glare against closed forms of a mirror and of a wall.
 
 use belvedere::apps::ask::{Days, GivenWindow, GlareQuestion, GlareResults, Places, Scene, Standing, SunPlace, ask};
+use belvedere::apps::result_columns::{ResultColumn, ResultValues};
 use belvedere::control::Control;
 use belvedere::model::{ModelParts, SceneModel};
 use belvedere::vector::{cross, unit};
@@ -59,6 +60,16 @@ fn dazzles(eye: [f64; 3], to_sun: [f64; 3], radius: f64) -> bool {
         towards[1] < 0.0 && (hit[0] - x).abs() <= width / 2.0 && (hit[2] - z).abs() <= height / 2.0
     };
     // rings, since a pane may be smaller than the disc
+    let middle = unit(std::array::from_fn(|i| [x, y, z][i] - image[i])).unwrap();
+    // far from the pane no ray can meet it: it subtends at most 15 degrees
+    if middle[0] * to_sun[0] + middle[1] * to_sun[1] + middle[2] * to_sun[2] < 20_f64.to_radians().cos() {
+        return false;
+    }
+    let middle = unit(std::array::from_fn(|i| [x, y, z][i] - image[i])).unwrap();
+    // far from the pane no ray can meet it: it subtends less than 15 degrees
+    if middle[0] * to_sun[0] + middle[1] * to_sun[1] + middle[2] * to_sun[2] < 20_f64.to_radians().cos() {
+        return false;
+    }
     let ring = |share: f64| (0..120).any(|part| ray((share * radius).tan(), TAU * f64::from(part) / 120.0));
     ray(0.0, 0.0) || (1..=4).any(|number| ring(f64::from(number) / 4.0))
 }
@@ -104,7 +115,7 @@ fn reflections_near_the_sun_may_be_left_out_and_who_cannot_look_has_no_hours() {
     assert_eq!(hours(&all, 1), hours(&far, 1));
     assert_eq!(far.of_observer(2), None);
     let columns = far.columns(&[]);
-    let belvedere::apps::result_columns::ResultValues::Real(values, _) = &columns[3].values else { panic!() };
+    let ResultValues::Real(values, _) = &columns[3].values else { panic!() };
     assert!(columns[3].name == "hours" && values.len() == 3 && values[2].is_nan() && values[1] > 1.0);
 }
 
@@ -136,6 +147,25 @@ fn walls_before_the_sun_and_before_the_eye_end_glare_where_they_stand() {
 }
 
 #[test]
+fn hours_of_other_clocks_are_not_lost() {
+    // noon of Los Angeles is at 20 o'clock in UTC, and the evening at 3 of the next day
+    let mut question = question(5.0);
+    question.place.location = Some([34.0, -118.0]);
+    question.place.zone = Some("UTC".to_owned());
+    question.reflectors[0].azimuth_deg = 270.0;
+    let found = answered(&scene(&[]), &question, &[[-30.0, 20.0, 2.0]]);
+    let own = found.of_observer(0).unwrap();
+    assert!(own.hours > 5.0 && own.between.unwrap()[1] > 24.0, "{own:?}");
+    let sum: f64 = found.columns_by_hour().iter().filter(|column| column.name.starts_with("min_")).map(total).sum();
+    assert!((sum / 60.0 - own.hours).abs() < 1e-3 * own.hours, "{sum} {}", own.hours);
+}
+
+fn total(column: &ResultColumn) -> f64 {
+    let ResultValues::Real(values, _) = &column.values else { panic!("{}", column.name) };
+    values.iter().sum()
+}
+
+#[test]
 fn twice_the_time_step_changes_minutes_by_less_than_two_percent() {
     let eyes = [[0.0, -20.0, 1.7], [35.0, -10.0, 8.0]];
     let plain = scene(&[]);
@@ -158,11 +188,7 @@ fn hours_of_months_and_of_several_panes_add_up() {
     assert!(all.hours <= one.hours + two.hours && all.hours >= one.hours.max(two.hours));
     assert!(all.after_image_hours > 0.0 && all.after_image_hours <= all.hours);
     let by_hour = found.columns_by_hour();
-    let sum = |name: &str| -> f64 {
-        let column = by_hour.iter().find(|column| column.name == name).unwrap();
-        let belvedere::apps::result_columns::ResultValues::Real(values, _) = &column.values else { panic!("{name}") };
-        values.iter().sum()
-    };
+    let sum = |name: &str| total(by_hour.iter().find(|column| column.name == name).unwrap());
     let minutes: f64 = (0..24).map(|hour| sum(&format!("min_{hour:02}"))).sum();
     assert!((minutes / 60.0 - all.hours).abs() < 1e-3 * all.hours, "{minutes} {}", all.hours);
     assert!(all.max_day_min >= all.longest_min && all.max_day_min <= 60.0 * all.hours);
