@@ -222,7 +222,7 @@ pub(crate) struct FoundFile {
 /// Those of connecting and of the server.
 #[cfg(feature = "las")]
 pub(crate) fn find(address: &str) -> Result<Option<FoundFile>> {
-    let found = patiently(|| {
+    patiently(|| {
         let response = AGENT
             .get(address)
             .header(header::RANGE, "bytes=0-0")
@@ -233,6 +233,7 @@ pub(crate) fn find(address: &str) -> Result<Option<FoundFile>> {
         let is_page = text(header::CONTENT_TYPE).is_some_and(|kind| kind.starts_with("text/html"));
         let of_range = text(header::CONTENT_RANGE).and_then(ContentRange::parse).map(|range| range.size);
         match response.status().as_u16() {
+            404 | 410 => Ok(None),
             200 | 206 if is_page => Ok(None),
             206 => Ok(Some(FoundFile { bytes: of_range })),
             200 => {
@@ -241,11 +242,7 @@ pub(crate) fn find(address: &str) -> Result<Option<FoundFile>> {
             }
             status => Err(of_status(status)),
         }
-    });
-    match found {
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
-        other => other,
-    }
+    })
 }
 
 /// The answer of a service as text.
@@ -346,10 +343,7 @@ fn request(agent: &Agent, address: &str, part: Part, pace: &mut Pace) -> std::re
 fn of_status(status: u16) -> Failure {
     match status {
         401 | 403 | 407 => lasting(format!("the server refuses access (status {status})")),
-        404 | 410 => {
-            let what = format!("the server has no such file (status {status}); check the address");
-            Failure { error: Error::new(ErrorKind::NotFound, what), may_pass: false }
-        }
+        404 | 410 => lasting(format!("the server has no such file (status {status}); check the address")),
         408 | 429 | 500..=599 => {
             let error = Error::other(format!("the server cannot answer now (status {status}); try again later"));
             Failure { error, may_pass: true }

@@ -142,7 +142,7 @@ def check_fetch():
         (FOLDER / "list.json").write_text(json.dumps({"features": [{"properties": {"url": f"{address}/tile.laz"}}]}), encoding="utf-8")
         texts = dict.fromkeys(("name", "title", "licence", "attribution", "page"), "town")
         index = {"list": {"address": address + "/list.json?{west},{south},{east},{north}"}}
-        table = [{**texts, "areas_deg": [[4, 51, 5, 53]], "index": index}]
+        table = [{**texts, "crs": "EPSG:28992", "areas_deg": [[4, 51, 5, 53]], "index": index}]
         (FOLDER / "surveys.json").write_text(json.dumps(table), encoding="utf-8")
         place = {"AT": "85036,447527 [EPSG:28992]", "RADIUS": 25, "SURVEYS": FOLDER / "surveys.json"}
         status, printed = run("fetch", **place, OUTPUT=FOLDER / "garden.laz")
