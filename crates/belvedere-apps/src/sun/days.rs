@@ -1,7 +1,7 @@
 //! The light of a day: a day from midnight to midnight of the sun, in steps, cut at the horizon.
 
-use super::position::transit;
-use super::{Date, Refraction, Site, Zone, sun_position_with};
+use super::position::{SunTrack, transit};
+use super::{Date, Refraction, Site, Zone};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -92,7 +92,7 @@ impl SunDay {
 /// next to 12 o'clock in the `zone`. If `within` is given, only the time between its two instants counts.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for parameters outside their range, and those of [`sun_position_with`].
+/// [`Error::InvalidParameter`] for parameters outside their range, and those of [`super::sun_position_with`].
 pub fn sun_day(site: &Site, zone: &Zone, date: Date, within: Option<[f64; 2]>, params: &DayParams) -> Result<SunDay> {
     params.validate()?;
     let site = site.validate()?;
@@ -104,14 +104,15 @@ pub fn sun_day(site: &Site, zone: &Zone, date: Date, within: Option<[f64; 2]>, p
     let [start, end] = [f64::midpoint(before, noon), f64::midpoint(noon, after)];
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "24 to 8640")]
     let count = (DAY / params.step - 1e-9).ceil() as u32;
+    let track = SunTrack::new(&site, [start, end], params.refraction)?;
     let edge = |number: u32| start + (end - start) * f64::from(number) / f64::from(count);
     let mut steps = Vec::new();
     for number in 0..count {
         let [from, to] = within.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
         let span = [edge(number).max(from), edge(number + 1).min(to)];
         if span[0] < span[1] {
-            for [start, end] in light(&site, span, params)? {
-                let halfway = sun_position_with(&site, f64::midpoint(start, end), params.refraction)?;
+            for [start, end] in light(&track, span, params.min_elevation) {
+                let halfway = track.at(f64::midpoint(start, end));
                 steps.push(SunStep { number, start, end, direction: halfway.to_sun(&site) });
             }
         }
@@ -177,15 +178,15 @@ impl DayParams {
 }
 
 /// The parts of a span of time during which the sun is up.
-fn light(site: &Site, [start, end]: [f64; 2], params: &DayParams) -> Result<Vec<[f64; 2]>> {
-    let above = |t: f64| sun_position_with(site, t, params.refraction).map(|sun| sun.elevation > params.min_elevation);
+fn light(track: &SunTrack, [start, end]: [f64; 2], min_elevation: f64) -> Vec<[f64; 2]> {
+    let above = |t: f64| track.at(t).elevation > min_elevation;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an hour of samples at most")]
     let count = ((end - start) / SAMPLING - 1e-9).ceil().max(1.0) as u32;
     let mut parts: Vec<[f64; 2]> = Vec::new();
-    let mut from = (start, above(start)?);
+    let mut from = (start, above(start));
     for sample in 1..=count {
         let to = start + (end - start) * f64::from(sample) / f64::from(count);
-        let to = (to, above(to)?);
+        let to = (to, above(to));
         let part = match (from.1, to.1) {
             (false, false) => None,
             (true, true) => Some([from.0, to.0]),
@@ -193,7 +194,7 @@ fn light(site: &Site, [start, end]: [f64; 2], params: &DayParams) -> Result<Vec<
                 let [mut known, mut other] = [from.0, to.0];
                 while other - known > MOMENT {
                     let middle = f64::midpoint(known, other);
-                    if above(middle)? == was_up {
+                    if above(middle) == was_up {
                         known = middle;
                     } else {
                         other = middle;
@@ -209,5 +210,5 @@ fn light(site: &Site, [start, end]: [f64; 2], params: &DayParams) -> Result<Vec<
         }
         from = to;
     }
-    Ok(parts)
+    parts
 }
