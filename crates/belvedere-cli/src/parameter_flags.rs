@@ -20,6 +20,7 @@ pub(crate) fn flags_of(parameter: Parameter) -> &'static [&'static str] {
         Parameter::PixelsPerMetre => &["--density", "--viewport"],
         Parameter::BallProfile => &["--ball-profile"],
         Parameter::Observer => &["--observer", "--observers"],
+        Parameter::Network => &["--among"],
         Parameter::Tower => &["--towers"],
         Parameter::Viewpoint => &["--observer"],
         Parameter::Azimuth => &["--azimuth-range"],
@@ -59,6 +60,7 @@ pub(crate) fn flags_of(parameter: Parameter) -> &'static [&'static str] {
         Parameter::TimeStep => &["--time-step-min", "--time-step-s"],
         Parameter::SunTolerance => &["--sun-tolerance-deg"],
         Parameter::Rule => &["--rule"],
+        Parameter::Study => &["--study"],
         Parameter::Latitude | Parameter::Longitude | Parameter::LatitudeLongitude | Parameter::Location => {
             &["--location"]
         }

@@ -56,6 +56,8 @@ parameters! {
     // Observers, cameras and landmarks
     /// Place of an observer.
     Observer => "observer",
+    /// Places of which a network tells which see each other.
+    Network => "network",
     /// Place from which a page shows the visible parts of the scene.
     Viewpoint => "viewpoint",
     /// Tower of which visible metres are computed.
@@ -149,6 +151,8 @@ parameters! {
     SufficientHours => "hours of sun",
     /// A daylight rule.
     Rule => "rule",
+    /// A shadow study of a city.
+    Study => "shadow study",
     /// Latitude of a site.
     Latitude => "latitude",
     /// Longitude of a site.

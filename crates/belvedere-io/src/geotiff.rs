@@ -29,6 +29,8 @@ pub enum BandValues<'a> {
     U8(&'a [Raster<u8>], u8),
     /// Counts. On a coarser level likewise.
     U16(&'a [Raster<u16>], u16),
+    /// Bits. On a coarser level likewise.
+    U32(&'a [Raster<u32>], u32),
     /// Numbers. On a coarser level a pixel has the mean of those of its four that have a value.
     F32(&'a [Raster<f32>], f32),
 }
@@ -177,6 +179,7 @@ pub fn write_bands<'a>(
     match bands.values {
         BandValues::U8(rasters, nodata) => write::<Gray8>(output.into(), rasters, &marks(nodata.to_string())),
         BandValues::U16(rasters, nodata) => write::<Gray16>(output.into(), rasters, &marks(nodata.to_string())),
+        BandValues::U32(rasters, nodata) => write::<Gray32>(output.into(), rasters, &marks(nodata.to_string())),
         BandValues::F32(rasters, nodata) => {
             let mut finite = rasters.to_vec();
             for value in finite.iter_mut().flat_map(Raster::values_mut).filter(|value| !value.is_finite()) {

@@ -40,6 +40,7 @@ pub fn write_cog<'a>(output: impl Into<Output<'a>>, bands: &Bands<'_>, place: &G
     let (levels, nodata) = match bands.values {
         BandValues::U8(rasters, nodata) => (levels(rasters, nodata, majority), nodata.to_string()),
         BandValues::U16(rasters, nodata) => (levels(rasters, nodata, majority), nodata.to_string()),
+        BandValues::U32(rasters, nodata) => (levels(rasters, nodata, majority), nodata.to_string()),
         BandValues::F32(rasters, nodata) => (levels(rasters, nodata, mean), nodata.to_string()),
     };
     let levels = levels?;
@@ -63,6 +64,13 @@ impl PixelType for u8 {
 
 impl PixelType for u16 {
     const KIND: [u16; 2] = [16, 1];
+    fn put(self, bytes: &mut Vec<u8>) {
+        bytes.extend(self.to_le_bytes());
+    }
+}
+
+impl PixelType for u32 {
+    const KIND: [u16; 2] = [32, 1];
     fn put(self, bytes: &mut Vec<u8>) {
         bytes.extend(self.to_le_bytes());
     }

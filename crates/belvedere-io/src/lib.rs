@@ -43,6 +43,7 @@ mod geotiff_cog;
 mod geotiff_read;
 #[cfg(feature = "las")]
 mod gps_epoch;
+mod graphml;
 mod horizon_profile;
 #[cfg(feature = "las")]
 mod las;
@@ -145,6 +146,7 @@ pub use geotiff_read::{
     NamedBand, PlacedRaster, ReadBands, read_bands as read_tif_bands, read_f32 as read_tif_f32,
     read_placed as read_tif, read_u8 as read_tif_u8, read_u16 as read_tif_u16,
 };
+pub use graphml::write_graphml;
 pub use horizon_profile::read_horizon;
 #[cfg(feature = "las")]
 pub use las::{LasHead, read_las_head};
@@ -161,7 +163,7 @@ pub use read_report::{FileReport, LeftOut, ReadReport};
 pub use secrets::{hidden, hidden_text};
 pub use source::{OpenSource, ReadSeek, Source, SystemBeside, web_address};
 pub use stations::read_stations;
-pub use table::{Table, TableCells, read_table, with_columns_read, write_table, write_text_rows};
+pub use table::{Table, TableCells, read_table, row_properties, with_columns_read, write_table, write_text_rows};
 #[cfg(feature = "tiff")]
 pub use terrain::read_terrain;
 pub use text_rows::TextRows;

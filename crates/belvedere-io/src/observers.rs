@@ -32,6 +32,8 @@ pub struct ObserverRow {
     pub fov_deg: Option<f64>,
     /// Weight as a target.
     pub weight: Option<f64>,
+    /// Name, or else id; empty for none.
+    pub name: String,
 }
 
 /// Meanings of columns of a table, or properties in GeoJSON, of observers, in the order of [`from_values`].
@@ -50,6 +52,9 @@ const MEANINGS: [Meaning; 13] = [
     Meaning { names: &["z"], unit: Unit::HeightOfFile },
     Meaning { names: &["spot"], unit: Unit::HeightOfFile },
 ];
+
+/// Columns or properties of names.
+const NAMES: [&str; 2] = ["name", "id"];
 
 /// Indices of the meanings that limit distance and direction.
 const LIMITS: Range<usize> = 1..10;
@@ -106,7 +111,7 @@ pub enum RowsAre {
 /// A table has columns x and y in the coordinates of the cloud's file. It may have z (height of the eye, in the unit of
 /// the file; empty if it follows from the ground) and height (above the ground, metres). Further columns are
 /// min_distance and max_distance (metres), azimuth_from, azimuth_to, elevation_from, elevation_to, heading, tilt and
-/// fov (degrees), and weight.
+/// fov (degrees), weight, and name or id.
 ///
 /// GeoJSON has these as properties; points are observers, lines are paths, and the corners of polygons are walked
 /// around. A property z precedes the third coordinate. Upper and lower case are the same.
@@ -154,13 +159,15 @@ fn of_table(source: Source<'_>, path: &Path, crs: &Crs, rows_are: RowsAre) -> Re
         }
     }
     let mut found = ObserverRows::of_names(table.names(), &used);
+    let names = NAMES.iter().find_map(|name| table.words(name));
     for (i, (x, y)) in x.iter().zip(y).enumerate() {
         let value = |column: usize| {
             let (values, number) = columns[column]?;
             Some(MEANINGS[column].metres(number, *values.get(i)?, scale))
         };
         let values = std::array::from_fn(value);
-        let row = from_values(vec![[x * scale[0], y * scale[1], f64::NAN]], values, scale[2], path)?;
+        let mut row = from_values(vec![[x * scale[0], y * scale[1], f64::NAN]], values, scale[2], path)?;
+        row.name = names.as_ref().and_then(|names| names.get(i)).copied().unwrap_or_default().to_owned();
         match (rows_are, found.rows.first_mut()) {
             (RowsAre::Corners, Some(path)) => path.corners.extend(row.corners),
             _ => found.rows.push(row),
@@ -193,7 +200,9 @@ fn of_geojson(source: Source<'_>, path: &Path, crs: &Crs) -> Result<ObserverRows
         }
         let others: Vec<String> = feature.properties.keys().filter(|name| !names.contains(name)).cloned().collect();
         names.extend(others);
-        rows.push(from_values(corners, values, scale[2], path)?);
+        let own_names = NAMES.iter().map(|name| words_of(&feature.properties, name));
+        let name = own_names.into_iter().find(|name| !name.is_empty()).unwrap_or_default();
+        rows.push(ObserverRow { name, ..from_values(corners, values, scale[2], path)? });
     }
     Ok(ObserverRows { rows, ..ObserverRows::of_names(&names, &used) })
 }
@@ -231,6 +240,15 @@ impl ObserverRows {
 pub fn property<'a>(properties: &'a Map<String, Value>, name: &str) -> Option<&'a Value> {
     let any_case = || properties.iter().find(|(own, _)| own.trim().eq_ignore_ascii_case(name));
     properties.get(name).or_else(|| any_case().map(|(_, value)| value))
+}
+
+/// The property of that name as text; empty where there is none.
+pub(crate) fn words_of(properties: &Map<String, Value>, name: &str) -> String {
+    match property(properties, name) {
+        Some(Value::String(text)) => text.trim().to_owned(),
+        Some(Value::Null) | None => String::new(),
+        Some(other) => other.to_string(),
+    }
 }
 
 pub(crate) fn number_of(properties: &Map<String, Value>, name: &str, path: &Path) -> Result<Option<f64>> {
@@ -277,6 +295,7 @@ fn from_values(
         tilt_deg: tilt,
         fov_deg: fov,
         weight,
+        name: String::new(),
     })
 }
 

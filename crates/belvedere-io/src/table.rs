@@ -5,12 +5,13 @@ use std::io::{BufRead, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use rayon::prelude::*;
+use serde_json::{Map, Value};
 
 use crate::columns::{Column, ExtraColumn, check_lengths, to_column};
 use crate::output::Output;
 use crate::source::{Input, Source, extension};
 use crate::text_rows::TextRows;
-use belvedere_data::report::clock_time;
+use belvedere_data::report::{clock_time, rounded};
 use belvedere_data::{Error, Result};
 
 /// Rows printed by one task.
@@ -80,6 +81,13 @@ impl Table {
             return Err(Error::malformed(path, format!("row {}: {name} is empty or not finite", row + 1)));
         }
         Ok(column)
+    }
+
+    /// Texts of the column of that name, upper or lower case, (rows); `None` where there is none.
+    #[must_use]
+    pub fn words(&self, name: &str) -> Option<Vec<&str>> {
+        let mut columns = self.text.columns(0..self.row_count()).into_iter();
+        columns.find(|(own, _)| own.eq_ignore_ascii_case(name)).map(|(_, words)| words)
     }
 }
 
@@ -157,6 +165,24 @@ impl TableCells<'_> {
         }
     }
 
+    /// The cell of a row as JSON; null where it is empty.
+    fn value(&self, row: usize) -> Value {
+        match self {
+            Self::Real(values, decimals) => {
+                let decimals = i32::try_from(*decimals).unwrap_or(i32::MAX);
+                values.get(row).map_or(Value::Null, |value| rounded(*value, decimals).into())
+            }
+            Self::Clock(values) => {
+                values.get(row).filter(|hours| hours.is_finite()).map(|hours| clock_time(*hours)).into()
+            }
+            Self::Whole(values) => values.get(row).copied().flatten().into(),
+            Self::Given(words, values, decimals) if words.get(row).is_none_or(|word| word.is_empty()) => {
+                Self::Real(values, *decimals).value(row)
+            }
+            Self::Words(words) | Self::Given(words, ..) => words.get(row).copied().into(),
+        }
+    }
+
     fn print(&self, row: usize, separator: char, text: &mut Vec<u8>) -> std::io::Result<()> {
         match self {
             Self::Real(values, decimals) => match values.get(row) {
@@ -227,6 +253,12 @@ pub fn write_table<'a>(output: impl Into<Output<'a>>, columns: &[(&str, TableCel
         }
         Ok(())
     })
+}
+
+/// Properties of the GeoJSON feature of a row.
+#[must_use]
+pub fn row_properties(columns: &[(&str, TableCells<'_>)], row: usize) -> Map<String, Value> {
+    columns.iter().map(|(name, cells)| ((*name).to_owned(), cells.value(row))).collect()
 }
 
 /// Combines the columns of a table of `results` with rows that were `read` from a table ([`TextRows::columns`]).

@@ -1,12 +1,11 @@
 //! Towers from tables and GeoJSON.
 
 use crate::geojson_read::{FeatureShape, read_geojson};
-use crate::observers::{number_of, property};
+use crate::observers::{number_of, words_of};
 use crate::source::{Source, refuse_other_shapes};
 use crate::table::read_table;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
-use serde_json::Value;
 use std::path::Path;
 
 /// A tower of a file.
@@ -63,19 +62,14 @@ fn of_points(source: Source<'_>, path: &Path, crs: &Crs) -> Result<Vec<TowerRow>
             let what = format!("point {} has no property tip, its height in metres", rows.len() + 1);
             return Err(Error::malformed(path, what));
         };
-        let words = |name: &str| match property(&feature.properties, name) {
-            Some(Value::String(text)) => Some(text.trim().to_owned()),
-            Some(Value::Null) | None => None,
-            Some(other) => Some(other.to_string()),
-        };
         let [metres, _, metres_per_height] = crs.metres_per_unit_xyz();
         rows.push(TowerRow {
             place: [x / metres, y / metres],
             base: number("base")?.or(Some(z / metres_per_height).filter(|z| z.is_finite())),
             hub: number("hub")?,
             tip,
-            name: words("name").unwrap_or_default(),
-            scheme: words("scheme").unwrap_or_default(),
+            name: words_of(&feature.properties, "name"),
+            scheme: words_of(&feature.properties, "scheme"),
         });
     }
     Ok(rows)
@@ -84,24 +78,21 @@ fn of_points(source: Source<'_>, path: &Path, crs: &Crs) -> Result<Vec<TowerRow>
 fn of_table(source: Source<'_>, path: &Path) -> Result<Vec<TowerRow>> {
     let table = read_table(source)?;
     let [x, y, tip] = ["x", "y", "tip"].map(|column| table.full_column(path, column));
-    let (x, y, tip) = (x?.to_vec(), y?.to_vec(), tip?.to_vec());
-    let optional = |column: &str| Ok(table.column(path, column)?.map(<[f64]>::to_vec));
-    let (base, hub) = (optional("base")?, optional("hub")?);
-    let text = table.into_text();
-    let columns = text.columns(0..x.len());
-    let words = |column: &str, row: usize| {
-        let found = columns.iter().find(|(name, _)| name.eq_ignore_ascii_case(column));
-        found.and_then(|(_, cells)| cells.get(row)).copied().filter(|word| !word.is_empty())
+    let (x, y, tip) = (x?, y?, tip?);
+    let (base, hub) = (table.column(path, "base")?, table.column(path, "hub")?);
+    let (names, schemes) = (table.words("name"), table.words("scheme"));
+    let words = |column: &Option<Vec<&str>>, row: usize| {
+        column.as_ref().and_then(|words| words.get(row)).copied().unwrap_or_default().to_owned()
     };
-    let of = |column: &Option<Vec<f64>>, row: usize| column.as_ref().map(|v| v[row]).filter(|v| v.is_finite());
+    let of = |column: Option<&[f64]>, row: usize| column.map(|values| values[row]).filter(|v| v.is_finite());
     let rows = (0..x.len())
         .map(|row| TowerRow {
             place: [x[row], y[row]],
-            base: of(&base, row),
-            hub: of(&hub, row),
+            base: of(base, row),
+            hub: of(hub, row),
             tip: tip[row],
-            name: words("name", row).unwrap_or_default().to_owned(),
-            scheme: words("scheme", row).unwrap_or_default().to_owned(),
+            name: words(&names, row),
+            scheme: words(&schemes, row),
         })
         .collect();
     Ok(rows)

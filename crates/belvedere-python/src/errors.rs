@@ -59,6 +59,8 @@ fn keyword(parameter: Parameter) -> &'static str {
         Parameter::LastDay => "to",
         Parameter::Latitude | Parameter::Longitude | Parameter::LatitudeLongitude => "location",
         Parameter::LookAt => "look_at",
+        Parameter::Network => "places",
+        Parameter::Study => "study",
         Parameter::Tower => "towers",
         Parameter::MaxDistance => "max_distance",
         Parameter::MaxHeight => "max_height",

@@ -135,20 +135,22 @@ impl PyScene {
         Ok((rows_of(py, FaceRows::of_seen(&mesh, &seen))?, remarks))
     }
 
-    /// Returns the result for the line of sight of each pair, the position of its target, and remarks. Heights of NaN
-    /// follow from the ground.
+    /// Returns the result for the line of sight of each pair, the position of its target, and remarks. Without targets
+    /// the pairs are those of a network of the observers, within `max_distance`. Heights of NaN follow from the
+    /// ground.
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn lines_of_sight<'py>(
         &self,
         py: Python<'py>,
         observers: PyReadonlyArray2<'py, f64>,
-        targets: PyReadonlyArray2<'py, f64>,
+        targets: Option<PyReadonlyArray2<'py, f64>>,
         ends: EndKeywords,
         unproven: &str,
         how_sure: HowSureKeywords,
         curvature: Option<&str>,
         refraction: Option<f64>,
         frequency: Option<f64>,
+        max_distance: Option<f64>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<SightsReply<'py>> {
         let question = LinesOfSightQuestion {
@@ -162,18 +164,36 @@ impl PyScene {
             profile: None,
         };
         let scene = Arc::clone(&self.0);
-        let [observers, targets] = [standing(&observers, "observers", &scene)?, standing(&targets, "targets", &scene)?];
-        if observers.len() != targets.len() {
-            let value = format!("an array of {} rows", targets.len());
-            return Err(wrong("targets", &value, &format!("give a row for each of the {} observers", observers.len())));
-        }
-        let pairs = observers.into_iter().zip(targets).map(|(observer, target)| [observer, target]).collect();
+        let observers = standing(&observers, "observers", &scene)?;
+        let places = match targets {
+            None => ask::Places::Network(ask::NetworkPlaces {
+                places: observers,
+                max_distance,
+                ..ask::NetworkPlaces::default()
+            }),
+            Some(targets) => {
+                let targets = standing(&targets, "targets", &scene)?;
+                if observers.len() != targets.len() {
+                    let value = format!("an array of {} rows", targets.len());
+                    let advice = format!("give a row for each of the {} observers", observers.len());
+                    return Err(wrong("targets", &value, &advice));
+                }
+                ask::Places::Pairs(observers.into_iter().zip(targets).map(<[_; 2]>::from).collect())
+            }
+        };
         let of_work = Arc::clone(&scene);
-        let answers =
-            run(py, progress, move |control| ask::ask(&of_work, &question, &ask::Places::Pairs(pairs), control))?;
+        let answers = run(py, progress, move |control| ask::ask(&of_work, &question, &places, control))?;
         let found = &answers.found;
         let columns = found.columns(&scene);
         let dict = PyDict::new(py);
+        if let Some(network) = &found.network {
+            for (end, name) in ["a", "b"].into_iter().enumerate() {
+                let rows = network.pairs.iter().map(|pair| i64::try_from(pair[end]).unwrap_or(-1)).collect();
+                dict.set_item(name, to_1d::<i64>(py, rows))?;
+            }
+            let length = |&[a, b]: &[[f64; 3]; 2]| belvedere::vector::length(belvedere::vector::sub(b, a));
+            dict.set_item("length_m", to_1d::<f64>(py, found.pairs.iter().map(length).collect()))?;
+        }
         dict.set_item("answer", to_1d(py, found.answers.iter().map(|&answer| answer as u8).collect()))?;
         dict.set_item("first_block_range_m", to_1d(py, columns.ranges))?;
         if let Some(lengths) = columns.unproven {

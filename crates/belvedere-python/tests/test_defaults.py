@@ -32,8 +32,9 @@ def test_documented_defaults_are_those_of_the_command_line(program):
     }
     wrong, count = [], 0
     for name, parameter, number in documented():
-        # the planes of roofs are a part of that command
-        of_command = flags["irradiance" if name == "roof_planes" else name.replace("_", "-")]
+        # parts of these commands
+        command = {"roof_planes": "irradiance", "network": "line-of-sight"}.get(name, name.replace("_", "-"))
+        of_command = flags[command]
         flag = "--" + parameter.replace("_", "-")
         if flag not in of_command:
             flag = {"--fov-deg": "--fov", "--width": "--size", "--tilts-deg": "--tilt"}[flag]

@@ -57,6 +57,7 @@ RARE = ("Lines of sight", "Scene", "Balls", "Global options")
 # Layers that must have a certain geometry; others take any.
 GEOMETRIES = {
     ("line-of-sight", "--pairs"): "line",
+    ("line-of-sight", "--among"): "point",
     ("towers", "--towers"): "point",
     ("landmark", "--observers"): "point",
     ("landmark", "--target-polygon"): "polygon",
@@ -66,6 +67,8 @@ GEOMETRIES = {
     ("envelope", "--parcel"): "polygon",
     ("report", "--area"): "polygon",
 }
+# Commands whose tables become the same lines as their GeoJSON, which rounds degrees.
+LINES_IN_TABLES = ("line-of-sight",)
 # Names of layers that say more than those of their flags.
 NAMES = {"--pairs": "Lines from observers to targets", "--protect": "Lines, polygons or points to protect from shadow"}
 # Results that are no areas although they are written as GeoJSON.
@@ -259,6 +262,8 @@ def _outputs(command, described, key):
     if described["type"] == "folder":
         return (Output(key, "folder", label, ()),)
     left = list(dict.fromkeys(described["formats"]))
+    if is_main and command in LINES_IN_TABLES:
+        left.remove(".geojson")
     found = []
 
     def take(kind, suffix, own_label, *extensions):

@@ -4,7 +4,8 @@ use super::how_sure::HowSure;
 use super::observers::{Standing, check_height, note_beside, note_enclosed, stand};
 use super::scene::Scene;
 use super::sections::{LinesSection, PairsSection};
-use super::{Answers, Ask, Context, GridCells, Places, Remark, remark_on_inside};
+use super::sight_network::{NetworkSection, SightNetwork};
+use super::{Answers, Ask, Context, GridCells, NetworkPlaces, Places, Remark, remark_on_inside};
 use crate::profile::{SightProfile, sight_profile};
 use crate::targets::{Measure, TARGET_LIFT};
 use crate::viewshed::OBSERVER_HEIGHT;
@@ -69,6 +70,8 @@ pub struct SightsResults {
     pub sure: Vec<Measure>,
     /// The profile that was wanted.
     pub profile: Option<SightProfile>,
+    /// The places that the pairs are of, if they are those of a network.
+    pub network: Option<SightNetwork>,
 }
 
 /// Results of lines of sight in columns, for tables.
@@ -146,6 +149,25 @@ impl LinesOfSightQuestion {
         let so = "have no height and no known ground below";
         context.add(Remark::of_share("ends-without-ground", unknown, ends.len(), "ends of lines", so));
         Ok(ends.as_chunks::<2>().0.to_vec())
+    }
+
+    /// The places of a network, and each pair of them within the maximum distance, the first place before the second.
+    fn network(
+        &self,
+        given: &NetworkPlaces,
+        scene: &Scene,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<SightNetwork> {
+        given.check()?;
+        let height = self.observer_height.unwrap_or(OBSERVER_HEIGHT);
+        let standing: Vec<Standing> =
+            given.places.iter().map(|place| Standing { height: place.height.or(Some(height)), ..*place }).collect();
+        let places = stand(&standing, (OBSERVER_HEIGHT, self.ground), scene, context, control)?;
+        let unknown = places.iter().filter(|place| place[2].is_nan()).count();
+        let so = "have no height and no known ground below";
+        context.add(Remark::of_share("ends-without-ground", unknown, places.len(), "places", so));
+        SightNetwork::new(places, given)
     }
 
     /// The profile, where it is wanted. A ball file without a cloud shows no ground.
@@ -237,8 +259,14 @@ impl Ask for LinesOfSightQuestion {
             scene.check_proof()?;
         }
         self.how_sure.check_scene(scene)?;
-        self.check_count(places.pairs()?.len())?;
-        let pairs = self.ends(places, scene, context, control)?;
+        let (pairs, mut network) = match places {
+            Places::Network(given) => {
+                let network = self.network(given, scene, context, control)?;
+                (network.lines(), Some(network))
+            }
+            _ => (self.ends(places, scene, context, control)?, None),
+        };
+        self.check_count(pairs.len())?;
         let unproven = self.unproven.unwrap_or(UnprovenAs::Reported);
         let blockers = scene.blockers(unproven, control)?;
         let sights = control
@@ -264,7 +292,9 @@ impl Ask for LinesOfSightQuestion {
         context.add(Remark::of_share("lines-outside-cloud", outside, answers.len(), "lines of sight", is_outside));
         let ends: Vec<[f64; 3]> = pairs.iter().flatten().copied().collect();
         note_beside(&blockers, &ends, "end", context);
-        if pairs.len() > 1 {
+        if let Some(network) = &network {
+            context.add(network.remark_on_inside(&blockers));
+        } else if pairs.len() > 1 {
             let so = "have an end inside an obstacle: they are neither visible nor blocked";
             let count = section.inside_obstacle;
             context.add(Remark::of_share("lines-inside-obstacle", count, answers.len(), "lines of sight", so));
@@ -272,9 +302,13 @@ impl Ask for LinesOfSightQuestion {
         let profile = self.profile(&pairs, (scene, &blockers), context, control)?;
         let is_proof_tested = blockers.proof().is_some();
         let sure = self.sure_of(&pairs, &answers, scene, context, control)?;
-        let found = SightsResults { pairs, answers, sights, fresnel, is_proof_tested, sure, profile };
+        if let Some(network) = &mut network {
+            network.count_links(&answers);
+            context.report.network = Some(NetworkSection::of(network, &answers));
+        }
+        let found = SightsResults { pairs, answers, sights, fresnel, is_proof_tested, sure, profile, network };
         match &found.pairs[..] {
-            [[observer, target]] => {
+            [[observer, target]] if found.network.is_none() => {
                 for (end, what) in [(*observer, "observer"), (*target, "target")] {
                     context.add(remark_on_inside(&blockers, end, what));
                     note_enclosed(&blockers, &[end], what, context);
@@ -284,6 +318,9 @@ impl Ask for LinesOfSightQuestion {
                 context.report.line = Some(line);
             }
             _ => section.headlines().into_iter().for_each(|line| context.headline(line)),
+        }
+        if let Some(network) = context.report.network.as_ref().map(NetworkSection::headline) {
+            context.headline(network);
         }
         Ok(Answers::new(found, Vec::new()))
     }

@@ -43,6 +43,19 @@ pub enum Places {
     Eyes(Vec<Standing>),
     /// Observers and targets, two by two.
     Pairs(Vec<[Standing; 2]>),
+    /// Places of which each two may see each other.
+    Network(NetworkPlaces),
+}
+
+/// Places of a network of lines of sight.
+#[derive(Clone, Debug, Default)]
+pub struct NetworkPlaces {
+    /// The places.
+    pub places: Vec<Standing>,
+    /// Their names, for reports; empty for their numbers.
+    pub names: Vec<String>,
+    /// Horizontal distance up to which two places are a pair, metres, above 0; `None` for no limit.
+    pub max_distance: Option<f64>,
 }
 
 /// Orientation of points.
@@ -99,7 +112,9 @@ impl Places {
         let mut targets = match self {
             Self::Scene => of_points(Vec::new(), None),
             Self::Targets(targets) => return Ok(Arc::clone(targets)),
-            Self::Eyes(_) | Self::Pairs(_) => return other(Parameter::Targets, "observers", "cells, points or a mesh"),
+            Self::Eyes(_) | Self::Pairs(_) | Self::Network(_) => {
+                return other(Parameter::Targets, "observers", "cells, points or a mesh");
+            }
             Self::Cells(cells) => return Ok(Arc::new(cells.targets(scene, context, control)?)),
             Self::Own(turned) => own_points(scene, *turned)?,
             Self::Points(positions, normals) => of_points(positions.clone(), normals.clone()),

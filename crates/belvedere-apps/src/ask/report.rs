@@ -17,6 +17,7 @@ use super::sections::{
     GroundSection, LinesSection, LocationSection, MeasuresSection, NamedValues, PeriodSection, PlacesReport, PvSection,
     RadiationSection, RoofsSection, SunSection, TreesSection,
 };
+use super::sight_network::NetworkSection;
 use super::single_places::PlaceSection;
 use super::survey_plan::SurveyPlanSection;
 use super::towers::TowersSection;
@@ -99,6 +100,9 @@ pub struct Report {
     /// A single line of sight.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub line: Option<LineSection>,
+    /// A network of lines of sight.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub network: Option<NetworkSection>,
     /// Statistics of horizons.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub horizons: Option<HorizonsSection>,

@@ -2,6 +2,7 @@
 
 mod limits;
 mod seen_targets;
+mod spread;
 
 pub use limits::{StandingObserver, ViewLimits};
 pub use seen_targets::{FarSeen, SeenSection};

@@ -14,6 +14,17 @@ use std::str::FromStr;
 pub(crate) struct LineOfSightArguments {
     #[command(flatten)]
     pub(crate) lines: LinesArguments,
+    /// Places of which each two may see each other, for a network (.csv .geojson)
+    ///
+    /// Columns or properties: x, y, and z or height above the ground (--observer-height where neither is given), and
+    /// name or id. Lines of sight are the same in both directions.
+    #[arg(long, value_name = "FILE", group = "lines", conflicts_with_all = ["pairs", "random", "from", "to", "target_height"],
+        help_heading = "Lines of sight (one of)")]
+    pub(crate) among: Option<PathBuf>,
+    /// With --among: horizontal distance up to which two places are a pair, in metres [default: no limit]
+    #[arg(long, value_name = "M", requires = "among", value_parser = above_zero::<f64>, allow_negative_numbers = true,
+        help_heading = "Lines of sight (one of)")]
+    pub(crate) max_distance: Option<f64>,
     #[command(flatten)]
     pub(crate) heights: EndHeights,
     #[command(flatten)]
@@ -45,16 +56,17 @@ pub(crate) struct LineOfSightArguments {
     /// without a value block nothing.
     #[arg(long, value_name = "DTM", help_heading = "Far terrain")]
     pub(crate) terrain: Option<PathBuf>,
-    /// Table with a row for each pair, in their order (.csv)
+    /// Table with a row for each pair, in their order (.csv), lines (.geojson), or a network (.graphml); repeatable
     ///
-    /// Columns: ax,ay,az,bx,by,bz, answer (0 blocked, 1 visible, 2 unproven, 3 no line, 4 outside the cloud, 5 an end
-    /// inside an obstacle), first_block_range_m from A, unproven_m (not with --unproven as-visible, which is faster),
-    /// fresnel_free_percent (with --frequency-ghz), block_x, block_y, block_z, and block_ball and block_source: the
-    /// rows of the first blocking ball and of the point that it touches. Where the scene has patches
-    /// of surfaces: block_surface, the kind of the patch that blocks first (roof, wall, parapet, inside). With
-    /// --terrain: block_terrain, 1 where the terrain blocks first.
-    #[arg(short, long, value_name = "OUT", required_unless_present = "from", help_heading = "Result")]
-    pub(crate) output: Option<PathBuf>,
+    /// A network needs --among: places are its nodes, and visible and unproven pairs its edges. Columns: with --among a
+    /// and b, the names of both places; ax,ay,az,bx,by,bz, answer (0 blocked, 1 visible, 2 unproven, 3 no line, 4
+    /// outside the cloud, 5 an end inside an obstacle), first_block_range_m from A, unproven_m (not with --unproven
+    /// as-visible, which is faster), fresnel_free_percent (with --frequency-ghz), block_x, block_y, block_z, and
+    /// block_ball and block_source: the rows of the first blocking ball and of the point that it touches. Where the
+    /// scene has patches of surfaces: block_surface, the kind of the patch that blocks first (roof, wall, parapet,
+    /// inside). With --terrain: block_terrain, 1 where the terrain blocks first.
+    #[arg(short, long = "output", value_name = "OUT", required_unless_present = "from", help_heading = "Result")]
+    pub(crate) outputs: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) memory: MemoryArgument,
     #[command(flatten)]
@@ -119,7 +131,7 @@ pub(crate) struct Earth {
 #[derive(Args)]
 #[command(next_help_heading = "Lines of sight")]
 pub(crate) struct GivingWay {
-    /// Surface tolerance: how far carved balls are reduced near a target, in metres [default: 0.2]
+    /// Surface tolerance: how far carved balls are reduced near an end of a line, in metres [default: 0.2]
     ///
     /// Balls bulge between the points of walls and roofs. Use 0 for targets that do not lie on surfaces.
     #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = length)]
@@ -168,7 +180,7 @@ pub(crate) struct IntervalArgument {
 #[derive(Args)]
 #[command(next_help_heading = "Lines of sight")]
 pub(crate) struct Shell {
-    /// Surface tolerance: how far carved balls are reduced near a target, in metres [default: 0.2]
+    /// Surface tolerance: how far carved balls are reduced near an end of a line, in metres [default: 0.2]
     ///
     /// Balls bulge between the points of walls and roofs. Use 0 for targets that do not lie on surfaces.
     #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = length)]
@@ -271,6 +283,12 @@ pub(crate) struct Who {
     /// RADIUS2).
     #[arg(long, value_name = "FILE")]
     pub(crate) observers: Option<PathBuf>,
+    /// Total viewshed: N observers spread evenly over the map, at most 65534
+    ///
+    /// The result counts for each cell how many of them see it. With --target-height as --observer-height that is also
+    /// the share of the map that each cell sees. They stand outside of buildings.
+    #[arg(long, value_name = "N", value_parser = at_most::<65_534>)]
+    pub(crate) spread: Option<usize>,
     /// Reverse viewshed: the cells from which this target is seen
     ///
     /// The target is --target-height above the ground if it has no Z. The observers are --observer-height above the

@@ -42,7 +42,7 @@ pub(crate) struct Query {
     /// carved balls and with --ball-profile paper-cone.
     #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = finite::<f32>, help_heading = "Result")]
     pub(crate) bias: Option<f32>,
-    /// Surface tolerance: how far carved balls are reduced near a target, in metres [default: 0.2]
+    /// Surface tolerance: how far carved balls are reduced near an end of a line, in metres [default: 0.2]
     ///
     /// Balls bulge between the points of walls and roofs. Use 0 for targets that do not lie on surfaces.
     #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = length, help_heading = "Result")]

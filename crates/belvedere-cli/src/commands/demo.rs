@@ -41,6 +41,14 @@ const WINDOWS: usize = 4;
 /// Cells of the raster of the terrain around the town, metres, and their number a side.
 const TERRAIN_CELL_M: f64 = 25.0;
 const TERRAIN_CELLS: usize = 480;
+/// Names of look-outs, metres east and north of the middle of the town, and heights above the ground.
+const LOOKOUTS_M: [(&str, f64, f64, f64); 5] = [
+    ("square", 0.0, -15.0, 1.7),
+    ("corner", -20.0, -30.0, 1.7),
+    ("mast", 20.0, 30.0, 12.0),
+    ("crane", -40.0, 40.0, 30.0),
+    ("street", 0.0, 50.0, 1.7),
+];
 /// Distance of the hills, width up to their crests, and height, metres.
 const HILLS_M: [f64; 3] = [900.0, 2500.0, 260.0];
 /// Towers on the hills: azimuth in degrees and distance from the town in metres, and scheme.
@@ -170,6 +178,7 @@ fn write_town(folder: &Path, scene: &TriangleScene, scan: &Scan) -> Result<()> {
         ("neighbours.csv", windows_that_face(scene)),
         ("towers.csv", towers_on_hills(scene)),
         ("glass.csv", glass_of_planned(scene)),
+        ("lookouts.csv", lookouts(scene)),
     ];
     for (name, text) in texts {
         write_text(&folder.join(name), &text)?;
@@ -235,6 +244,17 @@ fn planned_building(town: &TriangleScene) -> TriangleScene {
     let ground = town.mean_ground_height();
     planned.add_object("planned", &[extruded(&footprint, ground - 1.0, ground + PLANNED_M[2])]);
     planned
+}
+
+/// A table of places that may see each other: people in streets, a mast and a crane.
+fn lookouts(town: &TriangleScene) -> String {
+    let Some((low, high)) = town.bounds() else { return String::new() };
+    let mut text = "name,x,y,height\n".to_owned();
+    for (name, east, north, height) in LOOKOUTS_M {
+        let [x, y] = [east + f64::midpoint(low[0], high[0]), north + f64::midpoint(low[1], high[1])];
+        text += &format!("{name},{x:.2},{y:.2},{height}\n");
+    }
+    text
 }
 
 /// A table of the glass of the planned building: its south and its west facade.

@@ -1,6 +1,8 @@
 //! `belvedere line-of-sight`.
 
 use super::far_terrain::set_terrain;
+use super::outputs::warn_of_geojson;
+use super::surroundings::{ObserverUse, observer_rows};
 use super::{check_output, extension};
 use crate::arguments::{Global, LineOfSightArguments, LinesArguments, MapPosition, Usage};
 use crate::pipeline::{self, KeepPoints};
@@ -9,15 +11,17 @@ use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::Frame;
 use belvedere::apps::ask::{
-    Ask, LinesOfSightQuestion, Places, ProfileRows, Scene, SightColumns, SightsResults, Standing,
+    Ask, LinesOfSightQuestion, NetworkPlaces, Places, ProfileRows, Scene, SightColumns, SightNetwork, SightsResults,
+    Standing,
 };
 use belvedere::apps::profile::SightProfile;
 use belvedere::figures::{DistanceProfile, profile_picture, write_png};
 use belvedere::io::{
-    FeatureShape, GeojsonFeature, TableCells, TextRows, property, read_geojson, read_table, with_columns_read,
-    write_table,
+    FeatureShape, GeojsonFeature, PathLine, RowsAre, TableCells, TextRows, property, read_geojson, read_table,
+    row_properties, with_columns_read, write_geojson, write_graphml, write_table,
 };
 use belvedere::query::{Answer, UnprovenAs, random_pairs};
+use belvedere::vector::{length, sub};
 use serde_json::Value;
 use std::path::Path;
 
@@ -41,13 +45,25 @@ pub(crate) fn run(arguments: &LineOfSightArguments, global: &Global) -> Result<S
         set_terrain(path, &mut scene, &mut run)?;
     }
     let scene = scene.into_question_scene(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
-    let (pairs, rows) = pairs(&arguments.lines, &scene, &run)?;
-    let answers = run.ask(&scene, &question, &Places::Pairs(pairs))?;
+    let (places, rows) = match &arguments.among {
+        Some(path) => (Places::Network(network(path, arguments.max_distance, &scene, &mut run)?), TextRows::default()),
+        None => {
+            let (pairs, rows) = pairs(&arguments.lines, &scene, &run)?;
+            (Places::Pairs(pairs), rows)
+        }
+    };
+    let answers = run.ask(&scene, &question, &places)?;
     let found = &answers.found;
-    if let Some(output) = &arguments.output {
+    for output in &arguments.outputs {
         run.stage("writing", 0, |_| write(output, found, &scene, &rows))?;
-        run.summary.add("written", output.display().to_string());
     }
+    let written: Vec<String> = arguments.outputs.iter().map(|path| path.display().to_string()).collect();
+    if let [one] = &written[..] {
+        run.summary.add("written", one.clone());
+    } else if !written.is_empty() {
+        run.summary.add("written", written);
+    }
+    warn_of_geojson(&arguments.outputs, &scene.frame().crs, &mut run.summary);
     if let (Some(output), Some(profile)) = (&arguments.profile_out, &found.profile) {
         run.stage("writing", 0, |_| write_profile(output, profile, &scene, unproven_length(found, &scene)))?;
         run.summary.add("profile_written", output.display().to_string());
@@ -69,8 +85,13 @@ fn question(arguments: &LineOfSightArguments) -> Result<LinesOfSightQuestion> {
 }
 
 fn check(arguments: &LineOfSightArguments, question: &LinesOfSightQuestion) -> Result<()> {
-    if let Some(output) = &arguments.output {
-        check_output("-o", output, &["csv"])?;
+    for output in &arguments.outputs {
+        check_output("-o", output, &["csv", "geojson", "graphml"])?;
+        if extension(output) == "graphml" && arguments.among.is_none() {
+            let what =
+                format!("-o {}: a network is one of places that may see each other: give --among", output.display());
+            return Err(Usage(what).into());
+        }
     }
     if let Some(profile) = &arguments.profile_out {
         check_output("--profile-out", profile, &["csv", "png"])?;
@@ -155,8 +176,27 @@ fn ends_of_lines(path: &Path, features: &[GeojsonFeature], frame: &Frame) -> Res
     Ok(pairs)
 }
 
+/// The places of a network from a file.
+fn network(path: &Path, max_distance: Option<f64>, scene: &Scene, run: &mut CommandContext) -> Result<NetworkPlaces> {
+    let frame = scene.frame();
+    let mut network = NetworkPlaces { max_distance, ..NetworkPlaces::default() };
+    for row in observer_rows(path, frame, RowsAre::Places, ObserverUse::Places, run)? {
+        let &[place] = &row.corners[..] else {
+            bail!("{}: a line or an area is no place of a network; give points", path.display());
+        };
+        let place = std::array::from_fn(|axis| place[axis] - frame.origin[axis]);
+        network.places.push(Standing { place, height: row.height });
+        network.names.push(row.name);
+    }
+    Ok(network)
+}
+
 fn write(output: &Path, found: &SightsResults, scene: &Scene, rows: &TextRows) -> belvedere::Result<()> {
     let frame = scene.frame();
+    let names: Option<[Vec<&str>; 2]> = found
+        .network
+        .as_ref()
+        .map(|network| [0, 1].map(|end| network.pairs.iter().map(|pair| &network.names[pair[end]][..]).collect()));
     let end = |column: usize| found.pairs.iter().map(move |pair| frame.file_from_local(pair[column / 3])[column % 3]);
     let ends: [Vec<f64>; 6] = std::array::from_fn(|column| end(column).collect());
     let SightColumns { ranges, unproven, fresnel_free_percent, places, balls, sources, meshes, surfaces, is_terrain } =
@@ -166,8 +206,13 @@ fn write(output: &Path, found: &SightsResults, scene: &Scene, rows: &TextRows) -
     let balls: Vec<Option<u64>> = balls.into_iter().map(|ball| ball.map(|ball| ball as u64)).collect();
     let sources: Vec<Option<u64>> = sources.into_iter().map(|source| source.map(u64::from)).collect();
     let terrain: Option<Vec<Option<u64>>> = is_terrain.map(|all| all.into_iter().map(|is| is.map(u64::from)).collect());
-    let mut columns: Vec<(&str, TableCells<'_>)> =
-        ENDS.iter().zip(&ends).map(|(&name, values)| (name, TableCells::Real(values, 4))).collect();
+    let mut columns: Vec<(&str, TableCells<'_>)> = Vec::new();
+    columns.extend(names.iter().flatten().zip(["a", "b"]).map(|(words, name)| (name, TableCells::Words(words))));
+    columns.extend(ENDS.iter().zip(&ends).map(|(&name, values)| (name, TableCells::Real(values, 4))));
+    let lengths: Vec<f64> = found.pairs.iter().map(|&[a, b]| length(sub(b, a))).collect();
+    if found.network.is_some() || extension(output) != "csv" {
+        columns.push(("length_m", TableCells::Real(&lengths, 3)));
+    }
     columns.push(("answer", TableCells::Whole(&codes)));
     let sure: Vec<(Vec<f64>, usize)> = found
         .sure
@@ -186,7 +231,50 @@ fn write(output: &Path, found: &SightsResults, scene: &Scene, rows: &TextRows) -
     columns.extend(surfaces.as_ref().map(|names| ("block_surface", TableCells::Words(names))));
     columns.extend(terrain.as_ref().map(|terrain| ("block_terrain", TableCells::Whole(terrain))));
     let read = rows.columns(0..rows.row_count());
-    write_table(output, &with_columns_read(&read, &ENDS, &columns))
+    match (extension(output).as_str(), &found.network) {
+        ("geojson", _) => {
+            let columns: Vec<_> = with_columns_read(&read, &ENDS, &columns);
+            let of_line = |row: usize| {
+                let places = found.pairs[row].map(|end| std::array::from_fn(|axis| end[axis] + frame.origin[axis]));
+                let mut properties = row_properties(&columns, row);
+                properties.retain(|name, _| !ENDS.contains(&&name[..]));
+                PathLine { places: places.to_vec(), properties }
+            };
+            // an end without a height is nowhere
+            let has_place = |&row: &usize| found.pairs[row].iter().all(|end| end[2].is_finite());
+            let lines: Vec<PathLine> = (0..found.pairs.len()).filter(has_place).map(of_line).collect();
+            write_geojson(output, &[], &lines, &frame.crs).map(|_| ())
+        }
+        ("graphml", Some(network)) => {
+            columns
+                .retain(|(name, _)| !ENDS.contains(name) && !name.starts_with("block") && !["a", "b"].contains(name));
+            write_network(output, found, network, &columns, scene)
+        }
+        (_, Some(_)) => write_table(output, &columns),
+        (_, None) => write_table(output, &with_columns_read(&read, &ENDS, &columns)),
+    }
+}
+
+/// Writes the places as nodes, and the visible and unproven pairs as edges.
+fn write_network(
+    output: &Path,
+    found: &SightsResults,
+    network: &SightNetwork,
+    edges: &[(&str, TableCells<'_>)],
+    scene: &Scene,
+) -> belvedere::Result<()> {
+    let places: Vec<[f64; 3]> = network.places.iter().map(|&place| scene.frame().file_from_local(place)).collect();
+    let axes: [Vec<f64>; 3] = std::array::from_fn(|axis| places.iter().map(|place| place[axis]).collect());
+    let names: Vec<&str> = network.names.iter().map(String::as_str).collect();
+    let whole = |values: &[usize]| values.iter().map(|&value| Some(value as u64)).collect::<Vec<_>>();
+    let (links, groups) = (whole(&network.link_counts), whole(&network.groups));
+    let mut nodes = vec![("name", TableCells::Words(&names))];
+    nodes.extend(["x", "y", "z"].into_iter().zip(&axes).map(|(name, values)| (name, TableCells::Real(values, 3))));
+    nodes.extend([("links", TableCells::Whole(&links)), ("group", TableCells::Whole(&groups))]);
+    let is_edge = |answer: Answer| [Answer::Visible, Answer::Unproven].contains(&answer);
+    let ends: Vec<Option<[usize; 2]>> =
+        network.pairs.iter().zip(&found.answers).map(|(&pair, &answer)| is_edge(answer).then_some(pair)).collect();
+    write_graphml(output, places.len(), &nodes, &ends, edges)
 }
 
 /// Returns the length of the first line that no pulse came near to, metres, if that makes its answer unproven.

@@ -47,7 +47,10 @@ pub(crate) fn run(arguments: &ViewshedArguments, global: &Global) -> Result<Summ
     let scene = scene.into_question_scene(Some(&arguments.ground), arguments.giving_way.shell, &run)?;
     let areas: Vec<PathBuf> = arguments.output.iter().chain(&arguments.far_output).cloned().collect();
     warn_of_geojson(&areas, &scene.frame().crs, &mut run.summary);
-    question.observers = viewshed_observers::observers(arguments, (scene.frame(), &scene.model().bounds()), &mut run)?;
+    question.observers = match arguments.who.spread {
+        Some(count) => question.spread_observers(&scene, count, &run.control())?,
+        None => viewshed_observers::observers(arguments, (scene.frame(), &scene.model().bounds()), &mut run)?,
+    };
     let answers = run.ask(&scene, &question, &Places::Scene)?;
     write(arguments, &answers.found, &scene, &mut run)?;
     let written =
@@ -89,7 +92,8 @@ fn question(arguments: &ViewshedArguments) -> Result<ask::ViewshedQuestion> {
 
 /// Returns the maximum range of typed observers; `None` without a limit, or if only the scene gives it.
 fn reach(arguments: &ViewshedArguments) -> Option<f64> {
-    let is_bounded = arguments.who.observers.is_none() && arguments.terrain.is_none();
+    let who = &arguments.who;
+    let is_bounded = who.observers.is_none() && who.spread.is_none() && arguments.terrain.is_none();
     arguments.looking.max_distance.filter(|_| is_bounded)
 }
 
@@ -106,6 +110,7 @@ fn in_tiles(arguments: &ViewshedArguments, question: &ask::ViewshedQuestion, run
         trees: None,
         output: &arguments.output,
         others: vec![
+            ("--spread", arguments.who.spread.is_some()),
             ("--terrain", arguments.terrain.is_some()),
             ("--ground cloud=FILE", matches!(arguments.ground, GroundChoice::Cloud(_))),
             ("--shell", arguments.giving_way.shell.is_some()),

@@ -2,7 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 #![expect(clippy::cast_possible_truncation, reason = "cells of a small grid")]
 
-use crate::common::{EAST, NORTH, ROUGHNESS, Workplace, at, house};
+use crate::common::{EAST, NORTH, ROUGHNESS, Workplace, at, house, is_hidden};
 
 /// The house's flags: its normals are given and no pulses are known.
 const HOUSE: &str = "house.laz --scene-config ../tau.json --orient given --ground found";
@@ -265,4 +265,86 @@ fn what_cannot_be_is_refused_with_advice() {
         &format!("viewshed {HOUSE} --observers none.csv --cell 2 -o seen.tif"),
         &["none.csv", "give a row"],
     );
+}
+
+#[test]
+fn places_around_a_house_are_a_network_whatever_their_order() {
+    let place = place();
+    // west and east of the house, north of it, and north-west
+    let places = [("west", -12.0, 0.0), ("east", 12.0, 0.0), ("north", 0.0, 10.0), ("north-west", -12.0, 7.0)];
+    let row = |(name, x, y): &(&str, f64, f64)| format!("\"{name}\",{},{},2\n", EAST + x, NORTH + y);
+    let header = "id,x,y,z\n".to_owned();
+    place.write("places.csv", header.clone() + &places.iter().map(row).collect::<String>());
+    place.write("turned.csv", header + &places.iter().rev().map(row).collect::<String>());
+    let outputs = "-o net.csv -o net.geojson -o net.graphml";
+    let summary = place.summary(&format!("line-of-sight {HOUSE} --among places.csv {outputs}"));
+    // the house stands between west and east, and between east and north-west
+    let network = &summary["network"];
+    assert_eq!((&network["places"], &network["links"], &network["groups"]), (&4.into(), &4.into(), &1.into()));
+    let text = place.text("net.csv");
+    assert_eq!(column(&text, "answer").iter().filter(|answer| *answer == "0").count(), 2, "{text}");
+    assert!(text.lines().any(|line| line.starts_with("west,east,") && line.contains(",24.000,0,")), "{text}");
+    let lines: serde_json::Value = serde_json::from_str(&place.text("net.geojson")).unwrap();
+    let lines = lines["features"].as_array().unwrap();
+    assert_eq!(lines.len(), 6);
+    let of = |a: &str, b: &str| lines.iter().find(|l| l["properties"]["a"] == a && l["properties"]["b"] == b).unwrap();
+    assert_eq!(of("west", "north-west")["properties"]["answer"], 1);
+    assert_eq!(of("west", "north-west")["properties"]["length_m"], 7.0);
+    let graph = place.text("net.graphml");
+    assert_eq!((graph.matches("<node ").count(), graph.matches("<edge ").count()), (4, 4), "{graph}");
+
+    let turned = place.summary(&format!("line-of-sight {HOUSE} --among turned.csv -o net.csv"));
+    assert_eq!(turned["network"]["links"], 4);
+    // 13 m reach from north-west to west and to north alone
+    let near = place.summary(&format!("line-of-sight {HOUSE} --among places.csv --max-distance 13 -o near.csv"));
+    let near = &near["network"];
+    assert_eq!((&near["links"], &near["groups"], &near["largest_group"]), (&2.into(), &2.into(), &3.into()));
+    assert_eq!((&near["places_without_link"], &near["max_links"][0]), (&1.into(), &"north-west".into()));
+}
+
+#[test]
+fn networks_name_what_cannot_see_and_refuse_what_is_no_network() {
+    let place = place();
+    let [outside, inside] = [EAST - 12.0, EAST - 4.6];
+    let north = NORTH + 0.25;
+    place.write("places.csv", format!("x,y,z\n{outside},{north},2.25\n{inside},{north},2.25\n"));
+    let run = place.run(&format!("line-of-sight {HOUSE} --among places.csv -o net.csv"));
+    assert_eq!(run.status, 0, "{run:?}");
+    assert!(run.stderr.contains("1 of 2 places (50 %) are inside an obstacle, and see no other: 2"), "{run:?}");
+    place.write("one.csv", format!("x,y,z\n{EAST},{NORTH},2\n"));
+    place.refusal(2, &format!("line-of-sight {HOUSE} --among one.csv -o net.csv"), &["two places or more"]);
+    let pairs = format!("line-of-sight {HOUSE} --observer {EAST},{NORTH},20 --target {EAST},{NORTH},30 -o net.graphml");
+    place.refusal(2, &pairs, &["--among"]);
+}
+
+#[test]
+fn observers_of_a_total_viewshed_fill_the_map_and_stand_in_no_house() {
+    let place = place();
+    let spread = |count: usize, output: &str| {
+        place.summary(&format!("viewshed {HOUSE} --spread {count} --target-height 1.7 --cell 2 -o {output}"))
+    };
+    let summary = spread(200, "total.tif");
+    assert_eq!(
+        (&summary["observers"]["count"], &summary["observers"]["skipped"]),
+        (&200.into(), &0.into()),
+        "{summary}"
+    );
+    // the same share of pairs of places on a fine grid has a free line of sight past the house
+    let places: Vec<[f64; 3]> = (0..29 * 29)
+        .map(|i| [f64::from(i % 29 - 14), f64::from(i / 29 - 14), 1.7])
+        .filter(|[x, y, _]| x.abs() > 5.0 || y.abs() > 4.0)
+        .collect();
+    let is_free = |a: [f64; 3], b: [f64; 3]| {
+        let ahead = [0, 1, 2].map(|i| b[i] - a[i]);
+        !is_hidden(a, ahead) || !is_hidden(b, ahead.map(|v| -v))
+    };
+    let free = places.iter().flat_map(|&a| places.iter().map(move |&b| (a, b))).filter(|&(a, b)| is_free(a, b)).count();
+    let expected = free as f64 / (places.len() * places.len()) as f64;
+    let raster = belvedere::io::read_tif(place.path("total.tif").as_path()).unwrap();
+    // nobody sees cells whose middles are below the edge of the roof
+    let counts: Vec<f32> = raster.values.values().iter().copied().filter(|count| *count > 0.0).collect();
+    let found = f64::from(counts.iter().sum::<f32>()) / counts.len() as f64 / 200.0;
+    // two hundred places and cells of 2 m miss it by a hundredth or two
+    assert!((found - expected).abs() < 0.03, "{found} {expected}");
+    place.refusal(2, &format!("viewshed {HOUSE} --spread 0 -o total.tif"), &["--spread", "1 to 65534"]);
 }

@@ -207,6 +207,7 @@ class Sights:
             curvature,
             refraction,
             frequency_ghz,
+            None,
             reporter(progress),
         )
         remarks = warned(given)
@@ -230,3 +231,72 @@ class Sights:
             float(columns["probability"][0]) if "probability" in columns else nan,
             bool(columns["uncertain"][0] > 0) if "uncertain" in columns else None,
         )
+
+    def network(
+        self,
+        places: Places,
+        *,
+        max_distance: float | None = None,
+        observer_height: float | None = None,
+        ground: str | None = None,
+        unproven: str = "report",
+        probability: bool = False,
+        certain: float | None = None,
+        curvature: str | None = None,
+        refraction: float | None = None,
+        frequency_ghz: float | None = None,
+        progress: Progress = None,
+    ) -> Table:
+        """Which of several places see each other.
+
+        Lines of sight are the same in both directions.
+
+        Parameters
+        ----------
+        places : array_like, shape (N, 3) or (N, 2)
+            Places in the coordinates of the file: x, y, z. Without z they are above the ground.
+        max_distance : float, optional
+            Horizontal distance up to which two places are a pair, metres; no limit if not given.
+        observer_height : float, optional
+            Height of places without z above the ground, metres; 1.7 if not given.
+        ground, unproven, probability, certain, curvature, refraction, frequency_ghz
+            As for `line_of_sight`.
+        progress : bool or callable, optional
+
+        Returns
+        -------
+        Table
+            A row for each pair: ``a`` and ``b``, the rows of its places, ``length_m``, and the columns of
+            `line_of_sight`.
+
+        Raises
+        ------
+        BelvedereError
+            For fewer than two places, more than 10 million pairs, and places that are not finite.
+
+        Examples
+        --------
+        >>> links = scene.network([eye, targets[0], targets[1]])
+        >>> [(int(a), int(b)) for a, b in zip(links["a"], links["b"])]
+        [(0, 1), (0, 2), (1, 2)]
+        """
+        check_finite(refraction=refraction, frequency_ghz=frequency_ghz, max_distance=max_distance)
+        check_finite(observer_height=observer_height)
+        given_places, _ = pairs_of(places, places, self._core.crs.text)
+        columns, standing, given = self._core.lines_of_sight(
+            given_places,
+            None,
+            {"observer_height": observer_height, "target_height": None, "ground": ground},
+            unproven,
+            {"probability": probability, "certain": certain},
+            curvature,
+            refraction,
+            frequency_ghz,
+            max_distance,
+            reporter(progress),
+        )
+        if "block_surface" in columns:
+            columns["block_surface"] = np.asarray(columns["block_surface"])
+        table = Table(columns, places=standing, crs=self._core.crs.text)
+        table.remarks = warned(given)
+        return table

@@ -22,7 +22,8 @@ const MAX_COUNTED: usize = 65_534;
 pub(super) fn check(arguments: &ViewshedArguments) -> Result<()> {
     MapPosition::refuse_twice("--observer", &arguments.who.observer)?;
     let (who, looking) = (&arguments.who, &arguments.looking);
-    let count = if looking.step.is_some() { 1 } else { min_count(who.observer.len(), who.observers.as_deref())? };
+    let typed = who.spread.unwrap_or(who.observer.len());
+    let count = if looking.step.is_some() { 1 } else { min_count(typed, who.observers.as_deref())? };
     check_count(arguments, count)
 }
 
