@@ -11,7 +11,7 @@ use crate::windows::{WindowRow, given};
 use crate::work::run;
 use belvedere::apps::ask::{self, GivenWindows};
 use belvedere::apps::sun_calendar::SunStretch;
-use belvedere::sunlight_report::{Language, ReportArea, ReportParams, sunlight_report};
+use belvedere::sunlight_report::{Language, ReportArea, ReportParams, ShadowStudy, sunlight_report};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
@@ -29,6 +29,7 @@ pub(crate) struct ReportKeywords {
     planned: Option<Py<PyScene>>,
     rule: Option<String>,
     area_rule: Option<String>,
+    study: Option<String>,
     title: String,
     notes: Vec<String>,
     language: String,
@@ -41,6 +42,11 @@ impl ReportKeywords {
         let Some(&(_, language)) = language else {
             return Err(wrong("language", &format!("'{}'", self.language), "use 'en', 'nl', 'de' or 'fr'"));
         };
+        let study_of = |name: &str| {
+            let known = ShadowStudy::ALL.into_iter().find(|study| study.name() == name);
+            known.ok_or_else(|| wrong("study", &format!("'{name}'"), "use 'ceqr', 'san-francisco' or 'toronto'"))
+        };
+        let study = self.study.as_deref().map(study_of).transpose()?;
         let GivenWindows::Each(windows) = given(&self.windows, scene.frame()) else {
             return Ok(ReportParams::default());
         };
@@ -58,6 +64,7 @@ impl ReportKeywords {
             areas: self.areas.iter().map(area).collect(),
             rule: self.rule.clone(),
             area_rule: self.area_rule.clone(),
+            study,
             days: days.chosen(),
             place: place.chosen()?,
             date: self.today.clone(),

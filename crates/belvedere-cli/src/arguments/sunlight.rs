@@ -4,7 +4,7 @@ use super::{
     CornersArgument, FarTerrainArguments, GroundChoice, MapPosition, NorthArguments, SceneInput, Shell, SunPeriod,
     SunPlaceArguments, above_zero, height,
 };
-use belvedere::sunlight_report::Language;
+use belvedere::sunlight_report::{Language, ShadowStudy};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -81,7 +81,11 @@ pub(crate) struct ReportArguments {
     /// Daylight rule of the areas [default: bre-equinox, 2 h on 21 March]
     #[arg(long = "area-rule", value_name = "RULE", requires = "area", help_heading = "Rules and days")]
     pub(crate) area_rule: Option<String>,
-    /// A day in detail: 2026-06-21, equinox, shortest-day or longest-day; repeatable [default: these three]
+    /// Shadow study of a city: its days and hours count for the shade that the plan adds to areas
+    #[arg(long, value_enum, value_name = "CITY", requires = "area", help_heading = "Rules and days")]
+    pub(crate) study: Option<StudyChoice>,
+    /// A day in detail: 2026-06-21, equinox, shortest-day or longest-day; repeatable [default: these three, or
+    /// those of --study]
     #[arg(long, value_name = "DATE", help_heading = "Rules and days")]
     pub(crate) date: Vec<String>,
     /// Year of days that are given without a year [default: this year]
@@ -111,6 +115,26 @@ pub(crate) struct ReportArguments {
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum StudyChoice {
+    /// New York, CEQR Technical Manual (2021): four days, 1.5 hours from sunrise and sunset
+    Ceqr,
+    /// San Francisco, Planning Code section 295: m² × hours of a year, an hour from sunrise and sunset
+    SanFrancisco,
+    /// Toronto: 21 March, 21 June and 21 September, 9:18 to 18:18
+    Toronto,
+}
+
+impl From<StudyChoice> for ShadowStudy {
+    fn from(choice: StudyChoice) -> Self {
+        match choice {
+            StudyChoice::Ceqr => Self::Ceqr,
+            StudyChoice::SanFrancisco => Self::SanFrancisco,
+            StudyChoice::Toronto => Self::Toronto,
+        }
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -4,7 +4,7 @@ use super::check_output;
 use super::map_shapes::{TypedAre, shapes, wrong_shape};
 use super::sun_calendar::refuse_mesh;
 use super::windows::{FaceChoice, WindowFile};
-use crate::arguments::{AreaChoice, CornersArgument, Global, ReportArguments};
+use crate::arguments::{AreaChoice, CornersArgument, Global, ReportArguments, Usage};
 use crate::pipeline;
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -18,12 +18,18 @@ use std::path::Path;
 pub(crate) fn run(arguments: &ReportArguments, global: &Global) -> Result<Summary> {
     check_output("-o", &arguments.output, &["html"])?;
     arguments.windows.as_deref().map_or(Ok(()), refuse_mesh)?;
+    let plan = &arguments.scene.plan;
+    if arguments.study.is_some() && plan.add.is_empty() && plan.clear.is_empty() {
+        let what = "--study counts the shade that a plan adds to areas: give the plan with --add or --clear";
+        return Err(Usage(what.to_owned()).into());
+    }
     let mut params = ReportParams {
         title: arguments.title.clone(),
         notes: arguments.note.clone(),
         language: arguments.language.into(),
         rule: arguments.rule.clone(),
         area_rule: arguments.area_rule.clone(),
+        study: arguments.study.map(Into::into),
         days: Days {
             dates: arguments.date.clone(),
             year: arguments.year,

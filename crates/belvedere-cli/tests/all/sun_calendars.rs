@@ -82,6 +82,51 @@ fn reports_compare_a_plan_with_what_is() {
 }
 
 #[test]
+fn shadow_studies_count_the_days_and_hours_of_their_city() {
+    let place = place();
+    let garden = corners(&[[12.0, 8.0], [20.0, 8.0], [20.0, 12.0], [12.0, 12.0]]);
+    let command = format!("report {HOUSE} --add wall.obj --year 2026");
+    let added = |study: &str| {
+        let run = place.run_with(&format!("{command} --study {study} -o s.html"), &["--area", &garden]);
+        assert_eq!(run.status, 0, "{}", run.stderr);
+        let page = place.text("s.html");
+        // the area, the day, first and last time
+        let rows = page.split("Shade that the plan adds to areas").nth(1).unwrap().split("</table>").next().unwrap();
+        let cells =
+            |row: &str| row.split("<td>").skip(1).map(|cell| cell.split('<').next().unwrap().to_owned()).collect();
+        let rows: Vec<Vec<String>> = rows.split("<tr>").skip(2).map(cells).collect();
+        (rows, page)
+    };
+    let minutes = |time: &str| {
+        let (hours, minutes) = time.split_once(':').unwrap();
+        60 * hours.parse::<i32>().unwrap() + minutes.parse::<i32>().unwrap()
+    };
+    let (rows, page) = added("ceqr");
+    assert!(page.contains("CEQR Technical Manual (2021)"));
+    // the wall south of the garden shades it all day in December; almanac of 52 N, 5 E: 08:46 to 16:29, less 1.5 hours
+    let winter = rows.iter().find(|row| row[0].starts_with("21 Dec")).unwrap();
+    assert!((minutes(&winter[1]) - minutes("10:16")).abs() <= 2, "{winter:?}");
+    assert!((minutes(&winter[2]) - minutes("14:59")).abs() <= 2, "{winter:?}");
+    assert!(rows.iter().any(|row| row[0].starts_with("6 May")), "{rows:?}");
+    let (rows, _) = added("toronto");
+    let hours_of = |row: &Vec<String>| [&row[1], &row[2]].map(|time| minutes(time));
+    assert!(rows.iter().map(hours_of).all(|[from, to]| from >= minutes("9:18") && to <= minutes("18:18")), "{rows:?}");
+    assert!(rows.iter().all(|row| !row[0].contains("Dec")), "{rows:?}");
+
+    let (_, page) = added("san-francisco");
+    let year = page.split("Sun of a year over areas").nth(1).unwrap().split("</table>").next().unwrap();
+    let cells: Vec<&str> = year.split("<td>").skip(1).map(|cell| cell.split('<').next().unwrap()).collect();
+    let number =
+        |cell: &str| cell.trim_end_matches(" %").replace([',', '\u{202f}', '\u{a0}'], "").parse::<f64>().unwrap();
+    // the sun of a year at 52 degrees, less two hours a day
+    let (area, possible, added, share) = (number(cells[0]), number(cells[1]), number(cells[3]), number(cells[4]));
+    assert!(area == 32.0 && (3600.0..3800.0).contains(&(possible / area)), "{cells:?}");
+    assert!((added / possible * 100.0 - share).abs() < 0.02 && (20.0..100.0).contains(&share), "{cells:?}");
+
+    place.refusal_with(2, &format!("report {HOUSE} --study ceqr -o s.html"), &["--area", &garden], &["--add"]);
+}
+
+#[test]
 fn reports_and_calendars_refuse_what_they_cannot_do() {
     let place = place();
     place.refusal(2, &format!("report {HOUSE} -o r.html"), &["--windows"]);

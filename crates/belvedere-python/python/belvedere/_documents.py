@@ -124,6 +124,7 @@ class Documents:
         planned: Any = None,
         rule: str | None = None,
         area_rule: str | None = None,
+        study: str | None = None,
         date: Day | Iterable[Day] | None = None,
         year: int | None = None,
         time_step_min: float | None = None,
@@ -152,8 +153,10 @@ class Documents:
             Daylight rule of the windows, as for `sun_hours`; no verdict if not given.
         area_rule : str, optional
             Daylight rule of the areas; ``'bre-equinox'`` if not given.
+        study : {'ceqr', 'san-francisco', 'toronto'}, optional
+            City whose days and hours count for the shade that the plan adds to areas.
         date : date or str, or several, optional
-            Days in detail; the equinox, the longest and the shortest day of `year` if not given.
+            Days in detail; if not given those of `study`, else equinox, longest and shortest day of `year`.
         year : int, optional
             Year of days that are given without one; this year if not given.
         time_step_min : float, optional
@@ -213,6 +216,7 @@ class Documents:
                 "planned": None if planned is None else planned._core,
                 "rule": rule,
                 "area_rule": area_rule,
+                "study": study,
                 "title": title,
                 "notes": as_list(notes),
                 "language": language,

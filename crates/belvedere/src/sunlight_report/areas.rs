@@ -1,13 +1,15 @@
 //! Areas of a report: the share that meets a rule, and the shade that a plan adds.
 
+use super::studies::{ShadowStudy, YearOfSun, hours_within};
 use super::{ReportArea, ReportParams, add_remarks};
 use crate::Result;
-use crate::apps::ask::{self, Days, GridCells, Places, Remark, Scene, SunHoursQuestion};
-use crate::apps::sun::{Date, SunSchedule};
+use crate::apps::ask::{self, Days, GridCells, Places, Remark, Scene, SunCalendarResults, SunHoursQuestion};
+use crate::apps::sun::{Date, Site, SunSchedule, Zone};
 use crate::apps::targets::{CellLevel, Measure, Targets};
 use crate::control::Control;
 use crate::polygon::is_inside;
 use crate::query::{UnprovenAs, VisibilityMatrix};
+use crate::vector::to_f32;
 use std::sync::Arc;
 
 /// Minutes between two suns of a rule in areas, which have many places.
@@ -29,9 +31,44 @@ pub(super) struct AreaState {
     pub(super) outside: f64,
     /// Shade that the plan adds on each day in detail; empty for the scene as it is.
     pub(super) added: Vec<AddedShade>,
+    /// The sun of a year, where a study counts it and a plan is given.
+    pub(super) year: Option<YearOfSun>,
     targets: Arc<Targets>,
     /// Suns of the days in detail that reach each cell.
     lit: VisibilityMatrix,
+    /// Suns of a year that do.
+    lit_in_year: Option<VisibilityMatrix>,
+}
+
+/// Suns whose shade counts.
+pub(super) struct CountedSuns<'a> {
+    schedule: &'a SunSchedule,
+    /// Hours on the clock that count on each of its days.
+    hours: Vec<[f64; 2]>,
+    /// The suns of a year and their hours, where a study counts them.
+    year: Option<(SunSchedule, Vec<[f64; 2]>)>,
+}
+
+impl<'a> CountedSuns<'a> {
+    /// Those of the days in detail, all day or in the hours of a study.
+    pub(super) fn new(calendar: &'a SunCalendarResults, study: Option<ShadowStudy>) -> Result<Self> {
+        let clock: (&Site, &Zone) = (&calendar.site, &calendar.zone);
+        let schedule = &calendar.schedule;
+        let Some(study) = study else {
+            let hours = vec![[f64::NEG_INFINITY, f64::INFINITY]; schedule.days.len()];
+            return Ok(Self { schedule, hours, year: None });
+        };
+        let hours_of = |schedule: &SunSchedule| {
+            schedule.days.iter().map(|day| study.hours(clock, day.date)).collect::<Result<Vec<_>>>()
+        };
+        let hours = hours_of(schedule)?;
+        let year = match schedule.days.first() {
+            Some(day) => study.year(clock, day.date.year())?,
+            None => None,
+        };
+        let year = year.map(|schedule| Ok::<_, crate::Error>((hours_of(&schedule)?, schedule))).transpose()?;
+        Ok(Self { schedule, hours, year: year.map(|(hours, schedule)| (schedule, hours)) })
+    }
 }
 
 /// Shade that a plan adds to an area on a day.
@@ -59,10 +96,15 @@ fn share_outside(scene: &Scene, area: &ReportArea, targets: &Targets) -> f64 {
 }
 
 impl AreaState {
+    /// Area of its cells on the ground, m².
+    pub(super) fn square_metres(&self) -> f64 {
+        self.cells as f64 * AREA_CELL * AREA_CELL
+    }
+
     pub(super) fn of(
         scene: &Scene,
         (area, params): (&ReportArea, &ReportParams),
-        schedule: &SunSchedule,
+        suns: &CountedSuns<'_>,
         remarks: &mut Vec<Remark>,
         control: &Control<'_>,
     ) -> Result<Self> {
@@ -91,39 +133,52 @@ impl AreaState {
         };
         let targets = answers.found.targets;
         let blockers = scene.blockers(UnprovenAs::Visible, control)?;
-        let lit = control.stage("testing sun of areas", targets.len(), || {
-            blockers.visibility_matrix(&targets.positions, &schedule.directions, control)
-        })?;
+        let lit_by = |schedule: &SunSchedule| {
+            control.stage("testing sun of areas", targets.len(), || {
+                blockers.visibility_matrix(&targets.positions, &schedule.directions, control)
+            })
+        };
+        let lit = lit_by(suns.schedule)?;
+        let lit_in_year = suns.year.as_ref().map(|(schedule, _)| lit_by(schedule)).transpose()?;
         let (share, hours) = (mean(answers.measures.last()), mean(answers.measures.first()));
         let outside = share_outside(scene, area, &targets);
-        Ok(Self { share, hours, cells: targets.target_count(), outside, added: Vec::new(), targets, lit })
+        let cells = targets.target_count();
+        Ok(Self { share, hours, cells, outside, added: Vec::new(), year: None, targets, lit, lit_in_year })
     }
 
     /// Compares this state with the one before, of the same cells: ground that a plan covers has no sun.
-    pub(super) fn compare(&mut self, before: &Self, schedule: &SunSchedule) {
+    pub(super) fn compare(&mut self, before: &Self, suns: &CountedSuns<'_>) {
         let left = self.cells as f64 / before.cells as f64;
         let scaled = |value: f64| if self.cells == 0 { 0.0 } else { value * left };
         [self.share, self.hours] = [self.share, self.hours].map(scaled);
         let cells: Vec<usize> = (0..before.targets.len()).filter(|&cell| before.targets.is_target(cell)).collect();
-        let lost = |direction: usize| {
-            let loses = |&&cell: &&usize| before.lit.is_free(cell, direction) && !self.lit.is_free(cell, direction);
-            cells.iter().filter(loses).count() as f64 / cells.len().max(1) as f64
+        let area = cells.len() as f64 * AREA_CELL * AREA_CELL;
+        let share = |is_so: &dyn Fn(usize) -> bool| {
+            cells.iter().filter(|&&cell| is_so(cell)).count() as f64 / cells.len().max(1) as f64
+        };
+        let lost = |before: &VisibilityMatrix, after: &VisibilityMatrix, direction: usize| {
+            share(&|cell| before.is_free(cell, direction) && !after.is_free(cell, direction))
         };
         let mut added = Vec::new();
-        for day in &schedule.days {
+        for (day, &hours) in suns.schedule.days.iter().zip(&suns.hours) {
             let mut of_day: Option<AddedShade> = None;
             for step in &day.steps {
-                let share = lost(step.direction as usize);
+                let ends = hours_within(hours, step.start, step.hours);
+                if ends[0] >= ends[1] {
+                    continue;
+                }
+                let share = lost(&before.lit, &self.lit, step.direction as usize);
                 if share < MIN_SHARE {
                     continue;
                 }
-                let (start, end) = (step.start, step.start + step.hours);
+                let length = ends[1] - ends[0];
+                let [start, end] = ends.map(to_f32);
                 let none =
                     AddedShade { date: day.date, ends: [start, end], hours: 0.0, most: (0.0, start), area_hours: 0.0 };
                 let found = of_day.get_or_insert(none);
                 found.ends[1] = end;
-                found.hours += step.hours;
-                found.area_hours += share * f64::from(step.hours) * cells.len() as f64 * AREA_CELL * AREA_CELL;
+                found.hours += to_f32(length);
+                found.area_hours += share * length * area;
                 if share > found.most.0 {
                     found.most = (share, (start + end) / 2.0);
                 }
@@ -131,5 +186,10 @@ impl AreaState {
             added.extend(of_day);
         }
         self.added = added;
+        if let (Some((schedule, hours)), Some(was), Some(is)) = (&suns.year, &before.lit_in_year, &self.lit_in_year) {
+            let share_lit = |direction: usize| share(&|cell| was.is_free(cell, direction));
+            let share_lost = |direction: usize| lost(was, is, direction);
+            self.year = Some(YearOfSun::of(schedule, hours, area, (share_lit, share_lost)));
+        }
     }
 }

@@ -19,10 +19,12 @@ mod numbers;
 mod page;
 mod sentences;
 mod sources;
+mod studies;
 mod verdict;
 mod words;
 
 pub use sources::ReportSource;
+pub use studies::ShadowStudy;
 pub use words::Language;
 
 use crate::apps::ask::{
@@ -39,7 +41,7 @@ use crate::crs::CrsKind;
 use crate::io::atomic;
 use crate::query::UnprovenAs;
 use crate::{Error, GpsTimeKind, Parameter, Result};
-use areas::AreaState;
+use areas::{AreaState, CountedSuns};
 use charts::SkyView;
 use maps::ShadowMaps;
 use std::collections::BTreeSet;
@@ -81,6 +83,8 @@ pub struct ReportParams {
     pub rule: Option<String>,
     /// Daylight rule of the areas; `None` for [`AREA_RULE`].
     pub area_rule: Option<String>,
+    /// Study of a city, whose days and hours count for the shade that the plan adds to areas.
+    pub study: Option<ShadowStudy>,
     /// Days in detail: the equinox, the longest and the shortest day unless others are given; without a year that of
     /// the date.
     pub days: Days,
@@ -168,7 +172,10 @@ impl ReportParams {
         let mut days = self.days.clone();
         days.year = days.year.or_else(|| Date::parse(&self.date).ok().map(Date::year));
         if days.is_empty() {
-            days.dates = DAYS.map(str::to_owned).to_vec();
+            days.dates = match (self.study, days.year) {
+                (Some(study), Some(year)) => study.dates(year),
+                _ => DAYS.map(str::to_owned).to_vec(),
+            };
         }
         let mut named = BTreeSet::new();
         days.dates.retain(|date| named.insert(date.clone()));
@@ -224,6 +231,13 @@ pub fn sunlight_report(
     control: &Control<'_>,
 ) -> Result<SunlightReport> {
     params.check()?;
+    if let Some(study) = params.study.filter(|_| planned.is_none() || params.areas.is_empty()) {
+        return Err(Error::InvalidParameter {
+            parameter: Parameter::Study,
+            value: study.name().to_owned(),
+            expected: "given with areas and a plan: it counts the shade that the plan adds to them",
+        });
+    }
     let mut remarks = Vec::new();
     let box_of_maps = maps::extent(present, planned, params);
     let before = State::of(present, params, box_of_maps, &mut remarks, control)?;
@@ -235,8 +249,9 @@ pub fn sunlight_report(
         return Err(Error::NoPoints { what });
     }
     let mut after = planned.map(|scene| State::of(scene, params, box_of_maps, &mut remarks, control)).transpose()?;
+    let suns = CountedSuns::new(&before.calendar, params.study)?;
     for (area, was) in after.iter_mut().flat_map(|state| &mut state.areas).zip(&before.areas) {
-        area.compare(was, &before.calendar.schedule);
+        area.compare(was, &suns);
     }
     let (low, high) = present.model().bounds().on_map();
     let count = present.cloud().len() as f64;
@@ -326,9 +341,10 @@ impl State {
             }
             rooms.push(rule);
         }
+        let suns = CountedSuns::new(&calendar, params.study)?;
         let mut areas = Vec::with_capacity(params.areas.len());
         for area in &params.areas {
-            areas.push(AreaState::of(scene, (area, params), &calendar.schedule, remarks, control)?);
+            areas.push(AreaState::of(scene, (area, params), &suns, remarks, control)?);
         }
         let maps = maps::shadow_maps(scene, params, &calendar, box_of_maps, control)?;
         let sky = |window: usize| {

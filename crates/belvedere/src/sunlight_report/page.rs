@@ -261,12 +261,51 @@ fn added_table(report: &SunlightReport, words: &Words) -> String {
             );
         }
     }
+    let counted = match report.params.study {
+        Some(study) => format!("<p>{}: {}.</p>", words.get("study"), escaped(study.title())),
+        None => String::new(),
+    };
+    let of_year = year_table(report, words);
     if rows.is_empty() {
-        return format!("<p>{}</p>", words.get("no-added"));
+        return format!("{counted}<p>{}</p>{of_year}", words.get("no-added"));
     }
     let names = ["area", "date", "from", "to", "duration", "at-most", "area-hours"].map(|key| words.get(key));
     let head: String = names.iter().map(|name| format!("<th>{name}</th>")).collect();
-    format!("<h3>{}</h3><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>", words.get("added"))
+    format!(
+        "<h3>{}</h3>{counted}<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>{of_year}",
+        words.get("added")
+    )
+}
+
+/// The sun of a year over each area, and what the plan takes of it, where a study counts it.
+fn year_table(report: &SunlightReport, words: &Words) -> String {
+    let Some(after) = &report.after else { return String::new() };
+    let mut rows = String::new();
+    for (number, area) in after.areas.iter().enumerate() {
+        let Some(year) = area.year else { continue };
+        let square_metres = report.before.areas[number].square_metres();
+        let possible = square_metres * year.hours;
+        let percent = |share: f64| words.number(100.0 * share, 2);
+        let worst = year
+            .worst
+            .map_or_else(String::new, |(date, most)| format!("{} ({})", words.short_date(date), words.number(most, 0)));
+        let _ = write!(
+            rows,
+            "<tr><th>{}</th><td>{}</td><td>{}</td><td>{} %</td><td>{}</td><td>{} %</td><td>{worst}</td></tr>",
+            escaped(&report.params.area_name(number, words)),
+            words.number(square_metres, 0),
+            words.number(possible, 0),
+            percent(1.0 - year.lit),
+            words.number(possible * year.lost, 0),
+            percent(year.lost),
+        );
+    }
+    if rows.is_empty() {
+        return String::new();
+    }
+    let names = ["area", "square-metres", "year-possible", "year-shaded", "year-added", "year-share", "year-worst"];
+    let head: String = names.iter().map(|name| format!("<th>{}</th>", words.get(name))).collect();
+    format!("<h3>{}</h3><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>", words.get("year"))
 }
 
 /// Colours of the cells of a map: what the plan adds and frees where there is one.
