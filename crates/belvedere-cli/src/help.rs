@@ -134,7 +134,7 @@ const RARE: &[&str] = &[
 /// The same of commands with many flags.
 const RARE_IN: &[(&str, &[&str])] = &[
     ("shadow", &["certain", "film", "location", "outlines", "self", "target-height"]),
-    ("sun-hours", &["target-height"]),
+    ("sun-hours", &["hourly-sun", "target-height"]),
     (
         "irradiance",
         &[

@@ -17,6 +17,7 @@ pub(crate) enum RasterArray<'py> {
     F32(PyReadonlyArray2<'py, f32>),
     U8(PyReadonlyArray2<'py, u8>),
     U16(PyReadonlyArray2<'py, u16>),
+    U32(PyReadonlyArray2<'py, u32>),
 }
 
 /// Writes a GeoTIFF of bands of one type with the six numbers of an affine transform. Labels of bands are names, units
@@ -38,7 +39,7 @@ pub(crate) fn write_geotiff(
     let (place, description) = (Some(&place), description.as_deref());
     let labels: Vec<BandLabel> =
         labels.into_iter().map(|(name, unit, tags)| BandLabel { tags, ..BandLabel::new(&name, &unit) }).collect();
-    let number = |max: u16| match nodata {
+    let number = |max: u32| match nodata {
         None => Ok(None),
         Some(v) if v >= 0.0 && v <= f64::from(max) && v.fract() == 0.0 => Ok(Some(v)),
         Some(v) => Err(wrong("nodata", &v.to_string(), &format!("give a whole number from 0 to {max}"))),
@@ -63,14 +64,20 @@ pub(crate) fn write_geotiff(
         ([RasterArray::U8(_), ..], _) => {
             let of_type =
                 |band: &RasterArray<'_>| if let RasterArray::U8(band) = band { Some(raster(band)) } else { None };
-            let (bands, nodata) = (all(&bands, of_type)?, number(u16::from(u8::MAX))?.unwrap_or(255.0));
+            let (bands, nodata) = (all(&bands, of_type)?, number(u8::MAX.into())?.unwrap_or(255.0));
             write(BandValues::U8(&bands, nodata as u8))
         }
         ([RasterArray::U16(_), ..], _) => {
             let of_type =
                 |band: &RasterArray<'_>| if let RasterArray::U16(band) = band { Some(raster(band)) } else { None };
-            let (bands, nodata) = (all(&bands, of_type)?, number(u16::MAX)?.unwrap_or(65_535.0));
+            let (bands, nodata) = (all(&bands, of_type)?, number(u16::MAX.into())?.unwrap_or(65_535.0));
             write(BandValues::U16(&bands, nodata as u16))
+        }
+        ([RasterArray::U32(_), ..], _) => {
+            let of_type =
+                |band: &RasterArray<'_>| if let RasterArray::U32(band) = band { Some(raster(band)) } else { None };
+            let (bands, nodata) = (all(&bands, of_type)?, number(u32::MAX)?.unwrap_or(f64::from(u32::MAX)));
+            write(BandValues::U32(&bands, nodata as u32))
         }
         _ => {
             let of_type =

@@ -1,11 +1,14 @@
 //! Hours of sun, and how much of the sky is seen.
 
+use crate::arrays::to_1d;
 use crate::errors::wrong;
 use crate::scene::PyScene;
 use crate::sun::SiteKeywords;
-use crate::targets::{RequestedTargets, TargetResults, put_to_scene};
+use crate::targets::{Grid, RequestedTargets, TargetResults, grid_of, put_to_scene};
 use crate::trees::Through;
-use belvedere::apps::ask::{self, SkyParts};
+use crate::work::run;
+use belvedere::apps::ask::{self, HourlySun, SkyParts};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -37,6 +40,9 @@ impl DaysKeywords {
         }
     }
 }
+
+/// Name and values of each hour of each month, and the grid of its cells.
+type HourBands<'py> = (Vec<(String, Bound<'py, PyArray1<u32>>)>, Option<Grid>);
 
 /// Returns the division of the sky from keywords.
 pub(crate) fn sky_parts(directions: Option<usize>, patches: Option<&str>) -> PyResult<SkyParts> {
@@ -75,6 +81,37 @@ impl PyScene {
         let places = chosen.places.clone();
         let answers = put_to_scene(py, progress, scene, question, places)?;
         chosen.results(py, &answers.found.targets, answers.measures, &answers.remarks)
+    }
+
+    /// Name and values of each hour of each month at the cells of a grid, and the grid.
+    fn hourly_sun<'py>(
+        &self,
+        py: Python<'py>,
+        year: i16,
+        days: DaysKeywords,
+        place: SiteKeywords,
+        targets: RequestedTargets<'py>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<HourBands<'py>> {
+        let place = place.chosen()?;
+        let question = ask::SunHoursQuestion {
+            days: days.chosen(),
+            place,
+            sun_tolerance_deg: days.tolerance,
+            ..ask::SunHoursQuestion::default()
+        };
+        let scene = Arc::clone(&self.0);
+        let places = targets.chosen(py, &scene)?.places;
+        let (bands, grid) = run(py, progress, move |control| {
+            question.place.check()?;
+            let targets = places.targets(&scene, &mut ask::Context::default(), control)?;
+            let sun = question.hourly_sun(year, &targets, &scene, control)?;
+            let hours = (1..=12_i8).flat_map(|month| (0..HourlySun::HOURS).map(move |hour| (month, hour)));
+            let bands = hours.map(|(month, hour)| (format!("{month:02}_{hour:02}"), sun.days(month, hour)));
+            let grid = targets.ground().map(|ground| grid_of(&ground.grid, &targets.frame));
+            Ok((bands.collect::<Vec<_>>(), grid))
+        })?;
+        Ok((bands.into_iter().map(|(name, days)| (name, to_1d(py, days))).collect(), grid))
     }
 
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]

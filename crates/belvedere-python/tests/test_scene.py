@@ -389,3 +389,55 @@ def test_a_scene_that_cannot_be_kept_is_said(cloud, tmp_path):
     with pytest.warns(belvedere.BelvedereWarning, match="could not be kept"):
         scene = belvedere.Scene(cloud, cache=tmp_path / "file")
     assert scene.report["scene"] == "not kept"
+
+
+def test_a_network_has_the_answers_of_its_pairs_in_both_directions(wall):
+    # two places on each side of the wall, and one above it
+    places = np.array([[-5, -8, 2], [5, -8, 2], [-5, 8, 2], [5, 8, 2], [0, 2, 12]], float) + [155000, 463000, 5]
+    links = wall.network(places)
+    rows = np.column_stack([links["a"], links["b"]])
+    assert rows.tolist() == [[a, b] for a in range(5) for b in range(a + 1, 5)]
+    # the ends of a line may change places
+    for a, b in (rows.T, rows.T[::-1]):
+        assert (wall.line_of_sight(places[a], places[b])["answer"] == links["answer"]).all()
+    same_side = (places[rows[:, 0], 1] > 463000) == (places[rows[:, 1], 1] > 463000)
+    seen = links["answer"] == Answer.VISIBLE
+    among_four = (rows < 4).all(axis=1)
+    assert (seen[among_four] == same_side[among_four]).all()
+    assert np.allclose(links["length_m"], np.linalg.norm(places[rows[:, 0]] - places[rows[:, 1]], axis=1), atol=1e-3)
+    near = wall.network(places, max_distance=11)
+    apart = np.linalg.norm((places[rows[:, 0]] - places[rows[:, 1]])[:, :2], axis=1)
+    assert (np.column_stack([near["a"], near["b"]]) == rows[apart <= 11]).all()
+    with pytest.raises(belvedere.BelvedereError, match="two places or more"):
+        wall.network(places[:1])
+
+
+def test_hourly_sun_is_the_shadow_of_each_hour(wall, tmp_path):
+    rasterio = pytest.importorskip("rasterio")
+    sun = wall.hourly_sun(2026, zone="+01:00", cell=2, sun_tolerance_deg=0)
+    assert len(sun) == 12 * 24
+    lit = wall.shadow(time="2026-03-21T15:30+01:00", cell=2)
+    days = sun["03_15"]
+    known = days.values != days.nodata
+    assert known.any() and (known == ~np.isnan(np.asarray(lit))).all()
+    bits = days.values >> 20 & 1
+    assert (bits == lit.values)[known].all() and 0 < bits[known].mean() < 1
+    days.to_geotiff(tmp_path / "days.tif")
+    with rasterio.open(tmp_path / "days.tif") as file:
+        assert (file.read(1) == days.values).all() and file.nodata == days.nodata
+
+
+# the wall has no classes, and its edge is near
+@pytest.mark.filterwarnings("ignore::belvedere.BelvedereWarning")
+def test_a_report_takes_the_days_and_hours_of_a_study(wall, tmp_path):
+    corners = [(154990, 463006, 5), (155010, 463006, 5), (155010, 463006, 20), (154990, 463006, 20)]
+    screen = belvedere.Mesh(corners, [(0, 1, 2), (0, 2, 3)])
+    garden = [(154996, 463011), (155004, 463011), (155004, 463015), (154996, 463015)]
+    path = tmp_path / "study.html"
+    wall.sunlight_report(path, areas={"garden": garden}, planned=wall.with_added(screen), study="ceqr", year=2026)
+    page = path.read_text(encoding="utf-8")
+    assert "CEQR Technical Manual (2021)" in page and "6 May" in page
+    with pytest.raises(belvedere.BelvedereError, match=r"'paris'.*'ceqr', 'san-francisco' or 'toronto'"):
+        wall.sunlight_report(path, areas={"garden": garden}, planned=wall.with_added(screen), study="paris")
+    with pytest.raises(belvedere.BelvedereError, match="with areas and a plan"):
+        wall.sunlight_report(path, areas={"garden": garden}, study="toronto")

@@ -1,5 +1,9 @@
 //! Sun hours: how long the sun reaches places on days, and whether rules of daylight are met.
 
+mod hourly_sun;
+
+pub use hourly_sun::HourlySun;
+
 use super::how_sure::{check_interval, check_interval_scene, knows_intervals};
 use super::scene::Whereabouts;
 use super::sections::{MeasuresSection, NamedValues, PeriodSection, PlacesReport};

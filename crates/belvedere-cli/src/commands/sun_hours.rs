@@ -2,16 +2,22 @@
 
 use super::in_tiles::TypedCells;
 use super::targets::TargetOutput;
-use crate::arguments::{Global, SunHoursArguments};
+use crate::arguments::{Global, SunHoursArguments, Usage};
 use crate::pipeline;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, Ask};
+use belvedere::apps::ask::{self, Ask, HourlySun, Scene, SunHoursQuestion};
+use belvedere::apps::targets::Targets;
+use belvedere::io::{BandLabel, BandValues, Bands, MetadataTag, atomic, write_tif_bands};
+use belvedere::raster::Raster;
+use belvedere::results::georeference;
+use std::path::Path;
+use std::sync::Arc;
 
 pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summary> {
     arguments.places.check(&arguments.outputs)?;
-    let question = ask::SunHoursQuestion {
+    let question = SunHoursQuestion {
         days: arguments.when.days(),
         rules: arguments.rule.clone(),
         place: arguments.sun.place_from_true_north()?,
@@ -20,13 +26,16 @@ pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summ
         interval: arguments.interval.interval,
     };
     question.check()?;
+    if arguments.hourly_sun.is_some() && !arguments.places.is_grid() {
+        return Err(Usage("--hourly-sun applies only to a grid".to_owned()).into());
+    }
     let mut run = CommandContext::new(global);
     let cells = TypedCells::of_sky(
         (&arguments.scene, &arguments.memory),
         &arguments.places,
         &arguments.trees,
         &arguments.outputs,
-        &[("--shell", arguments.shell.shell.is_some())],
+        &[("--shell", arguments.shell.shell.is_some()), ("--hourly-sun", arguments.hourly_sun.is_some())],
     );
     if cells.answered(ask::Question::SunHours(question.clone()), None, &mut run)?.is_some() {
         return Ok(run.finish());
@@ -37,5 +46,44 @@ pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summ
     let shown = TargetOutput::new(&answers.found, source, &scene);
     shown.write(&arguments.outputs, &answers.measures, &mut run)?;
     shown.write_edge_mask(arguments.places.edge_mask.as_deref(), &mut run)?;
+    if let Some(folder) = &arguments.hourly_sun {
+        let year = arguments.when.year;
+        write_hourly_sun(folder, year, &question, (&answers.found.targets, &scene), &mut run)?;
+    }
     Ok(run.finish())
+}
+
+/// Writes a file for each month of a year, with a band for each hour.
+fn write_hourly_sun(
+    folder: &Path,
+    year: i16,
+    question: &SunHoursQuestion,
+    (targets, scene): (&Arc<Targets>, &Scene),
+    run: &mut CommandContext,
+) -> Result<()> {
+    let Some(grid) = targets.ground().map(|ground| ground.grid) else { return Ok(()) };
+    let sun = question.hourly_sun(year, targets, scene, &run.control())?;
+    let place = georeference(&grid, &targets.frame);
+    let tags: Vec<MetadataTag> = run.tags.iter().cloned().chain([("YEAR".to_owned(), year.to_string())]).collect();
+    atomic::make_folder(folder)?;
+    run.stage("writing", 12, |control| {
+        for month in 1..=12 {
+            let hours = 0..HourlySun::HOURS;
+            let labels: Vec<BandLabel> =
+                hours.clone().map(|hour| BandLabel::new(&format!("{hour:02}:30"), "1")).collect();
+            let band = |hour: u32| Raster::from_values(grid.width, grid.height, sun.days(month, hour));
+            let rasters = hours.map(band).collect::<belvedere::Result<Vec<_>>>()?;
+            let bands = Bands {
+                values: BandValues::U32(&rasters, HourlySun::NO_BITS),
+                labels: &labels,
+                tags: &tags,
+                description: Some("days with sun in the middle of an hour, a bit for each, the lowest for day 1"),
+            };
+            write_tif_bands(&folder.join(format!("{month:02}.tif")), &bands, Some(&place))?;
+            control.advance(1);
+        }
+        Ok::<_, belvedere::Error>(())
+    })?;
+    run.summary.add("hourly_sun_written", folder.display().to_string());
+    Ok(())
 }

@@ -1,8 +1,11 @@
 //! Hours of sun on the command line, around a house whose shadow is known.
 
 use crate::common::{Workplace, at, column, house, is_hidden};
-use belvedere::apps::sun::{Date, DayParams, Site, Zone, sun_day};
+use belvedere::apps::sun::{Date, DayParams, Site, Zone, sun_day, sun_position};
 use belvedere::crs::Crs;
+use std::fs::File;
+use tiff::decoder::{Decoder, DecodingResult};
+use tiff::tags::Tag;
 
 const HOUSE: &str = "house.laz --orient given --scene-config ../tau.json";
 /// Places around the house: north of it, south, east, and beneath nothing far off.
@@ -14,6 +17,50 @@ fn place() -> Workplace {
     let rows: String = PLACES.map(|[x, y, z]| at(x, y, z)).iter().map(|[x, y, z]| format!("{x},{y},{z}\n")).collect();
     place.write("places.csv", format!("x,y,z\n{rows}"));
     place
+}
+
+#[test]
+fn bits_of_a_year_are_those_of_the_exact_house() {
+    let place = place();
+    let day = "--date 2026-03-21 --zone Europe/Amsterdam --cell 1 --sun-tolerance-deg 0";
+    place.summary(&format!("sun-hours {HOUSE} {day} --year 2027 --hourly-sun year -o hours.tif"));
+    let [west, north, _] = at(0.0, 0.0, 0.0);
+    let site = Site::of(&Crs::from_epsg(28_992).unwrap(), [west, north], 4.5).unwrap();
+    let zone = Zone::parse("Europe/Amsterdam").unwrap();
+    let (mut suns, mut wrong) = (0, 0);
+    for month in 1..=12_i8 {
+        let mut decoder = Decoder::new(File::open(place.path(&format!("year/{month:02}.tif"))).unwrap()).unwrap();
+        let tie = decoder.get_tag_f64_vec(Tag::ModelTiepointTag).unwrap();
+        let width = decoder.dimensions().unwrap().0 as usize;
+        let DecodingResult::U32(values) = decoder.read_image().unwrap() else { panic!("bits are 32 a cell") };
+        // north of the house and east of it, and below its roof
+        for [x, y] in [[0.5, 7.5], [8.5, -1.5], [-0.5, 0.5]] {
+            let [column, row] = [west + x - tie[3], tie[4] - north - y].map(|cells| cells.floor() as usize);
+            let words = &values[24 * (row * width + column)..][..24];
+            if x < 0.0 {
+                assert!(words.iter().all(|&word| word == 1 << 31), "{words:?}");
+                continue;
+            }
+            for date in Date::new(2027, month, 1).unwrap().to(Date::new(2027, 12, 31).unwrap()) {
+                if date.month() != month {
+                    break;
+                }
+                for (hour, word) in (0_u8..).zip(words) {
+                    let sun = sun_position(&site, zone.instant_of(date, f64::from(hour) + 0.5).unwrap()).unwrap();
+                    let is_lit = word >> (date.day() - 1) & 1 == 1;
+                    if sun.elevation > 0.0 {
+                        suns += 1;
+                        wrong += usize::from(is_lit == is_hidden([x, y, 0.1], sun.to_sun(&site)));
+                    } else {
+                        assert!(!is_lit, "{date} {hour}");
+                    }
+                }
+            }
+        }
+    }
+    // suns at the edges of the shadow, which balls round off
+    assert!(suns > 8700 && wrong * 50 < suns, "{wrong} of {suns}");
+    place.refusal(2, &format!("sun-hours {HOUSE} {day} --targets places.csv --hourly-sun h -o h.csv"), &["a grid"]);
 }
 
 #[test]

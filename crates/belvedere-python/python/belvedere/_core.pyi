@@ -20,7 +20,20 @@ _Results = tuple[
 ]
 _CrsState = tuple[str | None, int | None, int | None, float, float, int, str | None]
 
-__all__ = ["NO_VALUE", "Cloud", "Crs", "Mesh", "Scene", "__version__", "devices", "read", "simulate", "write_geotiff"]
+__all__ = [
+    "NO_VALUE",
+    "Cloud",
+    "Crs",
+    "Mesh",
+    "Scene",
+    "__version__",
+    "devices",
+    "fetch",
+    "open_surveys",
+    "read",
+    "simulate",
+    "write_geotiff",
+]
 
 __version__: str
 NO_VALUE: float
@@ -150,13 +163,14 @@ class Scene:
     def lines_of_sight(
         self,
         observers: npt.NDArray[np.float64],
-        targets: npt.NDArray[np.float64],
+        targets: npt.NDArray[np.float64] | None,
         ends: dict[str, Any],
         unproven: str,
         how_sure: dict[str, Any],
         curvature: str | None,
         refraction: float | None,
         frequency: float | None,
+        max_distance: float | None,
         progress: _Progress,
     ) -> tuple[dict[str, npt.NDArray[Any]], npt.NDArray[np.float64], list[dict[str, Any]]]: ...
     def shadow(
@@ -179,6 +193,14 @@ class Scene:
         interval: bool,
         progress: _Progress,
     ) -> _Results: ...
+    def hourly_sun(
+        self,
+        year: int,
+        days: dict[str, Any],
+        place: dict[str, Any],
+        targets: dict[str, Any],
+        progress: _Progress,
+    ) -> tuple[list[tuple[str, npt.NDArray[np.uint32]]], _Grid | None]: ...
     def sky_view(
         self,
         directions: int | None,

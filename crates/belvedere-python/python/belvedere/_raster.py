@@ -152,7 +152,7 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         values = np.ascontiguousarray(self.values)
         if self._is_answer and values.dtype == np.float32:
             return np.where(np.isnan(values), 255, values > 0).astype(np.uint8)
-        return values if values.dtype in (np.float32, np.uint8, np.uint16) else values.astype(np.float32)
+        return values if values.dtype in (np.float32, np.uint8, np.uint16, np.uint32) else values.astype(np.float32)
 
     def to_xarray(self) -> xarray.DataArray:
         """An `xarray.DataArray` by the conventions of rioxarray.

@@ -25,10 +25,10 @@ from ._inputs import (
     times,
     zone_text,
 )
-from ._raster import Raster
+from ._raster import Raster, Rasters
 from ._remarks import warned
 from ._shapes import in_system
-from ._targets import Cells, RastersOrTable, Results, Targets, measures, wanted
+from ._targets import Cells, RastersOrTable, Results, Targets, measures, raster, wanted
 
 _DIRECTION = "give azimuth and elevation in degrees, such as (180, 30)"
 
@@ -256,6 +256,71 @@ class Sunlight:
             reporter(progress),
         )
         return measures(results, self._core.crs, targets)
+
+    def hourly_sun(
+        self,
+        year: int,
+        *,
+        sun_tolerance_deg: float | None = None,
+        cell: float | None = None,
+        target_height: float | None = None,
+        surface: bool = False,
+        ground: str | None = None,
+        location: npt.ArrayLike | None = None,
+        zone: str | datetime.tzinfo | None = None,
+        sun_elevation: str = "apparent",
+        air: npt.ArrayLike | None = None,
+        progress: Progress = None,
+    ) -> Rasters:
+        """Sun of each hour of a year, a bit for each day: the hourly shade of the Google Solar API.
+
+        Trees are opaque.
+
+        Parameters
+        ----------
+        year : int
+            The year.
+        sun_tolerance_deg, cell, target_height, surface, ground, location, zone, sun_elevation, air
+            As for `sun_hours`.
+        progress : bool or callable, optional
+
+        Returns
+        -------
+        Rasters
+            288 rasters of uint32, named by month and hour of the clock: ``06_15`` for June, from 15:00 to 16:00. Bit
+            ``day - 1`` is set if the sun reaches the cell on that day, in the middle of the hour. ``nodata`` is 2**31.
+
+        Raises
+        ------
+        BelvedereError
+            For a scene without a place on earth, parameters out of range, and more than 8 GiB of bits.
+
+        References
+        ----------
+        docs/methods/sun.md
+
+        Examples
+        --------
+        >>> sun = scene.hourly_sun(2026, zone="Europe/Amsterdam", cell=5, sun_tolerance_deg=3)
+        >>> june = sun["06_15"]
+        >>> days = june.values[june.values != june.nodata]
+        >>> lit = days >> 20 & 1  # 21 June, half past three
+        >>> bool(0 < lit.mean() < 1)
+        True
+        """
+        check_finite(sun_tolerance_deg=sun_tolerance_deg)
+        bands, grid = self._core.hourly_sun(
+            year,
+            _days(None, None, year, None, None, sun_tolerance_deg),
+            _place(location, zone=zone, sun_elevation=sun_elevation, air=air),
+            wanted(None, None, _cells(cell, target_height, surface, ground)),
+            reporter(progress),
+        )
+        if grid is None:
+            raise wrong("targets", "no cells", "give none")
+        text = "days with sun in the middle of an hour, a bit for each"
+        named = {"nodata": 2.0**31, "unit": "1", "description": text}
+        return Rasters({name: raster(days, grid, self._core.crs, name=name, **named) for name, days in bands})
 
     def sky_view(
         self,
