@@ -22,7 +22,7 @@ pub(crate) struct LineOfSightArguments {
         help_heading = "Lines of sight (one of)")]
     pub(crate) among: Option<PathBuf>,
     /// With --among: horizontal distance up to which two places are a pair, in metres [default: no limit]
-    #[arg(long, value_name = "M", requires = "among", value_parser = above_zero::<f64>, allow_negative_numbers = true,
+    #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Lines of sight (one of)")]
     pub(crate) max_distance: Option<f64>,
     #[command(flatten)]

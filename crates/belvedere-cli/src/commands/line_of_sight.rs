@@ -85,6 +85,9 @@ fn question(arguments: &LineOfSightArguments) -> Result<LinesOfSightQuestion> {
 }
 
 fn check(arguments: &LineOfSightArguments, question: &LinesOfSightQuestion) -> Result<()> {
+    if arguments.max_distance.is_some() && arguments.among.is_none() {
+        return Err(Usage("--max-distance limits the pairs of --among, which is missing".to_owned()).into());
+    }
     for output in &arguments.outputs {
         check_output("-o", output, &["csv", "geojson", "graphml"])?;
         if extension(output) == "graphml" && arguments.among.is_none() {

@@ -315,6 +315,7 @@ fn networks_name_what_cannot_see_and_refuse_what_is_no_network() {
     place.refusal(2, &format!("line-of-sight {HOUSE} --among one.csv -o net.csv"), &["two places or more"]);
     let pairs = format!("line-of-sight {HOUSE} --observer {EAST},{NORTH},20 --target {EAST},{NORTH},30 -o net.graphml");
     place.refusal(2, &pairs, &["--among"]);
+    place.refusal(2, &pairs.replace("graphml", "csv --max-distance 9"), &["--max-distance", "--among"]);
 }
 
 #[test]
