@@ -14,7 +14,7 @@ use std::str::FromStr;
 pub(crate) struct LineOfSightArguments {
     #[command(flatten)]
     pub(crate) lines: LinesArguments,
-    /// Places of which each two may see each other, for a network (.csv .geojson)
+    /// Places of a network, of which each pair is tested (.csv .geojson)
     ///
     /// Columns or properties: x, y, and z or height above the ground (--observer-height where neither is given), and
     /// name or id. Lines of sight are the same in both directions.
@@ -285,8 +285,8 @@ pub(crate) struct Who {
     pub(crate) observers: Option<PathBuf>,
     /// Total viewshed: N observers spread evenly over the map, at most 65534
     ///
-    /// The result counts for each cell how many of them see it. With --target-height as --observer-height that is also
-    /// the share of the map that each cell sees. They stand outside of buildings.
+    /// The result counts for each cell how many of them see it. If --target-height equals --observer-height, this count
+    /// divided by N is the share of the open ground that the cell sees. Observers stand outside buildings.
     #[arg(long, value_name = "N", value_parser = at_most::<65_534>)]
     pub(crate) spread: Option<usize>,
     /// Reverse viewshed: the cells from which this target is seen
