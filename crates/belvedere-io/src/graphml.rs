@@ -83,9 +83,12 @@ impl Writer<'_> {
     }
 }
 
-/// Text with the characters that XML reserves escaped. Control characters, which it forbids, are left out.
+/// Text with the characters that XML reserves escaped. Characters that it forbids are left out.
 fn escaped(text: &str) -> String {
-    let plain = text.chars().filter(|c| !c.is_control() || "\t\n".contains(*c)).collect::<String>();
+    let plain = text
+        .chars()
+        .filter(|c| !(c.is_control() || "\u{fffe}\u{ffff}".contains(*c)) || "\t\n".contains(*c))
+        .collect::<String>();
     plain.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 

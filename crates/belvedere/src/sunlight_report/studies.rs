@@ -86,7 +86,9 @@ impl ShadowStudy {
         };
         let noon = date.noon_utc();
         let midnight = noon - 0.5 * DAY - zone.offset_at(noon);
-        let times = sun_times(site, midnight, midnight + DAY)?;
+        // from one midnight of the sun to the next, whatever the clock shows
+        let solar_noon = noon - site.longitude / std::f64::consts::TAU * DAY;
+        let times = sun_times(site, solar_noon - 0.5 * DAY, solar_noon + 0.5 * DAY)?;
         let clock = |instant: Option<&f64>| instant.map(|instant| (instant - midnight) / HOUR);
         let from = clock(times.rises.first()).map_or(f64::NEG_INFINITY, |rise| rise + margin);
         Ok([from, clock(times.sets.last()).map_or(f64::INFINITY, |set| set - margin)])
@@ -185,6 +187,10 @@ mod tests {
         let [from, to] = ShadowStudy::Ceqr.hours((&site, &zone), date).unwrap();
         assert!((from - (7.0 + 17.0 / 60.0 + 1.5)).abs() < 0.02, "{from}");
         assert!((to - (16.0 + 32.0 / 60.0 - 1.5)).abs() < 0.02, "{to}");
+        // the same hours on a clock that shows sunset after midnight
+        let utc = ShadowStudy::Ceqr.hours((&site, &Zone::utc()), Date::new(2026, 6, 21).unwrap()).unwrap();
+        let own = ShadowStudy::Ceqr.hours((&site, &zone), Date::new(2026, 6, 21).unwrap()).unwrap();
+        assert!((0..2).all(|end| (utc[end] - own[end] - 4.0).abs() < 1e-6) && utc[1] > 22.9, "{utc:?} {own:?}");
         assert_eq!(ShadowStudy::Toronto.hours((&site, &zone), date).unwrap(), [9.3, 18.3]);
         // half of a step before half past one
         assert_eq!(hours_within([12.0, 13.5], 13.25, 0.5), [13.25, 13.5]);
