@@ -1,6 +1,6 @@
 //! Areas of a report: the share that meets a rule, and the shade that a plan adds.
 
-use super::studies::{ShadowStudy, YearOfSun, hours_within};
+use super::studies::{YearOfSun, hours_within};
 use super::{ReportArea, ReportParams, add_remarks};
 use crate::Result;
 use crate::apps::ask::{self, Days, GridCells, Places, Remark, Scene, SunCalendarResults, SunHoursQuestion};
@@ -50,11 +50,11 @@ pub(super) struct CountedSuns<'a> {
 }
 
 impl<'a> CountedSuns<'a> {
-    /// Those of the days in detail, all day or in the hours of a study.
-    pub(super) fn new(calendar: &'a SunCalendarResults, study: Option<ShadowStudy>) -> Result<Self> {
+    /// The suns of the days in detail, all day or in the hours of a study.
+    pub(super) fn new(calendar: &'a SunCalendarResults, params: &ReportParams) -> Result<Self> {
         let clock: (&Site, &Zone) = (&calendar.site, &calendar.zone);
         let schedule = &calendar.schedule;
-        let Some(study) = study else {
+        let Some(study) = params.study else {
             let hours = vec![[f64::NEG_INFINITY, f64::INFINITY]; schedule.days.len()];
             return Ok(Self { schedule, hours, year: None });
         };
@@ -63,7 +63,7 @@ impl<'a> CountedSuns<'a> {
         };
         let hours = hours_of(schedule)?;
         let year = match schedule.days.first() {
-            Some(day) => study.year(clock, day.date.year())?,
+            Some(day) => study.year(clock, day.date.year(), params.days.params(&params.place))?,
             None => None,
         };
         let year = year.map(|schedule| Ok::<_, crate::Error>((hours_of(&schedule)?, schedule))).transpose()?;

@@ -12,6 +12,7 @@
 //! | the page | `page.rs`, `report.css` |
 //! | its texts in four languages | `words.rs`, `words.csv` |
 
+mod area_tables;
 mod areas;
 mod charts;
 mod maps;
@@ -238,6 +239,13 @@ pub fn sunlight_report(
             expected: "given with areas and a plan: it counts the shade that the plan adds to them",
         });
     }
+    if params.study == Some(ShadowStudy::Toronto) && params.place.zone.is_none() {
+        return Err(Error::InvalidParameter {
+            parameter: Parameter::TimeZone,
+            value: "missing".to_owned(),
+            expected: "given with this study, whose hours are those of the clock, such as America/Toronto",
+        });
+    }
     let mut remarks = Vec::new();
     let box_of_maps = maps::extent(present, planned, params);
     let before = State::of(present, params, box_of_maps, &mut remarks, control)?;
@@ -249,7 +257,7 @@ pub fn sunlight_report(
         return Err(Error::NoPoints { what });
     }
     let mut after = planned.map(|scene| State::of(scene, params, box_of_maps, &mut remarks, control)).transpose()?;
-    let suns = CountedSuns::new(&before.calendar, params.study)?;
+    let suns = CountedSuns::new(&before.calendar, params)?;
     for (area, was) in after.iter_mut().flat_map(|state| &mut state.areas).zip(&before.areas) {
         area.compare(was, &suns);
     }
@@ -341,7 +349,7 @@ impl State {
             }
             rooms.push(rule);
         }
-        let suns = CountedSuns::new(&calendar, params.study)?;
+        let suns = CountedSuns::new(&calendar, params)?;
         let mut areas = Vec::with_capacity(params.areas.len());
         for area in &params.areas {
             areas.push(AreaState::of(scene, (area, params), &suns, remarks, control)?);

@@ -94,13 +94,19 @@ impl ShadowStudy {
         Ok([from, clock(times.sets.last()).map_or(f64::INFINITY, |set| set - margin)])
     }
 
-    /// The suns of a year, if the study is of one: of every seventh day from the longest to the shortest.
-    pub(super) fn year(self, (site, zone): (&Site, &Zone), year: i16) -> Result<Option<SunSchedule>> {
+    /// The suns of a year, if the study is of one: of every seventh day from the longest to the shortest. `params` are
+    /// those of other days, but for the step.
+    pub(super) fn year(
+        self,
+        (site, zone): (&Site, &Zone),
+        year: i16,
+        params: DayParams,
+    ) -> Result<Option<SunSchedule>> {
         if self != Self::SanFrancisco {
             return Ok(None);
         }
         let dates = Date::new(year, 6, 21)?.to(Date::new(year, 12, 31)?).step_by(WEEK).take(WEEKS).collect();
-        let params = DayParams::default().with_step(YEAR_STEP);
+        let params = params.with_step(YEAR_STEP);
         Ok(Some(SunSchedule::new(&sun_days(site, zone, &Period::Days(dates), &params)?, Binning::Exact)?))
     }
 }
@@ -161,7 +167,7 @@ mod tests {
     fn a_year_of_san_francisco_has_the_hours_that_the_city_counts() {
         let (site, zone) = san_francisco();
         let study = ShadowStudy::SanFrancisco;
-        let schedule = study.year((&site, &zone), 2026).unwrap().unwrap();
+        let schedule = study.year((&site, &zone), 2026, DayParams::default()).unwrap().unwrap();
         let hours: Vec<[f64; 2]> =
             schedule.days.iter().map(|day| study.hours((&site, &zone), day.date).unwrap()).collect();
         let found = YearOfSun::of(&schedule, &hours, 100.0, (|_| 0.75, |_| 0.01));

@@ -99,13 +99,19 @@ impl Words {
     }
 }
 
+/// Text of HTML.
+pub(super) fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     /// Sources that use texts.
-    const USERS: [&str; 5] = [
+    const USERS: [&str; 6] = [
         include_str!("page.rs"),
+        include_str!("area_tables.rs"),
         include_str!("sentences.rs"),
         include_str!("charts.rs"),
         include_str!("mod.rs"),
@@ -152,5 +158,10 @@ mod tests {
         assert_eq!(of(Language::Dutch), "21 maart 2026");
         assert_eq!(of(Language::German), "21. März 2026");
         assert_eq!(of(Language::French), "21 mars 2026");
+    }
+
+    #[test]
+    fn names_of_others_are_no_markup() {
+        assert_eq!(escaped("<b>\"A & B\"</b>"), "&lt;b&gt;&quot;A &amp; B&quot;&lt;/b&gt;");
     }
 }
