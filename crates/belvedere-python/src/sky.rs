@@ -2,6 +2,7 @@
 
 use crate::arrays::to_1d;
 use crate::errors::wrong;
+use crate::remarks::remarks_of;
 use crate::scene::PyScene;
 use crate::sun::SiteKeywords;
 use crate::targets::{Grid, RequestedTargets, TargetResults, grid_of, put_to_scene};
@@ -10,6 +11,7 @@ use crate::work::run;
 use belvedere::apps::ask::{self, HourlySun, SkyParts};
 use numpy::PyArray1;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// Days, as Python gives them.
@@ -41,8 +43,8 @@ impl DaysKeywords {
     }
 }
 
-/// Name and values of each hour of each month, and the grid of its cells.
-type HourBands<'py> = (Vec<(String, Bound<'py, PyArray1<u32>>)>, Option<Grid>);
+/// Name and values of each hour of each month, the grid of its cells, and remarks.
+type HourBands<'py> = (Vec<(String, Bound<'py, PyArray1<u32>>)>, Option<Grid>, Vec<Bound<'py, PyDict>>);
 
 /// Returns the division of the sky from keywords.
 pub(crate) fn sky_parts(directions: Option<usize>, patches: Option<&str>) -> PyResult<SkyParts> {
@@ -102,16 +104,16 @@ impl PyScene {
         };
         let scene = Arc::clone(&self.0);
         let places = targets.chosen(py, &scene)?.places;
-        let (bands, grid) = run(py, progress, move |control| {
-            question.place.check()?;
-            let targets = places.targets(&scene, &mut ask::Context::default(), control)?;
-            let sun = question.hourly_sun(year, &targets, &scene, control)?;
+        let (bands, grid, remarks) = run(py, progress, move |control| {
+            let answers = question.hourly_sun(Some(year), &places, &scene, control)?;
+            let sun = answers.found;
             let hours = (1..=12_i8).flat_map(|month| (0..HourlySun::HOURS).map(move |hour| (month, hour)));
             let bands = hours.map(|(month, hour)| (format!("{month:02}_{hour:02}"), sun.days(month, hour)));
-            let grid = targets.ground().map(|ground| grid_of(&ground.grid, &targets.frame));
-            Ok((bands.collect::<Vec<_>>(), grid))
+            let grid = sun.targets.ground().map(|ground| grid_of(&ground.grid, &sun.targets.frame));
+            Ok((bands.collect::<Vec<_>>(), grid, answers.remarks))
         })?;
-        Ok((bands.into_iter().map(|(name, days)| (name, to_1d(py, days))).collect(), grid))
+        let bands = bands.into_iter().map(|(name, days)| (name, to_1d(py, days))).collect();
+        Ok((bands, grid, remarks_of(py, &remarks)?))
     }
 
     #[expect(clippy::too_many_arguments, reason = "keywords in Python")]

@@ -104,10 +104,10 @@ pub(crate) struct SunHoursArguments {
     pub(crate) shell: Shell,
     #[command(flatten)]
     pub(crate) interval: IntervalArgument,
-    /// Also write the sun of each hour of --year into this folder: 01.tif to 12.tif, a bit for each day
+    /// Also write the sun of each hour of a year into this folder: 01.tif to 12.tif, a bit for each day
     ///
     /// The layout of the Google Solar API: a band for each hour of the clock, 00 to 23, and the lowest bit for day 1.
-    /// The sun in the middle of the hour counts, and days of --date and rules do not limit them. Trees are opaque.
+    /// The sun in the middle of the hour counts, for all days of the year of the first day. Trees are opaque.
     #[arg(long = "hourly-sun", value_name = "DIR", conflicts_with = "through_trees", help_heading = "Result")]
     pub(crate) hourly_sun: Option<PathBuf>,
     #[command(flatten)]

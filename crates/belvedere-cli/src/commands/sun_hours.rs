@@ -7,12 +7,11 @@ use crate::pipeline;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, Ask, HourlySun, Scene, SunHoursQuestion};
-use belvedere::apps::targets::Targets;
+use belvedere::apps::ask::{self, Ask, HourlySun, Places, SunHoursQuestion};
 use belvedere::io::{BandLabel, BandValues, Bands, MetadataTag, atomic, write_tif_bands};
 use belvedere::raster::Raster;
 use belvedere::results::georeference;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summary> {
@@ -26,8 +25,12 @@ pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summ
         interval: arguments.interval.interval,
     };
     question.check()?;
-    if arguments.hourly_sun.is_some() && !arguments.places.is_grid() {
-        return Err(Usage("--hourly-sun applies only to a grid".to_owned()).into());
+    if let Some(folder) = &arguments.hourly_sun {
+        if !arguments.places.is_grid() {
+            return Err(Usage("--hourly-sun applies only to a grid".to_owned()).into());
+        }
+        let others = arguments.outputs.output.iter().chain(&arguments.places.edge_mask);
+        check_months(folder, &others.map(PathBuf::as_path).collect::<Vec<_>>())?;
     }
     let mut run = CommandContext::new(global);
     let cells = TypedCells::of_sky(
@@ -43,28 +46,28 @@ pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summ
     let scene = pipeline::scene_of_places(&arguments.scene, &arguments.places, arguments.shell.shell, &mut run)?;
     let (places, source) = arguments.places.places(&scene, &mut run)?;
     let answers = run.ask(&scene, &question, &places)?;
+    let sun_of_year = match &arguments.hourly_sun {
+        Some(folder) => {
+            // places have said what there is to remark
+            let places = Places::Targets(Arc::clone(&answers.found.targets));
+            Some((folder, question.hourly_sun(None, &places, &scene, &run.control())?.found))
+        }
+        None => None,
+    };
     let shown = TargetOutput::new(&answers.found, source, &scene);
     shown.write(&arguments.outputs, &answers.measures, &mut run)?;
     shown.write_edge_mask(arguments.places.edge_mask.as_deref(), &mut run)?;
-    if let Some(folder) = &arguments.hourly_sun {
-        let year = arguments.when.year;
-        write_hourly_sun(folder, year, &question, (&answers.found.targets, &scene), &mut run)?;
+    if let Some((folder, sun)) = &sun_of_year {
+        write_hourly_sun(folder, sun, &mut run)?;
     }
     Ok(run.finish())
 }
 
 /// Writes a file for each month of a year, with a band for each hour.
-fn write_hourly_sun(
-    folder: &Path,
-    year: i16,
-    question: &SunHoursQuestion,
-    (targets, scene): (&Arc<Targets>, &Scene),
-    run: &mut CommandContext,
-) -> Result<()> {
-    let Some(grid) = targets.ground().map(|ground| ground.grid) else { return Ok(()) };
-    let sun = question.hourly_sun(year, targets, scene, &run.control())?;
-    let place = georeference(&grid, &targets.frame);
-    let tags: Vec<MetadataTag> = run.tags.iter().cloned().chain([("YEAR".to_owned(), year.to_string())]).collect();
+fn write_hourly_sun(folder: &Path, sun: &HourlySun, run: &mut CommandContext) -> Result<()> {
+    let Some(grid) = sun.targets.ground().map(|ground| ground.grid) else { return Ok(()) };
+    let place = georeference(&grid, &sun.targets.frame);
+    let tags: Vec<MetadataTag> = run.tags.iter().cloned().chain([("YEAR".to_owned(), sun.year.to_string())]).collect();
     atomic::make_folder(folder)?;
     run.stage("writing", 12, |control| {
         for month in 1..=12 {
@@ -79,11 +82,31 @@ fn write_hourly_sun(
                 tags: &tags,
                 description: Some("days with sun in the middle of an hour, a bit for each, the lowest for day 1"),
             };
-            write_tif_bands(&folder.join(format!("{month:02}.tif")), &bands, Some(&place))?;
+            write_tif_bands(&month_file(folder, month), &bands, Some(&place))?;
             control.advance(1);
         }
         Ok::<_, belvedere::Error>(())
     })?;
-    run.summary.add("hourly_sun_written", folder.display().to_string());
+    run.summary.add("hourly_sun_written", format!("{} ({})", folder.display(), sun.year));
     Ok(())
+}
+
+/// The file of a month, 1 to 12.
+fn month_file(folder: &Path, month: i8) -> PathBuf {
+    folder.join(format!("{month:02}.tif"))
+}
+
+/// Refuses files of other results among those of the months.
+fn check_months(folder: &Path, others: &[&Path]) -> Result<()> {
+    let real = |path: &Path| path.canonicalize().or_else(|_| std::path::absolute(path)).ok();
+    let is_month = |path: &&&Path| {
+        path.parent().and_then(real) == real(folder)
+            && (1..=12).any(|month| path.file_name() == month_file(folder, month).file_name())
+    };
+    match others.iter().find(is_month) {
+        Some(path) => {
+            Err(Usage(format!("{}: a file of --hourly-sun has this name; choose another", path.display())).into())
+        }
+        None => Ok(()),
+    }
 }

@@ -22,8 +22,8 @@ fn place() -> Workplace {
 #[test]
 fn bits_of_a_year_are_those_of_the_exact_house() {
     let place = place();
-    let day = "--date 2026-03-21 --zone Europe/Amsterdam --cell 1 --sun-tolerance-deg 0";
-    place.summary(&format!("sun-hours {HOUSE} {day} --year 2027 --hourly-sun year -o hours.tif"));
+    let day = "--date 2027-03-21 --zone Europe/Amsterdam --cell 1 --sun-tolerance-deg 0";
+    place.summary(&format!("sun-hours {HOUSE} {day} --hourly-sun year -o hours.tif"));
     let [west, north, _] = at(0.0, 0.0, 0.0);
     let site = Site::of(&Crs::from_epsg(28_992).unwrap(), [west, north], 4.5).unwrap();
     let zone = Zone::parse("Europe/Amsterdam").unwrap();
@@ -61,6 +61,13 @@ fn bits_of_a_year_are_those_of_the_exact_house() {
     // suns at the edges of the shadow, which balls round off
     assert!(suns > 8700 && wrong * 50 < suns, "{wrong} of {suns}");
     place.refusal(2, &format!("sun-hours {HOUSE} {day} --targets places.csv --hourly-sun h -o h.csv"), &["a grid"]);
+    place.refusal(
+        2,
+        &format!("sun-hours {HOUSE} {day} --hourly-sun year -o year/01.tif"),
+        &["year/01.tif", "choose another"],
+    );
+    std::fs::create_dir(place.path("new")).unwrap();
+    place.refusal(2, &format!("sun-hours {HOUSE} {day} --hourly-sun new -o ./new/12.tif"), &["12.tif", "--hourly-sun"]);
 }
 
 #[test]

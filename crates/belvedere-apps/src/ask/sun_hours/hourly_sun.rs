@@ -1,7 +1,9 @@
 //! The sun of each hour of a year at each target, a bit for each.
 
 use super::SunHoursQuestion;
-use crate::ask::Scene;
+use crate::ask::places::test_edge;
+use crate::ask::{Answers, Context, Places, Scene};
+use crate::irradiance::CLEAR_SKY_YEAR;
 use crate::sun::{Date, Site, SunDay, SunSchedule, SunStep, Zone, sun_position_with};
 use crate::targets::Targets;
 use belvedere_core::query::{UnprovenAs, VisibilityMatrix};
@@ -16,12 +18,15 @@ const MAX_BITS: usize = 1 << 36;
 /// Targets that a thread answers at once.
 const CHUNK: usize = 1024;
 
-/// Which hours of a year have sun, at each target.
+/// The hours of a year with sun, at each target.
 #[derive(Clone, Debug)]
 pub struct HourlySun {
+    /// The year.
+    pub year: i16,
+    /// The targets.
+    pub targets: Arc<Targets>,
     hours: Vec<SunnyHour>,
     lit: VisibilityMatrix,
-    targets: Arc<Targets>,
 }
 
 /// An hour of the clock at whose middle the sun is up.
@@ -63,8 +68,8 @@ impl HourlySun {
 }
 
 impl SunHoursQuestion {
-    /// Computes the sun of each hour of a year at level `targets`, among opaque obstacles. Suns share directions as in
-    /// the answer of the question.
+    /// Computes the sun of each hour of `year` at level places, among opaque obstacles; without one, of the year of the
+    /// first day. Suns share directions as in the answer of the question.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for more than 8 GiB of answers, and those of [`MedialScene::visibility_matrix`].
@@ -72,13 +77,20 @@ impl SunHoursQuestion {
     /// [`MedialScene::visibility_matrix`]: belvedere_core::query::MedialScene::visibility_matrix
     pub fn hourly_sun(
         &self,
-        year: i16,
-        targets: &Arc<Targets>,
+        year: Option<i16>,
+        places: &Places,
         scene: &Scene,
         control: &Control<'_>,
-    ) -> Result<HourlySun> {
-        let (site, _) = self.place.site_of(scene.frame(), &scene.model().bounds(), None)?;
+    ) -> Result<Answers<HourlySun>> {
+        self.place.check()?;
+        let mut context = Context::default();
+        let site = self.place.site(scene, &mut context, None)?;
         let zone = self.place.zone_at(&site, self.days.times())?;
+        let year = match year {
+            Some(year) => year,
+            None => self.plan(&site)?.0.dates().next().map_or(CLEAR_SKY_YEAR, Date::year),
+        };
+        let targets = places.targets(scene, &mut context, control)?;
         let days = self.days_by_hour(year, &site, &zone)?;
         let schedule = SunSchedule::new(&days, self.binning())?;
         if schedule.directions.len().saturating_mul(targets.len()) > MAX_BITS {
@@ -88,6 +100,7 @@ impl SunHoursQuestion {
                 expected: "fewer for the hours of a year: choose larger cells, or a smaller cloud",
             });
         }
+        test_edge(scene, &targets, &schedule.directions, &mut context, control)?;
         let blockers = scene.blockers(UnprovenAs::Visible, control)?;
         let lit = control.stage("testing sun of a year", targets.len(), || {
             blockers.visibility_matrix(&targets.positions, &schedule.directions, control)
@@ -102,7 +115,7 @@ impl SunHoursQuestion {
                 direction: light.direction,
             }));
         }
-        Ok(HourlySun { hours, lit, targets: Arc::clone(targets) })
+        Ok(Answers::new(HourlySun { year, targets, hours, lit }, Vec::new()).with(context))
     }
 
     /// The days of a year, with a step for each hour of the clock at whose middle the sun is up.
