@@ -20,6 +20,7 @@ pub(crate) fn flags_of(parameter: Parameter) -> &'static [&'static str] {
         Parameter::PixelsPerMetre => &["--density", "--viewport"],
         Parameter::BallProfile => &["--ball-profile"],
         Parameter::Observer => &["--observer", "--observers"],
+        Parameter::ObserverCount => &["--spread"],
         Parameter::Network => &["--among"],
         Parameter::Tower => &["--towers"],
         Parameter::Viewpoint => &["--observer"],

@@ -56,6 +56,8 @@ parameters! {
     // Observers, cameras and landmarks
     /// Place of an observer.
     Observer => "observer",
+    /// Number of observers spread over a map.
+    ObserverCount => "number of observers",
     /// Places of which a network tells which see each other.
     Network => "network",
     /// Place from which a page shows the visible parts of the scene.

@@ -159,7 +159,7 @@ fn of_table(source: Source<'_>, path: &Path, crs: &Crs, rows_are: RowsAre) -> Re
         }
     }
     let mut found = ObserverRows::of_names(table.names(), &used);
-    let names = NAMES.iter().find_map(|name| table.words(name));
+    let names: Vec<Vec<&str>> = NAMES.iter().filter_map(|name| table.words(name)).collect();
     for (i, (x, y)) in x.iter().zip(y).enumerate() {
         let value = |column: usize| {
             let (values, number) = columns[column]?;
@@ -167,7 +167,8 @@ fn of_table(source: Source<'_>, path: &Path, crs: &Crs, rows_are: RowsAre) -> Re
         };
         let values = std::array::from_fn(value);
         let mut row = from_values(vec![[x * scale[0], y * scale[1], f64::NAN]], values, scale[2], path)?;
-        row.name = names.as_ref().and_then(|names| names.get(i)).copied().unwrap_or_default().to_owned();
+        let own_names = names.iter().filter_map(|names| names.get(i)).map(|name| name.trim());
+        row.name = own_names.into_iter().find(|name| !name.is_empty()).unwrap_or_default().to_owned();
         match (rows_are, found.rows.first_mut()) {
             (RowsAre::Corners, Some(path)) => path.corners.extend(row.corners),
             _ => found.rows.push(row),

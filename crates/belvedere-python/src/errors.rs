@@ -59,6 +59,7 @@ fn keyword(parameter: Parameter) -> &'static str {
         Parameter::LastDay => "to",
         Parameter::Latitude | Parameter::Longitude | Parameter::LatitudeLongitude => "location",
         Parameter::LookAt => "look_at",
+        Parameter::ObserverCount => "spread",
         Parameter::Network => "places",
         Parameter::Study => "study",
         Parameter::Tower => "towers",

@@ -21,6 +21,17 @@ use std::sync::Arc;
 /// The bands of cells with their nodata value, their names, their description, their grid, and remarks.
 type ViewshedReply<'py> = (Vec<(Bound<'py, PyAny>, f64)>, Vec<String>, String, Grid, Vec<Bound<'py, PyDict>>);
 
+/// Observers of a viewshed.
+#[derive(FromPyObject)]
+enum Observers<'py> {
+    /// Number of observers spread over the map.
+    #[pyo3(transparent)]
+    Spread(usize),
+    /// Their places.
+    #[pyo3(transparent)]
+    Places(PyReadonlyArray2<'py, f64>),
+}
+
 impl LookingKeywords {
     fn question(
         &self,
@@ -62,14 +73,18 @@ impl PyScene {
     fn viewshed<'py>(
         &self,
         py: Python<'py>,
-        observers: PyReadonlyArray2<'py, f64>,
+        observers: Observers<'py>,
         looking: LookingKeywords,
         place: SiteKeywords,
         unproven: &str,
         how_sure: HowSureKeywords,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<ViewshedReply<'py>> {
-        let question = looking.question(standing_observers(&observers, &self.0)?, &place, unproven, how_sure.into())?;
+        let (standing, spread) = match observers {
+            Observers::Spread(count) => (Vec::new(), Some(count)),
+            Observers::Places(places) => (standing_observers(&places, &self.0)?, None),
+        };
+        let mut question = looking.question(standing, &place, unproven, how_sure.into())?;
         if looking.is_far && self.0.model().far_terrain().grid().is_none() {
             return Err(wrong(
                 "far",
@@ -78,7 +93,12 @@ impl PyScene {
             ));
         }
         let scene = Arc::clone(&self.0);
-        let answers = run(py, progress, move |control| ask::ask(&scene, &question, &Places::Scene, control))?;
+        let answers = run(py, progress, move |control| {
+            if let Some(count) = spread {
+                question.observers = question.spread_observers(&scene, count, control)?;
+            }
+            ask::ask(&scene, &question, &Places::Scene, control)
+        })?;
         let (found, frame) = (answers.found, self.0.frame());
         let is_far = found.far.is_some();
         let (seen, grid) = match (found.far, found.cells) {

@@ -67,7 +67,8 @@ WRONG = {
     "a station twice": (
         lambda s, c, f: belvedere.Scene(c, stations=[[1, 2, 3, 4], [1, 2, 3, 5]]), "stations", "once"),
     "nobody who looks": (lambda s, c, f: s.viewshed(), "observers", "target"),
-    "observers and a target": (lambda s, c, f: s.viewshed((1, 2), target=(1, 2)), "observers and target", "one of"),
+    "observers and a target": (
+        lambda s, c, f: s.viewshed((1, 2), target=(1, 2)), "observers, target and spread", "one of"),
     "height below the ground": (lambda s, c, f: s.viewshed((1, 2), target_height=-1), "target_height", "0 metres"),
     "eye below the ground": (
         lambda s, c, f: s.line_of_sight((1, 2), (3, 4), observer_height=-0.5), "observer_height", "0 metres"),

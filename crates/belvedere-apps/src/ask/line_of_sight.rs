@@ -167,7 +167,7 @@ impl LinesOfSightQuestion {
         let unknown = places.iter().filter(|place| place[2].is_nan()).count();
         let so = "have no height and no known ground below";
         context.add(Remark::of_share("ends-without-ground", unknown, places.len(), "places", so));
-        SightNetwork::new(places, given)
+        SightNetwork::new(places, given, control)
     }
 
     /// The profile, where it is wanted. A ball file without a cloud shows no ground.

@@ -2,6 +2,7 @@
 
 use super::{NetworkPlaces, Remark};
 use belvedere_core::query::{Answer, MedialScene};
+use belvedere_data::control::Control;
 use belvedere_data::report::{percent, rounded};
 use belvedere_data::vector::{length, sub};
 use belvedere_data::{Error, Parameter, Result};
@@ -67,14 +68,20 @@ impl NetworkPlaces {
 
 impl SightNetwork {
     /// The pairs of `places` within the maximum distance.
-    pub(super) fn new(places: Vec<[f64; 3]>, given: &NetworkPlaces) -> Result<Self> {
+    pub(super) fn new(places: Vec<[f64; 3]>, given: &NetworkPlaces, control: &Control<'_>) -> Result<Self> {
         let limit = given.max_distance.unwrap_or(f64::INFINITY);
-        let mut by_x: Vec<usize> = (0..places.len()).collect();
-        by_x.sort_by(|&a, &b| places[a][0].total_cmp(&places[b][0]));
+        let reach = [0, 1].map(|axis| {
+            let values = || places.iter().map(|place| place[axis]);
+            values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+        });
+        let long = usize::from(reach[1] > reach[0]);
+        let mut in_order: Vec<usize> = (0..places.len()).collect();
+        in_order.sort_by(|&a, &b| places[a][long].total_cmp(&places[b][long]));
         let mut pairs = Vec::new();
-        for (rank, &a) in by_x.iter().enumerate() {
+        for (rank, &a) in in_order.iter().enumerate() {
+            control.check()?;
             let along = |b: usize, axis: usize| places[b][axis] - places[a][axis];
-            let beside = by_x[rank + 1..].iter().take_while(|&&b| along(b, 0) <= limit);
+            let beside = in_order[rank + 1..].iter().take_while(|&&b| along(b, long) <= limit);
             let near = beside.filter(|&&b| along(b, 0).hypot(along(b, 1)) <= limit);
             pairs.extend(near.map(|&b| [a.min(b), a.max(b)]));
             if pairs.len() > MAX_PAIRS {
@@ -84,6 +91,13 @@ impl SightNetwork {
                     expected: "of at most 10 million pairs: give fewer places, or a maximum distance",
                 });
             }
+        }
+        if let (true, Some(limit)) = (pairs.is_empty(), given.max_distance) {
+            return Err(Error::InvalidParameter {
+                parameter: Parameter::MaxDistance,
+                value: limit.to_string(),
+                expected: "at least the distance of the two nearest places, metres: no pair is nearer",
+            });
         }
         pairs.sort_unstable();
         let name = |row: usize| match given.names.get(row).filter(|name| !name.is_empty()) {

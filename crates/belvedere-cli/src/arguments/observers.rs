@@ -302,7 +302,7 @@ pub(crate) struct Who {
 pub(crate) struct LookingArguments {
     /// Distance between observers on a path, in metres; a table then has the corners of one path
     /// [default for GeoJSON: 5]
-    #[arg(long = "distance-step-m", value_name = "M", requires = "observers", value_parser = above_zero::<f64>, allow_negative_numbers = true)]
+    #[arg(long = "distance-step-m", value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true)]
     pub(crate) step: Option<f64>,
     /// Height of observers above the ground in metres [default: 1.7]
     #[arg(long, value_name = "M", value_parser = height::<f64>, allow_negative_numbers = true)]

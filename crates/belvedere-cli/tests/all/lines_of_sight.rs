@@ -12,6 +12,10 @@ fn column(text: &str, name: &str) -> Vec<String> {
     text.lines().skip(1).map(|line| line.split(',').nth(at).unwrap().to_owned()).collect()
 }
 
+fn words(words: &[&str]) -> Vec<String> {
+    words.iter().map(|&word| word.to_owned()).collect()
+}
+
 fn numbers(text: &str, name: &str) -> Vec<f64> {
     column(text, name).iter().map(|cell| cell.parse().unwrap_or(f64::NAN)).collect()
 }
@@ -314,6 +318,14 @@ fn networks_name_what_cannot_see_and_refuse_what_is_no_network() {
     place.write("one.csv", format!("x,y,z\n{EAST},{NORTH},2\n"));
     place.refusal(2, &format!("line-of-sight {HOUSE} --among one.csv -o net.csv"), &["two places or more"]);
     let pairs = format!("line-of-sight {HOUSE} --observer {EAST},{NORTH},20 --target {EAST},{NORTH},30 -o net.graphml");
+    let apart = format!("line-of-sight {HOUSE} --among places.csv --max-distance 2 -o net.csv");
+    place.refusal(2, &apart, &["--max-distance", "no pair is nearer"]);
+    // a row from south to north, with an id where there is no name
+    let rows: String = (0..4).map(|i| format!(",{},{outside},{},9\n", 7 + i, NORTH + 4.0 * f64::from(i))).collect();
+    place.write("row.csv", format!("name,id,x,y,z\n{rows}"));
+    place.summary(&format!("line-of-sight {HOUSE} --among row.csv --max-distance 5 -o net.csv"));
+    let text = place.text("net.csv");
+    assert_eq!((column(&text, "a"), column(&text, "b")), (words(&["7", "8", "9"]), words(&["8", "9", "10"])), "{text}");
     place.refusal(2, &pairs, &["--among"]);
     place.refusal(2, &pairs.replace("graphml", "csv --max-distance 9"), &["--max-distance", "--among"]);
 }
@@ -348,4 +360,10 @@ fn observers_of_a_total_viewshed_fill_the_map_and_stand_in_no_house() {
     // two hundred places and cells of 2 m miss it by a hundredth or two
     assert!((found - expected).abs() < 0.03, "{found} {expected}");
     place.refusal(2, &format!("viewshed {HOUSE} --spread 0 -o total.tif"), &["--spread", "1 to 65534"]);
+    place.refusal(2, &format!("viewshed {HOUSE} --spread 9 --distance-step-m 2 -o total.tif"), &["--observers"]);
+    // a corridor that is 1 % of its box
+    let corridor =
+        |i: i32| format!("{},{},0\n", EAST + f64::from(i) * 0.5, NORTH + f64::from(i) * 0.5 + f64::from(i % 3));
+    place.write("corridor.xyz", (0..1200).map(corridor).collect::<String>());
+    place.summary("viewshed corridor.xyz --crs EPSG:28992 --ground found --spread 5 --cell 2 -o total.tif");
 }

@@ -200,7 +200,7 @@ class Scene:
         place: dict[str, Any],
         targets: dict[str, Any],
         progress: _Progress,
-    ) -> tuple[list[tuple[str, npt.NDArray[np.uint32]]], _Grid | None]: ...
+    ) -> tuple[list[tuple[str, npt.NDArray[np.uint32]]], _Grid | None, list[dict[str, Any]]]: ...
     def sky_view(
         self,
         directions: int | None,
@@ -212,7 +212,7 @@ class Scene:
     ) -> _Results: ...
     def viewshed(
         self,
-        observers: npt.NDArray[np.float64],
+        observers: npt.NDArray[np.float64] | int,
         looking: dict[str, Any],
         place: dict[str, Any],
         unproven: str,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import warnings
 from typing import Any
 
@@ -30,6 +31,7 @@ class Outlook:
         observers: npt.ArrayLike | None = None,
         *,
         target: npt.ArrayLike | None = None,
+        spread: int | None = None,
         observer_height: float | None = None,
         target_height: float | None = None,
         cell: float | None = None,
@@ -57,6 +59,9 @@ class Outlook:
         target : array_like, shape (2,) or (3,), optional
             In place of observers: cells are those from which this place is seen by eyes `observer_height` above the
             ground. Without z, it is `target_height` above the ground. After `with_terrain` it may be on the terrain.
+        spread : int, optional
+            In place of observers: a total viewshed. So many observers, 1 to 65534, are spread evenly over the open
+            ground; values count those that see a cell.
         observer_height : float, optional
             Height of eyes above the ground, metres; 1.7 if not given.
         target_height : float, optional
@@ -114,6 +119,9 @@ class Outlook:
         >>> seen.values.dtype, bool((seen.values == 1).any())
         (dtype('uint8'), True)
         >>> seen_from = scene.viewshed(target=standing, target_height=10, cell=2)
+        >>> total = scene.viewshed(spread=50, target_height=1.7, cell=4)
+        >>> int(total.values[total.values != total.nodata].max()) <= 50
+        True
         >>> mountains = scene.with_terrain("dtm.tif").viewshed(standing, far=True)  # doctest: +SKIP
         """
         looking = _looking(
@@ -130,13 +138,18 @@ class Outlook:
             is_reverse=target is not None,
             is_far=far,
         )
-        if target is None:
+        if sum(given is not None for given in (observers, target, spread)) > 1:
+            raise wrong("observers, target and spread", "given together", "give one of them")
+        places: npt.NDArray[np.float64] | int
+        if spread is not None:
+            if not 1 <= spread <= 65534:
+                raise wrong("spread", str(spread), "give a whole number from 1 to 65534")
+            places = operator.index(spread)
+        elif target is None:
             if observers is None:
-                raise wrong("observers", "missing", "give observers, or a target")
+                raise wrong("observers", "missing", "give observers, a target, or spread")
             places = map_places(observers, "observers", _OBSERVERS, crs=self._core.crs.text)
         else:
-            if observers is not None:
-                raise wrong("observers and target", "given together", "give one of them")
             places = map_places(target, "target", "give x and y, or x, y and z", crs=self._core.crs.text)
             if len(places) != 1:
                 raise wrong("target", f"{len(places)} places", "give one")

@@ -9,8 +9,10 @@ use belvedere_data::{Error, Parameter, Result};
 
 /// Real root of x³ = x + 1.
 const PLASTIC_NUMBER: f64 = 1.324_717_957_244_746;
-/// Places that are tried for each observer.
-const MAX_TRIES: usize = 20;
+/// Places on cells that are targets, tried for each observer.
+const TRIES: usize = 20;
+/// Maximum number of places that are tried: seconds.
+const MAX_TRIES: usize = 50_000_000;
 
 impl ViewshedQuestion {
     /// `count` observers spread evenly over the map, where somebody can stand: on cells that are targets, and outside
@@ -34,6 +36,8 @@ impl ViewshedQuestion {
         let targets = Places::Cells(cells).targets(scene, &mut Context::default(), control)?;
         let grid = known.ground.grid;
         let is_target = |[column, row]: [usize; 2]| targets.is_target(row * grid.width + column);
+        let cells_of_target = grid.width * grid.height / targets.target_count().max(1) + 1;
+        let tries = count.saturating_mul(TRIES).saturating_mul(cells_of_target).min(MAX_TRIES);
         let blockers = scene.blockers(self.unproven(), control)?;
         let (low, high) = scene.model().bounds().on_map();
         let place = |number: usize| {
@@ -46,13 +50,12 @@ impl ViewshedQuestion {
         };
         let standing =
             |place| StandingObserver { standing: Standing { place, height: None }, limits: ViewLimits::default() };
-        let found: Vec<StandingObserver> =
-            (1..=count.saturating_mul(MAX_TRIES)).filter_map(place).take(count).map(standing).collect();
+        let found: Vec<StandingObserver> = (1..=tries).filter_map(place).take(count).map(standing).collect();
         if found.len() < count {
             return Err(Error::InvalidParameter {
-                parameter: Parameter::Observer,
-                value: format!("{count} places, of which {} are free", found.len()),
-                expected: "fewer places, or a cloud with open ground",
+                parameter: Parameter::ObserverCount,
+                value: format!("{count}, of which {} found open ground", found.len()),
+                expected: "fewer, or of a cloud with more open ground",
             });
         }
         Ok(found)

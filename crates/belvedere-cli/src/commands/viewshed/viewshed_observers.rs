@@ -22,6 +22,9 @@ const MAX_COUNTED: usize = 65_534;
 pub(super) fn check(arguments: &ViewshedArguments) -> Result<()> {
     MapPosition::refuse_twice("--observer", &arguments.who.observer)?;
     let (who, looking) = (&arguments.who, &arguments.looking);
+    if looking.step.is_some() && who.observers.is_none() {
+        return Err(Usage("--distance-step-m divides the paths of --observers, which is missing".to_owned()).into());
+    }
     let typed = who.spread.unwrap_or(who.observer.len());
     let count = if looking.step.is_some() { 1 } else { min_count(typed, who.observers.as_deref())? };
     check_count(arguments, count)
