@@ -34,3 +34,4 @@ pub mod towers;
 pub mod tree_light;
 pub mod viewshed;
 pub mod window_views;
+pub mod wireline;

@@ -15,6 +15,7 @@ mod picture_row;
 mod png;
 mod profile_picture;
 mod round_step;
+mod wireline_picture;
 
 pub use animation::write_apng;
 pub use belvedere_io::{class_color, in_shadow, ramp, ramp_colors};
@@ -28,3 +29,4 @@ pub use picture::Picture;
 pub use picture_row::side_by_side;
 pub use png::{png_bytes, write_png};
 pub use profile_picture::{DistanceProfile, profile_picture};
+pub use wireline_picture::{DrawnTower, WirelinePlane, wireline_picture};

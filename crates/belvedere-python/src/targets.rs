@@ -6,7 +6,7 @@ use crate::errors::{exception, wrong};
 use crate::mesh::{Faces, rows_of};
 use crate::remarks::remarks_of;
 use crate::work::run;
-use belvedere::apps::ask::{self, Answers, Ask, Question, Remark};
+use belvedere::apps::ask::{self, Answers, Ask, Question, Reach, Remark};
 use belvedere::apps::targets::{CellLevel, Measure, ResultKind, Targets};
 use belvedere::ground::{GroundPoints, MapGrid};
 use belvedere::io::Georeference;
@@ -81,6 +81,11 @@ impl RequestedTargets<'_> {
     }
 
     pub(crate) fn chosen(&self, py: Python<'_>, scene: &ask::Scene) -> PyResult<Chosen> {
+        self.chosen_within(Reach::Cloud, py, scene)
+    }
+
+    /// The places of lines of sight of this extent.
+    pub(crate) fn chosen_within(&self, reach: Reach, py: Python<'_>, scene: &ask::Scene) -> PyResult<Chosen> {
         let normals: Option<Vec<[f32; 3]>> = self.normals.as_ref().map(|n| fixed_rows(n, "normals")).transpose()?;
         let check = |count: usize| match &normals {
             Some(normals) if normals.len() != count => {
@@ -96,7 +101,7 @@ impl RequestedTargets<'_> {
         }
         if let Some(places) = &self.on_map {
             let places = places.iter().map(|&[x, y, z]| ([x, y], Some(z).filter(|z| !z.is_nan())));
-            let places = ask::standing_on_map(places, self.height, scene).map_err(exception)?;
+            let places = ask::standing_on_map(places, self.height, reach, scene).map_err(exception)?;
             return of(ask::Places::At(places, ground_points(self.ground.as_deref())?));
         }
         if let Some(cloud) = &self.cloud {

@@ -4,9 +4,10 @@ use crate::outlook::LookingKeywords;
 use crate::remarks::remarks_of;
 use crate::scene::PyScene;
 use crate::targets::{RequestedTargets, TargetResults, grid_at, ground_points, measure_columns, put_to_scene};
-use belvedere::apps::ask::{self, GivenTower, Standing};
-use belvedere::results::terrain_georeference;
+use belvedere::apps::ask::{self, GivenTower, Reach, Standing};
+use belvedere::results::{terrain_georeference, write_wirelines};
 use pyo3::prelude::*;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A tower.
@@ -29,6 +30,7 @@ impl PyScene {
         towers: Vec<TowerKeywords>,
         looking: LookingKeywords,
         targets: RequestedTargets<'py>,
+        wirelines: Option<PathBuf>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<TargetResults<'py>> {
         let scene = Arc::clone(&self.0);
@@ -44,10 +46,14 @@ impl PyScene {
             earth: looking.earth()?,
             ground: ground_points(looking.ground.as_deref())?,
             far: looking.is_far,
+            wirelines: wirelines.is_some(),
         };
-        let chosen = targets.chosen(py, &scene)?;
+        let chosen = targets.chosen_within(Reach::FarTerrain, py, &scene)?;
         let places = chosen.places.clone();
         let answers = put_to_scene(py, progress, Arc::clone(&scene), question, places)?;
+        if let (Some(folder), Some(found)) = (&wirelines, &answers.found.wirelines) {
+            write_wirelines(folder, found, scene.frame()).map_err(crate::errors::exception)?;
+        }
         if let Some(far) = answers.found.far {
             let heights = far.terrain.heights();
             let place = terrain_georeference(&far.terrain, scene.frame());

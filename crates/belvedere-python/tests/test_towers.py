@@ -43,3 +43,21 @@ def test_a_tower_above_an_eye_in_the_air_is_seen_whole(scene):
     assert seen["metres"] == pytest.approx([50.0]) and seen["nearest_m"] == pytest.approx([50.0])
     angle = np.degrees(np.arctan2(40, 50) + np.arctan2(10, 50))
     assert seen["angle_deg"] == pytest.approx([angle], abs=1e-3)
+
+
+def test_wirelines_are_pictures_and_a_table_of_each_place_and_tower(scene, folder):
+    pandas = pytest.importorskip("pandas")
+    places = [(155030.0, 463000.0, 90.0), (154980.0, 463000.0, 90.0)]
+    with pytest.warns(belvedere.BelvedereWarning, match="beyond the cloud"):
+        seen = scene.towers(TOWERS, targets=places, wirelines=folder / "views")
+    assert {path.name for path in (folder / "views").iterdir()} == {"towers.csv", "wireline_1.png", "wireline_2.png"}
+    table = pandas.read_csv(folder / "views" / "towers.csv")
+    assert list(table["tower"]) == TOWERS["name"] * 2
+    assert table.groupby("place")["visible_m"].sum().to_numpy() == pytest.approx(seen["metres"], abs=0.2)
+    row = table.iloc[0]
+    assert row["distance_m"] == pytest.approx(np.hypot(40, 20), abs=0.1)
+    assert row["tip_deg"] == pytest.approx(np.degrees(np.arctan2(60 - 90, np.hypot(40, 20))), abs=0.01)
+    # nothing stands between that high
+    assert row["disc_visible_share"] == 1.0 and np.isnan(table["hub_deg"][2])
+    with pytest.raises(belvedere.BelvedereError, match="give places as targets"):
+        scene.towers(TOWERS, cell=8, wirelines=folder / "views")

@@ -79,8 +79,8 @@ pub use isovist::{IsovistColumn, IsovistsQuestion, IsovistsResults};
 pub use landmark::{LandmarkQuestion, LandmarkResults, LandmarkSection, LandmarkShape};
 pub use line_of_sight::{LinesOfSightQuestion, ProfileRows, SightColumns, SightsResults};
 pub use mesh_levels::remarks_on_model;
-pub use north::North;
-pub use observers::{Eyes, Standing};
+pub use north::{AzimuthNorth, North};
+pub use observers::{Eyes, Reach, Standing};
 pub use places::{GridCells, NetworkPlaces, Places, Turned, remark_on_edge};
 pub use protected_view::{ProtectedViewQuestion, ProtectedViewResults};
 pub use reliability::{calibrate, with_reliability};
@@ -100,7 +100,7 @@ pub use sun_position::{SunPositionQuestion, SunStands};
 pub use survey::remarks_on_survey;
 pub use survey_plan::{PlannedStation, SurveyPlanQuestion, SurveyPlanResults};
 pub use terrain_heights::remark_on_terrain;
-pub use towers::{FarTowers, GivenTower, TowersQuestion, TowersResults, TowersSection};
+pub use towers::{FarTowers, GivenTower, MAX_WIRELINES, TowerWirelines, TowersQuestion, TowersResults, TowersSection};
 pub use trees::{ThroughTrees, density_at, remark_on_leaves};
 pub use viewer::{
     remark_on_axis, remark_on_cleared, remark_on_doubt, remark_on_eye, remark_on_faces, remark_on_inside,
@@ -118,7 +118,6 @@ use belvedere_core::ground::{GroundReport, GroundShift, ShiftEvidence};
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use belvedere_data::{Frame, Result};
-use north::AzimuthNorth;
 use scene::KnownGround;
 use sections::GroundSection;
 use serde::{Deserialize, Serialize};

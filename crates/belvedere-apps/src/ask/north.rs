@@ -69,6 +69,12 @@ impl North {
 }
 
 impl AzimuthNorth {
+    /// Returns true if azimuths count from true north.
+    #[must_use]
+    pub fn is_true(&self) -> bool {
+        self.counted_from == CountedFrom::TrueNorth
+    }
+
     /// For reports.
     #[must_use]
     pub fn report(&self) -> NorthReport {

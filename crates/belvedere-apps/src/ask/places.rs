@@ -1,6 +1,6 @@
 //! The places of questions: from a user's input to targets, with the places left out and why.
 
-use super::observers::Standing;
+use super::observers::{Reach, Standing};
 use super::scene::Scene;
 use super::sections::PlacesReport;
 use super::{Context, Remark, remark_on_outside, single_places};
@@ -105,6 +105,18 @@ impl Places {
     /// [`Error::InvalidParameter`] for parameters out of range, places of another reference system, and a ball file
     /// without points where points are needed; those of computing the ground.
     pub fn targets(&self, scene: &Scene, context: &mut Context, control: &Control<'_>) -> Result<Arc<Targets>> {
+        self.targets_within(Reach::Cloud, scene, context, control)
+    }
+
+    /// [`Places::targets`] of lines of sight of this extent: single places and points may lie on the terrain beyond the
+    /// cloud.
+    pub(super) fn targets_within(
+        &self,
+        reach: Reach,
+        scene: &Scene,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Arc<Targets>> {
         let frame = || scene.frame().clone();
         let of_points = |positions: Vec<[f32; 3]>, normals| {
             Targets::of_points(&PointCloud { positions, ..PointCloud::in_frame(frame()) }, normals)
@@ -126,7 +138,7 @@ impl Places {
                 control.stage("sampling mesh", 0, || Targets::of_mesh(mesh, scene.frame(), params))?
             }
         };
-        leave_out_outside(&mut targets, scene, context);
+        leave_out_outside(&mut targets, reach, scene, context);
         Ok(Arc::new(targets))
     }
 
@@ -152,10 +164,20 @@ fn other<T>(parameter: Parameter, value: &str, expected: &'static str) -> Result
     Err(Error::InvalidParameter { parameter, value: value.to_owned(), expected })
 }
 
-/// Leaves out targets outside the cloud, which is reported and warned of.
-pub(super) fn leave_out_outside(targets: &mut Targets, scene: &Scene, context: &mut Context) {
+/// Leaves out targets outside the cloud, and outside the terrain beyond it where lines of sight reach so far, which is
+/// reported and warned of.
+pub(super) fn leave_out_outside(targets: &mut Targets, reach: Reach, scene: &Scene, context: &mut Context) {
     let count = targets.target_count();
-    let outside = scene.model().coverage().map_or(0, |coverage| targets.leave_out_outside(&coverage));
+    let terrain = scene.model().far_terrain().grid().filter(|_| reach == Reach::FarTerrain);
+    let is_beyond = |place: [f32; 3]| {
+        terrain.is_some_and(|terrain| terrain.height_at([place[0], place[1]].map(f64::from)).is_some())
+    };
+    let outside = scene.model().coverage().map_or(0, |coverage| {
+        targets.leave_out(|place| {
+            let is_on_terrain = !coverage.holds_on_map(place.map(f64::from)) && is_beyond(place);
+            coverage.is_outside(place) && !is_on_terrain
+        })
+    });
     context.report.places.targets_outside_cloud = Some(outside);
     context.add(remark_on_outside(outside, count, "targets"));
 }

@@ -1,12 +1,12 @@
 //! Single places: where they lie if no height is given, and what was found there in a sentence each.
 
-use super::observers::Standing;
+use super::observers::{Reach, Standing};
 use super::places::cells_of;
 use super::scene::Scene;
 use super::shadow::UNPROVEN;
 use super::{Context, Remark};
 use crate::shadow::LIT;
-use crate::targets::{CellLevel, CellParams, Measure, Targets, grid_around};
+use crate::targets::{CellLevel, CellParams, Measure, Targets, grid_around, set_on_terrain};
 use belvedere_core::ground::{Ground, GroundPoints};
 use belvedere_data::control::Control;
 use belvedere_data::crs::Crs;
@@ -122,19 +122,21 @@ fn are_degrees([latitude, longitude]: [f64; 2]) -> bool {
 }
 
 /// Returns places on the map, each with its height where that is known, as single places of a scene that stand `height`
-/// metres above what is below.
+/// metres above what is below. Lines of sight of this extent may begin beyond the cloud.
 ///
 /// # Errors
-/// Those of [`position_on_map`].
+/// Those of [`position_on_map`] and [`end_on_map`].
 pub fn standing_on_map(
     places: impl IntoIterator<Item = ([f64; 2], Option<f64>)>,
     height: Option<f64>,
+    reach: Reach,
     scene: &Scene,
 ) -> Result<Vec<Standing>> {
     let frame = scene.frame();
     let bounds = bounds_in_file(frame, &scene.model().bounds());
     let one = |(place, given): ([f64; 2], Option<f64>)| {
-        let [x, y] = position_on_map(place, &frame.crs, bounds)?;
+        let on_map = if reach == Reach::Cloud { position_on_map } else { end_on_map };
+        let [x, y] = on_map(place, &frame.crs, bounds)?;
         Ok(Standing { place: frame.local_from_file([x, y, given.unwrap_or(f64::NAN)]), height })
     };
     places.into_iter().map(one).collect()
@@ -171,7 +173,10 @@ pub(super) fn positions(
 ) -> Result<Vec<[f32; 3]>> {
     let mut positions: Vec<[f64; 3]> = places.iter().map(|place| place.place).collect();
     let mut sources = vec![HeightFrom::Given; places.len()];
-    if let Some(grid) = grid_around(positions.iter().copied(), scene.frame().origin)? {
+    let coverage = scene.model().coverage();
+    // ground is made where there are points: one place far away would make its cells large for all
+    let is_over = |place: &[f64; 3]| coverage.is_none_or(|coverage| coverage.holds_on_map(*place));
+    if let Some(grid) = grid_around(positions.iter().copied().filter(is_over), scene.frame().origin)? {
         let known = scene.ground(grid, points, control)?;
         context.ground(scene, &known);
         let usual = CellParams::default().with_height(0.0);
@@ -183,7 +188,7 @@ pub(super) fn positions(
         let open = cells(CellLevel::Ground)?;
         let mut covers: Option<Targets> = None;
         for ((position, source), place) in positions.iter_mut().zip(&mut sources).zip(places) {
-            if !position[2].is_nan() {
+            if !position[2].is_nan() || !is_over(position) {
                 continue;
             }
             let above = place.height.unwrap_or(CellParams::default().height);
@@ -199,6 +204,13 @@ pub(super) fn positions(
                 none => none.insert(cells(CellLevel::Surface)?),
             };
             position[2] = height_of_cell(covers, &known.ground, on_map).map_or(f64::NAN, |height| height + above);
+        }
+    }
+    let usual = CellParams::default().height;
+    for ((position, source), place) in positions.iter_mut().zip(&mut sources).zip(places) {
+        if position[2].is_nan() && !is_over(position) {
+            *source = HeightFrom::Ground;
+            set_on_terrain([(position, place.height.unwrap_or(usual))], scene.model());
         }
     }
     let unknown = positions.iter().filter(|position| position[2].is_nan()).count();

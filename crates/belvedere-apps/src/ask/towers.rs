@@ -1,11 +1,12 @@
 //! Towers: how much of wind turbines, masts and other tall things is seen.
 
-use super::observers::{Standing, check_height, stand};
+use super::observers::{Reach, Standing, check_height, stand};
 use super::sections::{LinesSection, MeasuresSection, PlacesReport};
-use super::{Answers, Ask, Context, OnTargets, Places, Remark, Scene};
+use super::{Answers, Ask, AzimuthNorth, Context, North, OnTargets, Places, Remark, Scene};
 use crate::targets::Measure;
 use crate::towers::{MAX_SCHEMES, Tower, TowersParams, TowersSeen, TowersView, towers_seen};
 use crate::viewshed::{OBSERVER_HEIGHT, Observer, SightLimits, far_targets, terrain_within_reach};
+use crate::wireline::{Wireline, wireline};
 use belvedere_core::ground::GroundPoints;
 use belvedere_core::query::{EarthParams, MedialScene, UnprovenAs, VerticalLine};
 use belvedere_data::control::Control;
@@ -19,6 +20,8 @@ use std::sync::Arc;
 const MAX_HEIGHT: f64 = 1000.0;
 /// Maximum distance of a tower from the middle of the cloud, metres: farther ones are in other coordinates.
 const MAX_AWAY: f64 = 150_000.0;
+/// Maximum number of places with a wireline.
+pub const MAX_WIRELINES: usize = 100;
 
 /// Visible metres of towers from places.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -37,6 +40,8 @@ pub struct TowersQuestion {
     pub ground: GroundPoints,
     /// True to add the cells of the terrain beyond the cloud. Default: false.
     pub far: bool,
+    /// True to add the wireline of each place, of at most 100. Default: false.
+    pub wirelines: bool,
 }
 
 /// A tower, as given.
@@ -62,6 +67,18 @@ pub struct TowersResults {
     pub towers: Vec<Tower>,
     /// Results for far terrain, if wanted.
     pub far: Option<FarTowers>,
+    /// Views from the places, if wanted.
+    pub wirelines: Option<TowerWirelines>,
+}
+
+/// Wirelines of towers from places.
+pub struct TowerWirelines {
+    /// The wireline of each place; `None` where the place has no answer.
+    pub views: Vec<Option<Wireline>>,
+    /// Names of the towers, by their numbers.
+    pub names: Vec<String>,
+    /// North of the azimuths that people read.
+    pub north: AzimuthNorth,
 }
 
 /// Views of towers from the cells of far terrain.
@@ -201,6 +218,35 @@ impl TowersQuestion {
         Ok((FarTowers { terrain, measures }, seen))
     }
 
+    /// The wirelines from `eyes`, local metres, of which some may not be finite.
+    fn wirelines(
+        &self,
+        (blockers, scene): (&MedialScene, &Scene),
+        towers: &[Tower],
+        eyes: &[[f32; 3]],
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<TowerWirelines> {
+        if eyes.len() > MAX_WIRELINES {
+            let (parameter, value) = (Parameter::ObserverCount, eyes.len().to_string());
+            return Err(Error::InvalidParameter { parameter, value, expected: "at most 100, for wirelines" });
+        }
+        let params = self.params();
+        let view = |eye: &[f32; 3]| {
+            let eye = eye.map(f64::from);
+            let is_known = eye.iter().all(|v| v.is_finite());
+            let view = is_known.then(|| wireline(blockers, towers, eye, (&params.earth, params.max_distance), control));
+            control.advance(1);
+            view.transpose()
+        };
+        let views: Result<Vec<Option<Wireline>>> =
+            control.stage("drawing wirelines", eyes.len(), || eyes.iter().map(view).collect());
+        let north = North::default().of_scene(scene);
+        context.north(&north);
+        let names = (1..).zip(&self.towers).map(|(number, tower)| tower.name(number)).collect();
+        Ok(TowerWirelines { views: views?, names, north })
+    }
+
     fn section(&self, towers: &[Tower], scene: &Scene, seen: [Option<&TowersSeen>; 2]) -> TowersSection {
         let places = seen.map(|seen| seen.map_or(0, |seen| seen.views.iter().flatten().count()));
         let of_tower = |(number, (tower, given)): (usize, (&Tower, &GivenTower))| {
@@ -257,7 +303,7 @@ impl Ask for TowersQuestion {
     ) -> Result<Answers<TowersResults>> {
         let towers = self.stand(scene, context, control)?;
         let height = self.observer_height.unwrap_or(OBSERVER_HEIGHT);
-        let mut targets = places.at_height(height).targets(scene, context, control)?;
+        let mut targets = places.at_height(height).targets_within(Reach::FarTerrain, scene, context, control)?;
         let blockers = scene.blockers(UnprovenAs::Reported, control)?;
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         Arc::make_mut(&mut targets).leave_out_inside(&blockers, context, control)?;
@@ -272,6 +318,10 @@ impl Ask for TowersQuestion {
             true => Some(self.far((&blockers, &towers), control)?),
             false => None,
         };
+        let wirelines = match self.wirelines {
+            true => Some(self.wirelines((&blockers, scene), &towers, &targets.positions, context, control)?),
+            false => None,
+        };
         let of_far = far.as_ref().map(|(_, seen)| seen);
         summarise(&towers, &seen, &PlacesReport::in_words(&targets), context);
         if let Some(of_far) = of_far {
@@ -283,7 +333,7 @@ impl Ask for TowersQuestion {
         let title = format!("Visible metres of {}", in_words(towers.len()));
         let on_targets = OnTargets { near_edge: vec![None; targets.len()], targets, title };
         let far = far.map(|(far, _)| far);
-        Ok(Answers::new(TowersResults { on_targets, towers, far }, measures))
+        Ok(Answers::new(TowersResults { on_targets, towers, far, wirelines }, measures))
     }
 }
 

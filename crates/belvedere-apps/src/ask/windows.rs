@@ -1,5 +1,6 @@
 //! Windows: from a user's input to the targets in front of them.
 
+use super::observers::Reach;
 use super::places::leave_out_outside;
 use super::scene::Scene;
 use super::{Context, SharedObject};
@@ -120,7 +121,7 @@ impl WindowTargets {
     /// [`Error::InvalidParameter`] for windows all of which lie outside.
     pub(super) fn leave_out_outside(&mut self, scene: &Scene, context: &mut Context) -> Result<()> {
         let given = self.targets.target_count();
-        leave_out_outside(&mut self.targets, scene, context);
+        leave_out_outside(&mut self.targets, Reach::Cloud, scene, context);
         if given == 0 || self.targets.target_count() > 0 {
             return Ok(());
         }

@@ -29,7 +29,7 @@ pub use surfaces::{FaceMeans, Facing, MeshParams, object_areas};
 pub use windows::{Window, objects_of_windows};
 
 use belvedere_core::ground::Ground;
-use belvedere_core::query::{Coverage, MedialScene, SurfacePieces};
+use belvedere_core::query::{MedialScene, SurfacePieces};
 use belvedere_data::control::Control;
 use belvedere_data::frame::Frame;
 use belvedere_data::vector::to_f32;
@@ -143,10 +143,10 @@ impl Targets {
         });
     }
 
-    /// Leaves out targets that lie beside or below the cloud; returns how many.
-    pub fn leave_out_outside(&mut self, coverage: &Coverage) -> usize {
+    /// Leaves out targets at places, local metres, that are `outside`; returns how many.
+    pub fn leave_out(&mut self, outside: impl Fn([f32; 3]) -> bool + Sync) -> usize {
         let positions = self.positions.par_iter_mut().with_min_len(CHUNK);
-        let outside = positions.filter(|position| coverage.is_outside(**position));
+        let outside = positions.filter(|position| outside(**position));
         outside.map(|position| *position = [f32::NAN; 3]).count()
     }
 

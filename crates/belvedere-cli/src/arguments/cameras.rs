@@ -14,7 +14,8 @@ pub(crate) struct CamerasArguments {
     #[command(flatten)]
     pub(crate) candidates: CandidatesArguments,
     /// Distance between candidates on a line of GeoJSON, in metres [default: 5]
-    #[arg(long = "distance-step-m", value_name = "M", requires = "file", value_parser = above_zero::<f64>, allow_negative_numbers = true,
+    #[arg(long = "distance-step-m", value_name = "M", requires = "file", conflicts_with_all = ["on_ground", "on_roofs"],
+        value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Candidates (one of)")]
     pub(crate) step: Option<f64>,
     /// Height of cameras without Z above the ground or the roof, in metres [default: 4 above the ground, 1 above roofs]

@@ -14,7 +14,7 @@ pub(crate) struct IrradianceArguments {
     #[command(flatten)]
     pub(crate) radiation: RadiationChoice,
     /// Year of the clear sky [default: 2026]
-    #[arg(long, value_name = "YEAR", requires = "clear_sky", help_heading = "Radiation")]
+    #[arg(long, value_name = "YEAR", requires = "clear_sky", conflicts_with = "weather", help_heading = "Radiation")]
     pub(crate) year: Option<i16>,
     /// Latitude and longitude in degrees, north and east positive
     /// [default: from the reference system, else the weather file]

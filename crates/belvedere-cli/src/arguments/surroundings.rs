@@ -49,7 +49,8 @@ pub(crate) struct LandmarkArguments {
     /// How faces that are turned away from the observer are counted [default: not-visible]
     ///
     /// With the default, shares refer to the whole surface of the landmark.
-    #[arg(long, value_enum, requires = "target", help_heading = "Landmark (one of)")]
+    #[arg(long, value_enum, requires = "target", conflicts_with_all = ["target_class", "target_polygon"],
+        help_heading = "Landmark (one of)")]
     pub(crate) back_faces: Option<BackFacesChoice>,
     /// Observers from a table with columns x and y (.csv), optionally z and height, or from GeoJSON [default: a grid]
     ///
@@ -99,11 +100,13 @@ pub(crate) struct LandmarkShapeArguments {
     #[command(flatten)]
     pub(crate) what: What,
     /// Name of an object of the mesh that is the landmark; repeatable [default: all]
-    #[arg(long, value_name = "NAME", requires = "target", help_heading = "Landmark (one of)")]
+    #[arg(long, value_name = "NAME", requires = "target", conflicts_with_all = ["target_class", "target_polygon"],
+        help_heading = "Landmark (one of)")]
     pub(crate) object: Vec<String>,
     /// Maximum side of the triangles that the mesh is cut into, in metres
     /// [default: for about 1000 triangles, at least 0.25]
-    #[arg(long, value_name = "M", requires = "target", value_parser = above_zero::<f64>, allow_negative_numbers = true,
+    #[arg(long, value_name = "M", requires = "target", conflicts_with_all = ["target_class", "target_polygon"],
+        value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Landmark (one of)")]
     pub(crate) spacing: Option<f64>,
 }

@@ -32,13 +32,14 @@ pub(crate) struct SurveyPlanArguments {
     #[command(flatten)]
     pub(crate) stations: StationPlaces,
     /// Distance between candidates on a line, in metres [default: 5]
-    #[arg(long = "distance-step-m", value_name = "M", requires = "file", value_parser = above_zero::<f64>, allow_negative_numbers = true,
+    #[arg(long = "distance-step-m", value_name = "M", requires = "file", conflicts_with_all = ["on_ground", "on_roofs"],
+        value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Candidates (one of)")]
     pub(crate) step: Option<f64>,
     /// Take each line of --candidates as one candidate: a flight line
     ///
     /// It is scanned from all of its places, and proves what these prove together.
-    #[arg(long, requires = "file", help_heading = "Candidates (one of)")]
+    #[arg(long, requires = "file", conflicts_with_all = ["on_ground", "on_roofs"], help_heading = "Candidates (one of)")]
     pub(crate) whole_lines: bool,
     /// Height of the scanner for candidates without Z, in metres [default: 1.8]
     ///

@@ -7,7 +7,7 @@ pub(super) mod radiation;
 use super::in_tiles::TypedCells;
 use super::targets::TargetOutput;
 use super::warn_of_geojson;
-use crate::arguments::{Global, IrradianceArguments, Usage};
+use crate::arguments::{Global, IrradianceArguments, SkyOutputs, SkyPlaces, Usage};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -17,12 +17,32 @@ use belvedere::apps::irradiance::{CLEAR_SKY_YEAR, Grouping};
 use belvedere::io::read_footprints;
 use std::sync::Arc;
 
+/// Refuses flags of cells and points where only roofs are wanted, which have cells of their own.
+fn refuse_flags_of_places(arguments: &IrradianceArguments, outputs: &SkyOutputs) -> Result<()> {
+    let SkyPlaces { places, cell, height, edge_mask, spacing, facing, .. } = &arguments.places;
+    let given = [
+        ("--measures", outputs.measures.is_some()),
+        ("--edge-mask", edge_mask.is_some()),
+        ("--surface", places.surface),
+        ("--self", places.own),
+        ("--targets", places.targets.is_some()),
+        ("--cell", cell.is_some()),
+        ("--target-height", height.is_some()),
+        ("--spacing", spacing.is_some()),
+        ("--facing", facing.is_some()),
+    ];
+    match given.into_iter().find(|(_, is_given)| *is_given) {
+        Some((flag, _)) => Err(Usage(format!("{flag} needs -o")).into()),
+        None => Ok(()),
+    }
+}
+
 pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Summary> {
     let outputs = arguments.outputs.of_places();
     arguments.places.check(&outputs)?;
     let wants_places = !outputs.output.is_empty() || !arguments.places.places.at.is_empty();
-    if !wants_places && outputs.measures.is_some() {
-        return Err(Usage("--measures needs -o".to_owned()).into());
+    if !wants_places {
+        refuse_flags_of_places(arguments, &outputs)?;
     }
     planes::check(arguments)?;
     let mut run = CommandContext::new(global);

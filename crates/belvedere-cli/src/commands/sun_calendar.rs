@@ -8,7 +8,7 @@ use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, Ask, Places, position_on_map, standing_on_map};
+use belvedere::apps::ask::{self, Ask, Places, Reach, position_on_map, standing_on_map};
 use belvedere::io::is_mesh;
 use belvedere::results::write_calendar;
 
@@ -47,7 +47,7 @@ pub(crate) fn run(arguments: &SunCalendarArguments, global: &Global) -> Result<S
         None => {
             let typed = typed.iter().map(|place| (place.0, place.1));
             let height = arguments.height.map(f64::from);
-            Places::At(standing_on_map(typed, height, &scene)?, arguments.ground.points())
+            Places::At(standing_on_map(typed, height, Reach::Cloud, &scene)?, arguments.ground.points())
         }
     };
     let answers = run.ask(&scene, &question, &places)?;

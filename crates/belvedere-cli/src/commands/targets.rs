@@ -8,7 +8,9 @@ use crate::pipeline::mesh_in;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{GridCells, OnTargets, Places, Remark, Scene, Turned, position_on_map, standing_on_map};
+use belvedere::apps::ask::{
+    GridCells, OnTargets, Places, Reach, Remark, Scene, Turned, position_on_map, standing_on_map,
+};
 use belvedere::apps::targets::{CellLevel, Facing, Measure, MeshParams};
 use belvedere::figures::{Picture, write_png};
 use belvedere::ground::GroundPoints;
@@ -126,9 +128,19 @@ impl SkyPlaces {
 
     /// The places that were typed, and what they are taken from.
     pub(crate) fn places(&self, scene: &Scene, run: &mut CommandContext) -> Result<(Places, TargetSource)> {
+        self.places_within(Reach::Cloud, scene, run)
+    }
+
+    /// [`SkyPlaces::places`] of lines of sight of this extent.
+    pub(crate) fn places_within(
+        &self,
+        reach: Reach,
+        scene: &Scene,
+        run: &mut CommandContext,
+    ) -> Result<(Places, TargetSource)> {
         if !self.places.at.is_empty() {
             let typed = self.places.at.iter().map(|place| (place.0, place.1));
-            let places = standing_on_map(typed, self.height.map(f64::from), scene)?;
+            let places = standing_on_map(typed, self.height.map(f64::from), reach, scene)?;
             return Ok((Places::At(places, self.ground.points()), TargetSource::Single));
         }
         let Some(path) = &self.places.targets else {

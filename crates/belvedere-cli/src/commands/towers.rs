@@ -3,17 +3,17 @@
 use super::targets::{TargetOutput, remark_on_first};
 use super::viewshed::Sheet;
 use super::{check_output, extension};
-use crate::arguments::{Global, TowersArguments};
+use crate::arguments::{Global, SkyPlaces, TowersArguments, Usage};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::Frame;
-use belvedere::apps::ask::{self, Ask, FarTowers, GivenTower, Standing, TowersResults};
+use belvedere::apps::ask::{self, Ask, FarTowers, GivenTower, MAX_WIRELINES, Reach, Standing, TowersResults};
 use belvedere::crs::Crs;
 use belvedere::figures::{MapLegend, MapPicture, Picture, map_picture, ramp, write_png};
 use belvedere::io::{TowerRow, read_towers};
-use belvedere::results::{ResultRaster, terrain_georeference};
+use belvedere::results::{ResultRaster, terrain_georeference, wireline_files, write_wirelines};
 use std::path::Path;
 
 pub(crate) fn run(arguments: &TowersArguments, global: &Global) -> Result<Summary> {
@@ -22,6 +22,9 @@ pub(crate) fn run(arguments: &TowersArguments, global: &Global) -> Result<Summar
     for output in &arguments.far_output {
         check_output("--far-output", output, &["tif", "tiff", "png"])?;
     }
+    if let Some(folder) = &arguments.wirelines {
+        check_wirelines(folder, &places, arguments)?;
+    }
     let mut run = CommandContext::new(global);
     // wrong towers must not be found out after the balls were made; only points need the system of the cloud
     let is_table = matches!(extension(&arguments.towers).as_str(), "csv" | "txt");
@@ -29,7 +32,6 @@ pub(crate) fn run(arguments: &TowersArguments, global: &Global) -> Result<Summar
     if let Some(rows) = &of_table {
         question(arguments, rows)?.check()?;
     }
-    places.check_on_map(&arguments.scene.input)?;
     let mut scene = pipeline::scene(&arguments.scene, KeepPoints::Keep, &mut run)?;
     places.far.set(&mut scene, &mut run)?;
     let scene = scene.into_question_scene(Some(&arguments.ground), arguments.shell.shell, &run)?;
@@ -38,7 +40,7 @@ pub(crate) fn run(arguments: &TowersArguments, global: &Global) -> Result<Summar
     for (tower, row) in question.towers.iter_mut().zip(&rows) {
         tower.foot = Standing::on_map(row.place, row.base, scene.frame(), &scene.model().bounds())?.place;
     }
-    let (places, source) = places.places(&scene, &mut run)?;
+    let (places, source) = places.places_within(Reach::FarTerrain, &scene, &mut run)?;
     let answers = run.ask(&scene, &question, &places)?;
     let found = &answers.found;
     let shown = TargetOutput::new(&found.on_targets, source, &scene);
@@ -49,6 +51,11 @@ pub(crate) fn run(arguments: &TowersArguments, global: &Global) -> Result<Summar
         }
         let written: Vec<String> = arguments.far_output.iter().map(|path| path.display().to_string()).collect();
         run.summary.add("far_written", written);
+    }
+    if let (Some(folder), Some(wirelines)) = (&arguments.wirelines, &found.wirelines) {
+        let files = run.stage("writing", 0, |_| write_wirelines(folder, wirelines, scene.frame()))?;
+        let files: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
+        run.summary.add("wirelines_written", files);
     }
     Ok(run.finish())
 }
@@ -69,7 +76,26 @@ fn question(arguments: &TowersArguments, rows: &[TowerRow]) -> Result<ask::Tower
         earth: arguments.earth.params()?,
         ground: arguments.ground.points(),
         far: !arguments.far_output.is_empty(),
+        wirelines: arguments.wirelines.is_some(),
     })
+}
+
+/// Refuses wirelines of cells, and other results among their files.
+fn check_wirelines(folder: &Path, places: &SkyPlaces, arguments: &TowersArguments) -> Result<()> {
+    if places.is_grid() {
+        let what = "--wirelines needs places: --at X,Y or --targets FILE";
+        return Err(Usage(what.to_owned()).into());
+    }
+    let real = |path: &Path| std::path::absolute(path).ok();
+    let own = wireline_files(folder, MAX_WIRELINES);
+    let mut others = arguments.outputs.output.iter().chain(&arguments.far_output);
+    match others.find(|output| own.iter().any(|file| real(file) == real(output))) {
+        Some(output) => {
+            let what = format!("{}: a file of --wirelines has this name; choose another", output.display());
+            Err(Usage(what).into())
+        }
+        None => Ok(()),
+    }
 }
 
 /// Writes the views from far terrain as a raster or a map.

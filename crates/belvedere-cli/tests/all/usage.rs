@@ -277,6 +277,36 @@ fn wrong_usage_names_the_flag_and_ends_with_status_2() {
 }
 
 #[test]
+fn flags_that_would_change_nothing_are_refused() {
+    let place = with_house();
+    place.write("w.epw", "");
+    for arguments in [
+        "sun-calendar a.laz --windows w.csv --date 2026-06-21 --target-height 5 -o c.csv",
+        "comfort a.laz --windows w.csv --date 2026-06-21 --distance-step-m 1 -o c.csv",
+        "comfort a.laz --windows w.csv --date 2026-06-21 --target-height 5 -o c.csv",
+        "comfort a.laz --windows w.csv --date 2026-06-21 --routes r.csv -o c.csv",
+        "comfort a.laz --windows w.csv --date 2026-06-21 --times t.csv -o c.csv",
+        "comfort a.laz --route r.geojson --date 2026-06-21 --spacing 2 -o c.csv",
+        "landmark a.laz --target-class 6 --object x -o l.csv",
+        "landmark a.laz --target-polygon p.geojson --spacing 2 -o l.csv",
+        "landmark a.laz --target-class 6 --back-faces left-out -o l.csv",
+        "protected-view a.laz --target-class 6 --observer 1,2,3 --object x -o p.tif",
+        "cameras a.laz --on-ground 15 --distance-step-m 1 -o c.csv",
+        "survey-plan a.laz --sun 180,30 --on-ground 20 --whole-lines -o s.csv",
+        "survey-plan a.laz --sun 180,30 --on-roofs 20 --distance-step-m 1 -o s.csv",
+        "irradiance a.laz --weather w.epw --year 2020 -o i.tif",
+        "irradiance house.laz --weather w.epw --planes p.csv --edge-mask e.tif",
+        "irradiance house.laz --weather w.epw --planes p.csv --cell 3",
+        "line-of-sight a.laz --random 10 --profile-out p.csv -o s.csv",
+        "line-of-sight a.laz --random 10 --distance-step-m 1 -o s.csv",
+        "envelope a.laz --parcel p.geojson --protect q.geojson --sun 180,30 --from 2026-06-21 --to 2026-06-22 -o e.tif",
+    ] {
+        let run = place.run(arguments);
+        assert!(run.status == 2 && !run.stderr.contains("No such file"), "{arguments}: {}", run.stderr);
+    }
+}
+
+#[test]
 fn errors_about_parameters_name_the_flag_that_gave_them() {
     let place = with_house();
     let look = "depth-map house.laz -o out.png --eye 1,1,1 --look-at 2,1,1";

@@ -108,6 +108,14 @@ impl EarthParams {
         rise / span - self.fall_rate() * span
     }
 
+    /// Returns the apparent elevation of `place` from `eye`, both metres, radians: that of the line of sight at the
+    /// eye.
+    #[must_use]
+    pub fn apparent_elevation(&self, eye: [f64; 3], place: [f64; 3]) -> f64 {
+        let span = (place[0] - eye[0]).hypot(place[1] - eye[1]);
+        self.apparent_tangent(place[2] - eye[2], span).atan()
+    }
+
     /// Returns the rise on the map, metres, of a line of sight that starts with this tangent, after `span` metres.
     pub(super) fn height_along(&self, tangent: f64, span: f64) -> f64 {
         (tangent + self.fall_rate() * span) * span

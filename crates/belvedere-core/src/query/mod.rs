@@ -54,7 +54,7 @@ pub use confidence::{Certainty, Evidence, ScoreKey};
 pub use coverage::Coverage;
 pub use cpu::Cpu;
 pub use earth::{Curvature, EarthParams};
-pub use far_terrain::FarTerrain;
+pub use far_terrain::{FarTerrain, VisibleTerrain};
 pub use free_range::SurfaceBefore;
 pub use freed_space::FreedSpace;
 pub use fresnel::RadioWave;

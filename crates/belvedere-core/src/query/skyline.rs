@@ -75,6 +75,30 @@ impl MedialScene {
         earth: &EarthParams,
         control: &Control<'_>,
     ) -> Result<Vec<SkylinePoint>> {
+        let mut skyline = self.skyline_of_cloud(eye, count, first, earth, control)?;
+        if !self.far_terrain.is_empty() && !skyline.is_empty() {
+            let elevations = self.far_terrain.elevations(eye, [first, TAU / count as f64], count, earth);
+            for (point, elevation) in skyline.iter_mut().zip(elevations) {
+                if elevation > point.elevation {
+                    *point = SkylinePoint { elevation, ..EMPTY };
+                }
+            }
+        }
+        Ok(skyline)
+    }
+
+    /// [`MedialScene::skyline_from`] without the terrain beyond the cloud.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
+    pub fn skyline_of_cloud(
+        &self,
+        eye: [f64; 3],
+        count: usize,
+        first: f64,
+        earth: &EarthParams,
+        control: &Control<'_>,
+    ) -> Result<Vec<SkylinePoint>> {
         if count == 0 || !eye.iter().all(|v| v.is_finite()) || !first.is_finite() {
             return Ok(Vec::new());
         }
@@ -113,14 +137,6 @@ impl MedialScene {
                     skyline[azimuth] = skyline[azimuth].or(SkylinePoint { elevation, range, blocker });
                 }
             });
-        }
-        if !self.far_terrain.is_empty() {
-            let elevations = self.far_terrain.elevations(eye, [first, step], count, earth);
-            for (point, elevation) in skyline.iter_mut().zip(elevations) {
-                if elevation > point.elevation {
-                    *point = SkylinePoint { elevation, ..EMPTY };
-                }
-            }
         }
         Ok(skyline)
     }

@@ -243,6 +243,7 @@ class Scene:
         towers: list[dict[str, Any]],
         looking: dict[str, Any],
         targets: dict[str, Any],
+        wirelines: str | None,
         progress: _Progress,
     ) -> _Results: ...
     def landmark(

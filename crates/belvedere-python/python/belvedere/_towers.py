@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from os import PathLike, fspath
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,7 @@ class Towers:
         curvature: str | None = None,
         refraction: float | None = None,
         far: bool = False,
+        wirelines: str | PathLike[str] | None = None,
         progress: Progress = None,
     ) -> RastersOrTable:
         """Visible metres of towers from places.
@@ -57,6 +59,9 @@ class Towers:
             Share of the curvature that light follows, 0 to below 1; 1/7 if not given.
         far : bool, optional
             Whether eyes stand on the cells of the terrain beyond the cloud, in place of `targets`.
+        wirelines : path-like, optional
+            Folder for a picture of what each of at most 100 `targets` sees of the towers, ``wireline_1.png`` and so on, and
+            for ``towers.csv``, a row for each target and tower.
         progress : bool or callable, optional
 
         Returns
@@ -91,6 +96,8 @@ class Towers:
         'm'
         """
         check_finite(observer_height=observer_height, max_distance=max_distance, refraction=refraction)
+        if wirelines is not None and targets is None:
+            raise wrong("wirelines", "without targets", "give places as targets")
         looking = _looking(
             observer_height=observer_height,
             max_distance=max_distance,
@@ -104,6 +111,7 @@ class Towers:
             _rows(towers),
             looking,
             wanted(targets, None, _cells(cell, None, surface, ground), may_lack_heights=True),
+            None if wirelines is None else fspath(wirelines),
             reporter(progress),
         )
         return measures(results, self._core.crs, targets)

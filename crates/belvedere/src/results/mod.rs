@@ -14,6 +14,8 @@ mod faces;
 mod map;
 mod question;
 mod raster;
+#[cfg(feature = "figures")]
+mod wirelines;
 
 pub use calendar::write_calendar;
 #[cfg(feature = "figures")]
@@ -23,6 +25,8 @@ pub use faces::FaceRows;
 pub use map::{measure_map, relief_of_cells};
 pub use question::{file_name, question_tags};
 pub use raster::{ADDED_BAND, Pixels, ResultRaster, UNPROVEN_BAND, viewshed_words};
+#[cfg(feature = "figures")]
+pub use wirelines::{wireline_files, write_wirelines};
 
 pub use crate::apps::targets::ResultKind;
 

@@ -5,6 +5,7 @@ use crate::far_viewsheds::{around, open_scene};
 use crate::mountains::{grid, mountains};
 use belvedere::Mesh;
 use belvedere::apps::towers::{Tower, TowersParams, towers_seen};
+use belvedere::apps::wireline::wireline;
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
 use belvedere::query::{Answer, BlockRule, BlockingTriangles, EarthParams, MedialScene, VerticalLine};
@@ -51,6 +52,48 @@ fn a_ball_hides_what_lies_between_its_tangents() {
     assert!((inside[1][0] - 9.0).abs() < 0.5, "{inside:?}");
     // beside the ball
     assert_eq!(seen_metres(&scene, line([100.0, 40.0, 0.0], 50.0), eye, &flat), 50.0);
+}
+
+#[test]
+fn a_ridge_cuts_the_disc_of_a_rotor_in_a_wireline() {
+    // a ridge of 60 m, 2 km north of an eye on a plain, and turbines 6 km away: it hides
+    // what is lower than 185 m
+    let eye = [50_000.0, -50_000.0, 2.0];
+    let ridge = |_, y: f64| if (y + 48_000.0).abs() < 150.0 { 60.0 } else { 0.0 };
+    let scene = open_scene(grid(1001, 100.0, ridge), around(eye, 300.0));
+    let turbine = |aside: f64, hub: f64, tip: f64| {
+        let foot = [eye[0] + aside, eye[1] + 6000.0, 0.0];
+        Tower { line: line(foot, tip), hub: Some(hub), scheme: 0 }
+    };
+    // the southern edge of its flat top counts
+    let cut = 2.0 + 58.0 * 6000.0 / 1900.0;
+    let towers = [turbine(0.0, 150.0, 220.0), turbine(300.0, 90.0, 150.0), turbine(-5000.0, 250.0, 300.0)];
+    let flat = EarthParams::flat();
+    let found = wireline(&scene, &towers, eye, (&flat, 20_000.0), &Control::none()).unwrap();
+    assert_eq!(found.towers.iter().map(|tower| tower.number).collect::<Vec<_>>(), [2, 0, 1]);
+    let [far, middle, hidden] = &found.towers[..] else { panic!("{}", found.towers.len()) };
+    assert!((middle.visible_metres - (220.0 - cut)).abs() < 1e-6, "{}", middle.visible_metres);
+    // the segment of the disc above the line
+    let (radius, up): (f64, f64) = (70.0, cut - 150.0);
+    let segment = radius * radius * (up / radius).acos() - up * (radius * radius - up * up).sqrt();
+    let share = segment / (std::f64::consts::PI * radius * radius);
+    let rotor = middle.rotor.as_ref().unwrap();
+    // lines in the middle of strips: an error of the square of their width
+    assert!((rotor.visible_share - share).abs() < 0.002, "{} {share}", rotor.visible_share);
+    assert!(hidden.visible.is_empty() && hidden.rotor.as_ref().unwrap().visible_share == 0.0);
+    assert_eq!(far.rotor.as_ref().unwrap().visible_share, 1.0);
+    // north-west and north: 43 degrees, which one frame holds
+    assert_eq!(found.frames.len(), 1);
+    let outer = [-5000.0, 300.0].map(|aside: f64| (aside / 6000.0).atan());
+    let azimuth = found.frames[0].azimuth - std::f64::consts::TAU;
+    assert!((azimuth - f64::midpoint(outer[0], outer[1])).abs() < 1e-9, "{azimuth}");
+    // the ridge is the last piece of terrain in the column of the tower
+    let [column, row] = found.frames[0].on_plane(0.0, (58f64 / 1900.0).atan()).unwrap();
+    let pieces = &found.frames[0].terrain[(column + 800.0) as usize];
+    let [_, top] = found.frames[0].on_plane(0.0, pieces.last().unwrap().elevations[1]).unwrap();
+    // steps of a hundredth of the distance
+    assert!((top - row).abs() < 1.0, "{top} {row}");
+    assert!(wireline(&scene, &towers, eye, (&flat, 100.0), &Control::none()).unwrap().frames.is_empty());
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Targets of cameras, and places that must stay private.
 
+use super::super::Reach;
 use super::CameraSite;
 use crate::ask::observers::Standing;
 use crate::ask::places::leave_out_outside;
@@ -83,12 +84,12 @@ impl CameraTargets {
         let mut targets = match places {
             _ if !self.points.is_empty() => {
                 let mut targets = self.on_ground(&self.points, site);
-                leave_out_outside(&mut targets, site.scene, context);
+                leave_out_outside(&mut targets, Reach::Cloud, site.scene, context);
                 targets
             }
             Places::Cells(_) => {
                 let mut targets = of_cells(cells, &self.areas, site, context, control)?;
-                leave_out_outside(&mut targets, site.scene, context);
+                leave_out_outside(&mut targets, Reach::Cloud, site.scene, context);
                 targets
             }
             _ => Targets::clone(&*places.targets(site.scene, context, control)?),

@@ -3,6 +3,7 @@
 
 mod relief;
 mod rows;
+mod visible;
 
 use super::EarthParams;
 use super::coverage::CEILING;
@@ -16,6 +17,7 @@ use relief::{LineStarts, TerrainHeights};
 pub(super) use rows::hide_behind_terrain;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
+pub use visible::VisibleTerrain;
 
 /// Azimuths handed to a thread at once.
 const CHUNK: usize = 90;

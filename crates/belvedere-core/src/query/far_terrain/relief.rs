@@ -109,6 +109,11 @@ impl TerrainHeights {
         &self.grid
     }
 
+    /// Returns the low and the high corner of the box on the map within which terrain blocks nothing, local metres.
+    pub(super) fn within(&self) -> [[f64; 2]; 2] {
+        self.within
+    }
+
     /// The highest node of a patch without gaps; −∞ where there is none.
     pub(super) fn highest(&self) -> f32 {
         self.levels.last().and_then(|level| level.highest.first()).copied().unwrap_or(f32::NEG_INFINITY)
