@@ -96,11 +96,14 @@ pub fn scene_shadow<'a>(
     Ok(lit)
 }
 
+/// Share of the light from which on a place counts as lit.
+pub const HALF_LIGHT: f32 = 0.5;
+
 /// 1 where half or more of the light arrives, else 0; NaN for NaN: a place behind crowns that were measured is lit or
 /// not.
 #[must_use]
 pub fn half_or_more(share: f32) -> f32 {
-    if share.is_nan() { share } else { f32::from(u8::from(share >= 0.5)) }
+    if share.is_nan() { share } else { f32::from(u8::from(share >= HALF_LIGHT)) }
 }
 
 /// The light of one sun with hard edges at each target: 1 for a target that is lit, 0 for one in shadow, NaN for one

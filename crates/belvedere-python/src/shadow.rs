@@ -24,6 +24,7 @@ impl PyScene {
         edges: &str,
         trees: Through,
         how_sure: HowSureKeywords,
+        casters: bool,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Vec<TargetResults<'py>>> {
         let edges = match edges {
@@ -38,6 +39,7 @@ impl PyScene {
             trees: trees.chosen()?,
             unproven: None,
             how_sure: how_sure.into(),
+            casters,
         };
         let scene = Arc::clone(&self.0);
         let chosen = targets.chosen(py, &scene)?;

@@ -79,6 +79,19 @@ def test_the_shadow_of_a_wall_is_as_long_as_the_tangent_says(wall):
     assert (lit[y < reach - 0.2] == 0).all() and (lit[y > reach + 0.3] == 1).all()
 
 
+def test_casters_are_an_attribute_of_a_raster_and_a_column_of_places(wall, tmp_path):
+    with pytest.warns(belvedere.BelvedereWarning, match="classes of points are unknown"):
+        lit = wall.shadow(sun=(180, 45), cell=1, casters=True, grid_north=True)
+    known = np.isfinite(lit.values)
+    # points without a class are other things
+    assert set(np.unique(lit.caster.values[known])) == {0, 5}
+    assert np.array_equal(lit.values[known] == 0, lit.caster.values[known] == 5)
+    assert np.array_equal(pickle.loads(pickle.dumps(lit)).caster.values, lit.caster.values, equal_nan=True)
+    with pytest.warns(belvedere.BelvedereWarning, match="classes of points are unknown"):
+        table = wall.shadow(sun=(180, 45), targets=[(155000, 463003, 5.1)], casters=True, grid_north=True)
+    assert table["lit"] == 0 and table["caster"] == 5
+
+
 def test_a_wall_blocks_what_stands_behind_it_and_nothing_before_it(wall):
     eye = (155000, 463000 - 10, 6.5)
     x = np.linspace(-8, 8, 40)

@@ -87,7 +87,7 @@ pub use reliability::{calibrate, with_reliability};
 pub use remark::{Remark, Severity, remark_on_left_out};
 pub use report::Report;
 pub use scene::Scene;
-pub use shadow::{ShadowQuestion, ShadowResults, UNPROVEN};
+pub use shadow::{CASTER, ShadowQuestion, ShadowResults, UNPROVEN, caster_name};
 pub use shared::SharedObject;
 pub use sight_network::{NetworkSection, SightNetwork};
 pub use single_places::{HeightFrom, PlaceSection, end_on_map, position_on_map, standing_on_map};

@@ -1,5 +1,7 @@
 //! Shadow: light of one or more suns at places.
 
+mod casters;
+
 use super::how_sure::HowSure;
 use super::sections::{MeasuresSection, PlacesReport};
 use super::sun::{MAX_LISTED_SUNS, NamedSun, SunPlace, Suns};
@@ -16,6 +18,7 @@ use belvedere_data::control::Control;
 use belvedere_data::report::percent;
 use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Parameter, Result};
+pub use casters::{CASTER, caster_name};
 use serde::{Deserialize, Serialize};
 
 /// Places in the sun.
@@ -38,6 +41,9 @@ pub struct ShadowQuestion {
     /// Request for the certainty of answers; for suns with hard edges among opaque trees.
     #[serde(default)]
     pub how_sure: HowSure,
+    /// True to say what casts each shadow: building, trees, an added mesh and so on. Default: false.
+    #[serde(default)]
+    pub casters: bool,
 }
 
 /// The suns of an answer.
@@ -84,6 +90,7 @@ impl ShadowQuestion {
             trees: ThroughTrees::Opaque,
             unproven: None,
             how_sure: HowSure::default(),
+            casters: false,
         }
     }
 
@@ -185,6 +192,11 @@ impl Ask for ShadowQuestion {
         for (sun, (probabilities, uncertain)) in suns.iter().zip(sure) {
             let suffix = suffix(sun);
             measures.extend(self.how_sure.measures(probabilities, uncertain, &suffix));
+        }
+        if self.casters {
+            let lit = &measures[..suns.len()];
+            let casters = casters::casters(&suns, lit, &light, (scene, context), control)?;
+            measures.extend(casters);
         }
         let title = suns.first().map(|sun| sun.title.clone()).unwrap_or_default();
         Ok(Answers::new(ShadowResults { on: light.titled(title), suns }, measures))

@@ -25,9 +25,16 @@ pub(crate) struct ShadowArguments {
     pub(crate) trees: ThroughTreesArguments,
     #[command(flatten)]
     pub(crate) outputs: SkyOutputs,
-    /// Also write the shadows on a grid as areas (.geojson): one for each sun
+    /// Also say what casts each shadow: the first obstacle between the target and the sun
     ///
-    /// Its area, and the time and position of the sun are properties. Light of less than a half counts as shadow.
+    /// 0 sun, 1 building, 2 trees, 3 ground, 4 water, 5 other things, 6 terrain beyond the cloud, 7 the surface of the
+    /// target itself, 8 and more the meshes of --add. Needs classes of points.
+    #[arg(long, help_heading = "Result")]
+    pub(crate) casters: bool,
+    /// Also write the shadows on a grid as areas (.geojson): one for each sun; with --casters one for each caster
+    ///
+    /// Its area, the caster, and the time and position of the sun are properties. Light of less than a half counts as
+    /// shadow.
     #[arg(long, value_name = "OUT", help_heading = "Result")]
     pub(crate) outlines: Option<PathBuf>,
     /// Also write an animation of the shadows on a grid: one frame for each sun (.png .apng)

@@ -9,18 +9,17 @@ use crate::pipeline;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, Answers, NamedSun, ShadowResults, Suns, UNCERTAIN, UNPROVEN};
-use belvedere::apps::shadow::Edges;
+use belvedere::apps::ask::{self, Answers, CASTER, NamedSun, ShadowResults, Suns, UNCERTAIN, UNPROVEN, caster_name};
+use belvedere::apps::shadow::{Edges, HALF_LIGHT};
 use belvedere::apps::targets::{Measure, Targets};
 use belvedere::figures::{MapLegend, MapPicture, Picture, map_picture, write_apng, write_png};
+use belvedere::ground::MapGrid;
 use belvedere::io::{PolygonArea, atomic, outlines, write_geojson_areas};
 use belvedere::query::UnprovenAs;
 use belvedere::raster::Raster;
 use belvedere_tiles::SurveyCells;
 use std::path::Path;
 
-/// Share of the light below which a cell is in shadow.
-const HALF_LIGHT: f32 = 0.5;
 const SHADE_COLOR: [u8; 3] = [38, 52, 96];
 const HALF_COLOR: [u8; 3] = [147, 136, 93];
 const LIT_COLOR: [u8; 3] = [255, 220, 90];
@@ -36,6 +35,7 @@ pub(crate) fn run(arguments: &ShadowArguments, global: &Global) -> Result<Summar
         &arguments.outputs,
         &[
             ("--shell", arguments.giving_way.shell.is_some()),
+            ("--casters", arguments.casters),
             ("--outlines", arguments.outlines.is_some()),
             ("--film", arguments.film.is_some()),
             ("--frames", arguments.frames.is_some()),
@@ -60,36 +60,75 @@ pub(crate) fn run(arguments: &ShadowArguments, global: &Global) -> Result<Summar
     }
     if let Some(output) = &arguments.outlines {
         warn_of_geojson(std::slice::from_ref(output), &scene.frame().crs, &mut run.summary);
-        run.stage("writing", 0, |_| write_outlines(output, &answers.found.on.targets, maps.measures))?;
+        let meshes = scene.model().added().map(|added| added.names()).unwrap_or_default();
+        let casters: Vec<&Measure> = answers.measures.iter().filter(|one| one.name.starts_with(CASTER)).collect();
+        let shapes = ShadowShapes { suns: maps.measures, casters: &casters, meshes };
+        run.stage("writing", 0, |_| shapes.write(output, &answers.found.on.targets))?;
     }
     films(arguments, &shown, &maps, &run)?;
     Ok(run.finish())
 }
 
-/// Writes the shadow of each sun as an area.
-fn write_outlines(output: &Path, targets: &Targets, suns: &[Measure]) -> belvedere::Result<()> {
-    let Some(ground) = targets.ground() else { return Ok(()) };
-    let (grid, origin) = (ground.grid, targets.frame.origin);
+/// Shadows of suns as areas.
+struct ShadowShapes<'a> {
+    /// The light of each sun.
+    suns: &'a [Measure],
+    /// The casters of the shadow of each sun; empty where they are not wanted.
+    casters: &'a [&'a Measure],
+    /// Names of added meshes.
+    meshes: &'a [String],
+}
+
+impl ShadowShapes<'_> {
+    /// Writes the shadow of each sun as an area, or that of each of its casters.
+    fn write(&self, output: &Path, targets: &Targets) -> belvedere::Result<()> {
+        let Some(ground) = targets.ground() else { return Ok(()) };
+        let mut areas = Vec::new();
+        for (number, sun) in self.suns.iter().enumerate() {
+            match self.casters.get(number) {
+                None => areas.push(area_of(sun, None, (&ground.grid, targets), |row| sun.values[row] < HALF_LIGHT)?),
+                Some(casters) => {
+                    for caster in 1..=u8::MAX {
+                        let is_of = |row: usize| casters.values[row] == f32::from(caster);
+                        if (0..casters.values.len()).any(is_of) {
+                            let name = caster_name(caster, self.meshes);
+                            areas.push(area_of(sun, Some(name), (&ground.grid, targets), is_of)?);
+                        }
+                    }
+                }
+            }
+        }
+        write_geojson_areas(output, &areas, &targets.frame.crs)?;
+        Ok(())
+    }
+}
+
+/// The area of those cells that are `in_shadow` of a sun.
+fn area_of(
+    sun: &Measure,
+    caster: Option<&str>,
+    (grid, targets): (&MapGrid, &Targets),
+    in_shadow: impl Fn(usize) -> bool,
+) -> belvedere::Result<PolygonArea> {
+    let origin = targets.frame.origin;
     let corner = |[column, row]: [usize; 2]| {
         let [east, south] = [column, row].map(|v| v as f64 * grid.cell);
         [origin[0] + grid.corner[0] + east, origin[1] + grid.corner[1] - south]
     };
-    let of_sun = |sun: &Measure| {
-        let shade = sun.values.iter().map(|&light| light < HALF_LIGHT).collect();
-        let polygons = outlines(&Raster::from_values(grid.width, grid.height, shade)?);
-        let cells: usize = polygons.iter().map(|polygon| polygon.cell_count).sum();
-        let mut area = PolygonArea::default();
-        area.properties.insert("sun".to_owned(), sun.name.trim_start_matches("lit_").into());
-        area.properties.insert("area_m2".to_owned(), (cells as f64 * grid.cell * grid.cell).into());
-        for (name, text) in &sun.tags {
-            area.properties.insert(name.to_ascii_lowercase(), text.as_str().into());
-        }
-        area.polygons = polygons.iter().map(|polygon| polygon.rings(corner)).collect();
-        Ok(area)
-    };
-    let areas = suns.iter().map(of_sun).collect::<belvedere::Result<Vec<_>>>()?;
-    write_geojson_areas(output, &areas, &targets.frame.crs)?;
-    Ok(())
+    let shade = (0..sun.values.len()).map(in_shadow).collect();
+    let polygons = outlines(&Raster::from_values(grid.width, grid.height, shade)?);
+    let cells: usize = polygons.iter().map(|polygon| polygon.cell_count).sum();
+    let mut area = PolygonArea::default();
+    area.properties.insert("sun".to_owned(), sun.name.trim_start_matches("lit_").into());
+    if let Some(caster) = caster {
+        area.properties.insert("caster".to_owned(), caster.into());
+    }
+    area.properties.insert("area_m2".to_owned(), (cells as f64 * grid.cell * grid.cell).into());
+    for (name, text) in &sun.tags {
+        area.properties.insert(name.to_ascii_lowercase(), text.as_str().into());
+    }
+    area.polygons = polygons.iter().map(|polygon| polygon.rings(corner)).collect();
+    Ok(area)
 }
 
 /// Warns of a map that shows one of several suns.
@@ -118,6 +157,7 @@ fn question(arguments: &ShadowArguments) -> Result<ask::ShadowQuestion> {
         trees: arguments.trees.choice()?,
         unproven: arguments.giving_way.unproven.map(UnprovenAs::from),
         how_sure: arguments.how_sure.choice(),
+        casters: arguments.casters,
     })
 }
 

@@ -53,6 +53,50 @@ fn the_shadow_of_a_house_is_the_exact_one() {
 }
 
 #[test]
+fn a_house_and_a_plan_cast_shadows_of_their_own() {
+    let place = Workplace::new();
+    let mut cloud = house();
+    let class = |position: &[f32; 3]| if position[2] < 0.2 { 2 } else { 6 };
+    cloud.attributes.classification = Some(cloud.positions.iter().map(class).collect());
+    place.write_cloud("house.laz", &cloud);
+    // a block east of the house, 6 m high; the sun in the east
+    let corner = |i: usize| at([8.0, 11.0][i & 1], [-3.0, 3.0][i >> 1 & 1], [0.0, 6.0][i >> 2]);
+    let mut mesh = "o hall\n".to_owned();
+    for [x, y, z] in (0..8).map(corner) {
+        mesh.push_str(&format!("v {x} {y} {z}\n"));
+    }
+    mesh.push_str("f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+    place.write("hall.obj", mesh);
+    let sun = "--sun 90,45 --grid-north --cell 0.5 --casters";
+    place.summary(&format!("shadow {HOUSE} {sun} --add hall.obj -o lit.csv -o lit.tif --outlines casters.geojson"));
+    let [x, y, lit, caster] = ["x", "y", "lit", "caster"].map(|name| column(&place, "lit.csv", name));
+    let mut tested = [0; 2];
+    for row in 0..lit.len() {
+        let [east, north] = [x[row] - EAST, y[row] - NORTH];
+        assert_eq!(lit[row] < 0.5, caster[row] > 0.0, "{east} {north}");
+        // half a metre from edges, as above; what the hall shades is before the wall of the house
+        if (6.0..7.5).contains(&east) && north.abs() < 2.0 {
+            assert_eq!(caster[row], 8.0, "{east} {north}");
+            tested[0] += 1;
+        }
+        if (-8.5..-6.0).contains(&east) && north.abs() < 2.5 {
+            assert_eq!(caster[row], 1.0, "{east} {north}");
+            tested[1] += 1;
+        }
+    }
+    assert!(tested.iter().all(|&count| count > 15), "{tested:?}");
+    let areas: serde_json::Value = serde_json::from_str(&place.text("casters.geojson")).unwrap();
+    let of = |caster: &str| {
+        let is_of = |area: &&serde_json::Value| area["properties"]["caster"] == caster;
+        areas["features"].as_array().unwrap().iter().find(is_of).unwrap()["properties"]["area_m2"].as_f64().unwrap()
+    };
+    let cells = |number: f64| caster.iter().filter(|caster| **caster == number).count() as f64 * 0.25;
+    assert_eq!([of("hall.obj"), of("building")], [cells(8.0), cells(1.0)]);
+    let run = place.run(&format!("shadow house.laz {sun} --memory 1M -o lit.csv"));
+    assert!(run.status > 0 && run.stderr.contains("--casters"), "{}", run.stderr);
+}
+
+#[test]
 fn a_time_is_the_same_however_it_is_written_and_nothing_is_lit_at_night() {
     let place = place();
     write_places(&place, "places.csv", &[[0.0, 8.0, 0.5], [0.0, -9.0, 0.5], [9.0, 0.0, 0.5], [-9.0, 0.0, 0.5]]);

@@ -181,6 +181,7 @@ class Scene:
         edges: str,
         trees: dict[str, Any],
         how_sure: dict[str, Any],
+        casters: bool,
         progress: _Progress,
     ) -> list[_Results]: ...
     def sun_hours(

@@ -50,6 +50,8 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         that see it.
     uncertain : Raster or None
         1 where the answer is less certain than wanted, or unproven; of several observers for how many that is so.
+    caster : Raster or None
+        What casts the shadow, by number, from `Scene.shadow` with `casters`.
     remarks : tuple of Remark
         What to know of the values.
 
@@ -87,6 +89,7 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         self.unproven = unproven
         self.probability: Raster | None = None
         self.uncertain: Raster | None = None
+        self.caster: Raster | None = None
         self.remarks: tuple[Remark, ...] = ()
         self._is_answer = is_answer
         self._crs = crs
@@ -130,14 +133,14 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
 
     def to_geotiff(self, path: str | os.PathLike[str]) -> None:
         """Writes a GeoTIFF, as the command line does: -9999 where a float raster has no value, and answers as bytes
-        with 255. `unproven`, `probability` and `uncertain` are further bands; with a probability all are float. GDAL
-        reads names, units and tags of the bands.
+        with 255. `unproven`, `probability`, `uncertain` and `caster` are further bands; with numbers among them all
+        are float. GDAL reads names, units and tags of the bands.
 
         Examples
         --------
         >>> scene.shadow(sun=(180, 30)).to_geotiff(folder / "shadow.tif")
         """
-        further = [self.unproven, self.probability, self.uncertain]
+        further = [self.unproven, self.probability, self.uncertain, self.caster]
         rasters = [self, *(raster for raster in further if raster is not None)]
         bands = [raster._pixels() for raster in rasters]
         if len({band.dtype for band in bands}) > 1:
@@ -396,7 +399,7 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
 
     def __reduce__(self) -> tuple[Any, ...]:
         state = (self.values, self.transform, self._crs.state, self.nodata, self.name, self.description)
-        more = (self.unproven, self._is_answer, self.probability, self.uncertain, self.unit, self.tags)
+        more = (self.unproven, self._is_answer, self.probability, self.uncertain, self.unit, self.tags, self.caster)
         return _unpickled, (*state, *more)
 
 
@@ -469,10 +472,11 @@ def _unpickled(
     uncertain: Raster | None = None,
     unit: str = "",
     tags: Mapping[str, str] | None = None,
+    caster: Raster | None = None,
 ) -> Raster:
     named: dict[str, Any] = {"nodata": nodata, "name": name, "description": description}
     made = Raster(values, transform, _core.Crs.from_state(system), **named, unproven=unproven, is_answer=is_answer)
-    made.probability, made.uncertain = probability, uncertain
+    made.probability, made.uncertain, made.caster = probability, uncertain, caster
     made.unit, made.tags = unit, dict(tags or {})
     return made
 

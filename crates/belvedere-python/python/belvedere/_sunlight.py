@@ -56,6 +56,7 @@ class Sunlight:
         grid_north: bool = False,
         probability: bool = False,
         certain: float | None = None,
+        casters: bool = False,
         progress: Progress = None,
     ) -> Any:
         """The share of the sun that reaches targets: 1 in the sun, 0 in shadow.
@@ -94,13 +95,17 @@ class Sunlight:
             Whether to compute how likely each target is lit. Needs pulses, hard edges and opaque trees.
         certain : float, optional
             Probability, above 0.5 and at most 1, below which an answer is uncertain.
+        casters : bool, optional
+            Whether to say what casts each shadow, by the classes of points.
         progress : bool or callable, optional
 
         Returns
         -------
         Raster, or ndarray of shape (N,), float32; a list of these for several suns
             With `probability` or `certain` a Raster has these as attributes `probability` and `uncertain`, and places
-            give a Table with ``lit``, ``probability`` and ``uncertain``.
+            give a Table with ``lit``, ``probability`` and ``uncertain``. With `casters` likewise ``caster``: 0 sun, 1
+            building, 2 trees, 3 ground, 4 water, 5 other things, 6 terrain beyond the cloud, 7 the surface of the
+            target itself, 8 and more the meshes that were added.
             For a mesh a Table of its faces: ``object``, ``area_m2``, ``lit``. NaN for what is not tested: cells under
             a cover or without ground, and targets outside the cloud. The attribute `unproven` of a Raster of one sun
             with hard edges is a Raster that is 1 where `lit` is 1 but no pulse proves it; `remarks` says what to know.
@@ -138,16 +143,17 @@ class Sunlight:
             "soft" if soft else "hard",
             {"share": through_trees, "leaves": leaves},
             {"probability": probability, "certain": certain},
+            casters,
             reporter(progress),
         )
-        is_sure = probability or certain is not None
-        made = [self._lit(result, targets, is_sure) for result in results]
+        has_columns = probability or certain is not None or casters
+        made = [self._lit(result, targets, has_columns) for result in results]
         return made[0] if is_one else made
 
-    def _lit(self, results: Results, targets: Targets, is_sure: bool) -> Any:
+    def _lit(self, results: Results, targets: Targets, has_columns: bool) -> Any:
         """The share of one sun."""
         columns, grid, faces, given, _ = results
-        if grid is None and faces is None and not is_sure:
+        if grid is None and faces is None and not has_columns:
             warned(given)
             return columns[0][2]
         found = measures(results, self._core.crs, targets)
@@ -156,6 +162,7 @@ class Sunlight:
         lit: Raster = found["lit"]
         lit.unproven = found.get("unproven")
         lit.probability, lit.uncertain = found.get("probability"), found.get("uncertain")
+        lit.caster = found.get("caster")
         return lit
 
     def sun_hours(

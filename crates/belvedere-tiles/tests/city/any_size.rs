@@ -51,6 +51,7 @@ fn question(sun: [f64; 2]) -> ShadowQuestion {
         trees: ThroughTrees::Opaque,
         unproven: None,
         how_sure: HowSure::default(),
+        casters: false,
     }
 }
 

@@ -47,6 +47,7 @@ pub(super) fn answer(question: &ShadowRequest, context: &RequestContext<'_>) -> 
         trees: question.trees,
         unproven: None,
         how_sure,
+        casters: false,
     };
     let answers = ask::ask(&scene.inner, &shadow, &Places::Targets(Arc::clone(&points.targets)), control)?;
     let measure = |name: &str| answers.measures.iter().find(|measure| measure.name == name).map(|m| &m.values[..]);

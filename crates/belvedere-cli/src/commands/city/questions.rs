@@ -115,6 +115,7 @@ fn of_sun_and_sky(arguments: &CityPlan) -> Result<Vec<ask::Question>> {
             trees,
             unproven: None,
             how_sure: how_sure(arguments),
+            casters: false,
         })
     };
     let mut questions = Vec::new();
