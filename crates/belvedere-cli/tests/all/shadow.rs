@@ -1,6 +1,7 @@
 //! Shadows on the command line, around a house whose shadow is known.
 
-use crate::common::{EAST, NORTH, Workplace, at, column, house, is_hidden, remarks};
+use crate::common::{EAST, NORTH, Workplace, at, column, house, house_in_a_field, is_hidden, remarks};
+use belvedere::crs::Crs;
 
 const HOUSE: &str = "house.laz --orient given --scene-config ../tau.json --ground found";
 
@@ -13,6 +14,13 @@ fn place() -> Workplace {
 fn write_places(place: &Workplace, name: &str, places: &[[f64; 3]]) {
     let rows: String = places.iter().map(|&[x, y, z]| at(x, y, z)).map(|[x, y, z]| format!("{x},{y},{z}\n")).collect();
     place.write(name, format!("x,y,z\n{rows}"));
+}
+
+/// A mesh of a block with these corners on the map, relative to the middle of the house.
+fn block(low: [f64; 2], high: [f64; 2], height: f64) -> String {
+    let corner = |i: usize| at([low[0], high[0]][i & 1], [low[1], high[1]][i >> 1 & 1], [0.0, height][i >> 2]);
+    let corners: String = (0..8).map(corner).map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
+    corners + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n"
 }
 
 fn to_sun(azimuth_deg: f64, elevation_deg: f64) -> [f64; 3] {
@@ -59,14 +67,8 @@ fn a_house_and_a_plan_cast_shadows_of_their_own() {
     let class = |position: &[f32; 3]| if position[2] < 0.2 { 2 } else { 6 };
     cloud.attributes.classification = Some(cloud.positions.iter().map(class).collect());
     place.write_cloud("house.laz", &cloud);
-    // a block east of the house, 6 m high; the sun in the east
-    let corner = |i: usize| at([8.0, 11.0][i & 1], [-3.0, 3.0][i >> 1 & 1], [0.0, 6.0][i >> 2]);
-    let mut mesh = "o hall\n".to_owned();
-    for [x, y, z] in (0..8).map(corner) {
-        mesh.push_str(&format!("v {x} {y} {z}\n"));
-    }
-    mesh.push_str("f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
-    place.write("hall.obj", mesh);
+    // east of the house; the sun in the east
+    place.write("hall.obj", block([8.0, -3.0], [11.0, 3.0], 6.0));
     let sun = "--sun 90,45 --grid-north --cell 0.5 --casters";
     place.summary(&format!("shadow {HOUSE} {sun} --add hall.obj -o lit.csv -o lit.tif --outlines casters.geojson"));
     let [x, y, lit, caster] = ["x", "y", "lit", "caster"].map(|name| column(&place, "lit.csv", name));
@@ -94,6 +96,41 @@ fn a_house_and_a_plan_cast_shadows_of_their_own() {
     assert_eq!([of("hall.obj"), of("building")], [cells(8.0), cells(1.0)]);
     let run = place.run(&format!("shadow house.laz {sun} --memory 1M -o lit.csv"));
     assert!(run.status > 0 && run.stderr.contains("--casters"), "{}", run.stderr);
+}
+
+#[test]
+fn shadows_are_as_long_as_two_offices_say() {
+    let place = Workplace::new();
+    let mut cloud = house_in_a_field();
+    cloud.frame.crs = Crs::default();
+    place.write_cloud("field.laz", &cloud);
+    let (foot, height) = ([-42.0, -42.0], 10.0);
+    place.write("mast.obj", block(foot.map(|v| v - 0.25), foot.map(|v| v + 0.25), height));
+    // San Rafael (California), "Preparing a Shadow Diagram": direction of the shadow, degrees from north, and its length
+    // for each metre of height on 21 December. Its whole degrees and tenths, and 0.3 m for cells and the mast; the
+    // afternoon's own figures do not agree with the sun (3.37) by more than their rounding.
+    let san_rafael = "--location 37.9735,-122.5311 --zone America/Los_Angeles";
+    // Landkreis Ostallgäu, guide to local plans: at noon on 21 December the sun stands 18.8 degrees high
+    let ostallgaeu = "--location 47.78,10.62 --zone Europe/Berlin";
+    for (where_and_when, direction, length, tolerance) in [
+        (format!("{san_rafael} --time 2026-12-21T12:00"), -2.0, 1.8, 0.05 + 0.03),
+        (format!("{san_rafael} --time 2026-12-21T15:00"), 41.0, 3.3, 0.07 + 0.03),
+        (format!("{ostallgaeu} --time 2026-12-21T12:15"), 0.0, 2.94, 0.01 + 0.03),
+    ] {
+        place.summary(&format!(
+            "shadow field.laz --orient given --scene-config ../tau.json --ground found {where_and_when} --cell 0.25 \
+             --add mast.obj --casters -o lit.csv"
+        ));
+        let [x, y, caster] = ["x", "y", "caster"].map(|name| column(&place, "lit.csv", name));
+        let shaded = (0..caster.len()).filter(|&row| caster[row] == 8.0);
+        let from_foot = shaded.map(|row| [x[row] - EAST - foot[0], y[row] - NORTH - foot[1]]);
+        let end = from_foot.max_by(|a, b| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1]))).unwrap();
+        let (found, azimuth) = (end[0].hypot(end[1]) / height, end[0].atan2(end[1]).to_degrees());
+        assert!((found - length).abs() <= tolerance, "{where_and_when}: {found} {length}");
+        // half a degree of rounding, and half the width of the mast at its end
+        let side = (0.35 / (found * height)).to_degrees();
+        assert!((azimuth - direction).abs() <= 0.5 + side, "{where_and_when}: {azimuth} {direction}");
+    }
 }
 
 #[test]
