@@ -1,11 +1,12 @@
 //! Outlines of buildings from GeoJSON and CityJSON.
 
 use super::cityjson::{LevelOfDetail, read_cityjson};
-use super::geojson_read::{FeatureShape, read_geojson};
+use super::map_features::{FeatureShape, read_features};
 use super::source::Source;
 use belvedere_data::polygon::Footprint;
 use belvedere_data::{Error, Frame, Mesh, Result};
 use std::collections::HashMap;
+use std::path::Path;
 
 /// Members of GeoJSON that name a building, the first of them that a feature has.
 const NAMES: [&str; 4] = ["name", "identificatie", "identifier", "id"];
@@ -14,29 +15,39 @@ const NAMES: [&str; 4] = ["name", "identificatie", "identifier", "id"];
 const CITY_TYPE: &[u8] = b"\"CityJSON\"";
 
 /// Reads the outlines of buildings, local metres of `frame`. Polygons of GeoJSON are brought into the system of the
-/// frame as [`read_geojson`] does; polygons with the same name are one building. Objects of CityJSON cover what their
+/// frame as [`read_features`] does; polygons with the same name are one building. Objects of CityJSON cover what their
 /// surfaces cover on the map. A building without a name is named after its number.
 ///
 /// # Errors
-/// Those of [`read_geojson`], [`read_cityjson`] and of a city model in another reference system;
+/// Those of [`read_features`], [`read_cityjson`] and of a city model in another reference system;
 /// [`Error::Malformed`] for a file without polygons.
 pub fn read_footprints<'a>(source: impl Into<Source<'a>>, frame: &Frame) -> Result<Vec<Footprint>> {
-    let (path, text) = source.into().read_text()?;
+    let source = source.into();
+    if matches!(source.extension().as_str(), "gpkg" | "shp") {
+        let path = source.name().to_owned();
+        return some_of(of_features(source, frame)?, &path);
+    }
+    let (path, text) = source.read_text()?;
     // both are called .json
     let is_city = text.windows(CITY_TYPE.len()).any(|word| word == CITY_TYPE);
     let source = Source::bytes(&path, &text);
     let found = if is_city { of_city(source, frame)? } else { of_features(source, frame)? };
-    if found.is_empty() {
-        return Err(Error::malformed(&path, "there is no polygon; outlines of buildings are polygons"));
+    some_of(found, &path)
+}
+
+/// Refuses a file without polygons.
+fn some_of(found: Vec<Footprint>, path: &Path) -> Result<Vec<Footprint>> {
+    match found.is_empty() {
+        true => Err(Error::malformed(path, "there is no polygon; outlines of buildings are polygons")),
+        false => Ok(found),
     }
-    Ok(found)
 }
 
 fn of_features(source: Source<'_>, frame: &Frame) -> Result<Vec<Footprint>> {
     let from_origin = |corner: &[f64; 3]| [0, 1].map(|axis| corner[axis] - frame.origin[axis]);
     let mut found: Vec<Footprint> = Vec::new();
     let mut numbers: HashMap<String, usize> = HashMap::new();
-    for feature in read_geojson(source, &frame.crs)? {
+    for feature in read_features(source, &frame.crs)? {
         let FeatureShape::Polygon(rings) = &feature.shape else { continue };
         let own = NAMES.iter().find_map(|name| feature.properties.get(*name)).filter(|value| !value.is_null());
         let name = own.map(|value| value.as_str().map_or_else(|| value.to_string(), str::to_owned));
@@ -108,7 +119,7 @@ mod tests {
         ]
         .join(",");
         let text = format!(r#"{{"type":"FeatureCollection","features":[{features}]}}"#);
-        let path = std::path::Path::new("houses.geojson");
+        let path = Path::new("houses.geojson");
         let found = read_footprints(Source::bytes(path, text.as_bytes()), &frame()).unwrap();
         assert_eq!(found.iter().map(|one| &one.name[..]).collect::<Vec<_>>(), ["school", "2", "7"]);
         assert_eq!(found[0].bounds(), [[0.0, 0.0], [24.0, 4.0]]);
@@ -120,7 +131,7 @@ mod tests {
             "CityObjects":{"hall":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"1",
             "boundaries":[[[0,1,2,3]],[[0,1,5,4]]]}]}},
             "vertices":[[0,0,0],[6,0,0],[6,5,0],[0,5,0],[0,0,3],[6,0,3]]}"#;
-        let path = std::path::Path::new("town.json");
+        let path = Path::new("town.json");
         let found = read_footprints(Source::bytes(path, text.as_bytes()), &frame()).unwrap();
         assert_eq!((found.len(), &found[0].name[..], found[0].polygons.len()), (1, "hall", 2));
         assert_eq!(found[0].bounds(), [[0.0, 0.0], [6.0, 5.0]]);

@@ -6,7 +6,8 @@
 //!
 //! # Features
 //! Formats that need crates of their own are features, all on by default: `las` (LAS, LAZ, COPC), `e57`, `ply`
-//! (reading), `npy` (NPY, NPZ ball files, masbcpp's folders), `tiff` (GeoTIFF). `http` reads files on web servers.
+//! (reading), `npy` (NPY, NPZ ball files, masbcpp's folders), `tiff` (GeoTIFF), `gpkg` (GeoPackage), `shp` (reading
+//! Shapefile). `http` reads files on web servers.
 //! `crs` (from `belvedere-data`) is the database of reference systems. Text, PCD, PTX, OBJ, GeoJSON, CityJSON, tables,
 //! weather files and trajectories are always there. A format that was not built in gives
 //! [`belvedere_data::Error::MissingFeature`].
@@ -33,8 +34,6 @@ mod e57_counts;
 mod ept;
 mod file_part;
 mod footprints;
-mod geojson;
-mod geojson_read;
 #[cfg(feature = "tiff")]
 mod geotiff;
 #[cfg(feature = "tiff")]
@@ -63,6 +62,7 @@ mod las_results;
 mod las_system;
 #[cfg(feature = "las")]
 mod laz;
+mod map_features;
 #[cfg(feature = "npy")]
 mod masbcpp;
 mod mesh;
@@ -132,8 +132,6 @@ pub use cloud_batches::{CloudBatch, CloudBatches, read_batches};
 pub use colors::{class_color, in_shadow, ramp, ramp_colors};
 pub use columns::{ExtraColumn, ExtraValues, WriteReport};
 pub use footprints::read_footprints;
-pub use geojson::{GeojsonCoordinates, PathLine, PolygonArea, Spot, write_geojson, write_geojson_areas};
-pub use geojson_read::{FeatureShape, GeojsonFeature, read_geojson};
 #[cfg(feature = "tiff")]
 pub use geotiff::{
     BandLabel, BandValues, Bands, Georeference, MetadataTag, write_bands as write_tif_bands,
@@ -152,6 +150,10 @@ pub use horizon_profile::read_horizon;
 pub use las::{LasHead, read_las_head};
 #[cfg(feature = "las")]
 pub use las_results::{PointResults, has_point_results, read_point_results};
+pub use map_features::{
+    FEATURE_EXTENSIONS, FeatureCoordinates, FeatureShape, MapFeature, PathLine, PolygonArea, Spot, read_features,
+    write_areas, write_places,
+};
 pub use mesh::{is_mesh, read_mesh, read_mesh_in};
 pub use observers::{ObserverRow, ObserverRows, RowsAre, property, read_observers};
 pub use outline::{GridPolygon, outlines};

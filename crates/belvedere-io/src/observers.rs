@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value};
 
-use crate::geojson_read::{FeatureShape, read_geojson};
+use crate::map_features::{FeatureShape, read_features};
 use crate::source::{Source, refuse_other_shapes};
 use crate::table::read_table;
 use belvedere_data::crs::Crs;
@@ -122,7 +122,7 @@ pub enum RowsAre {
 ///
 /// # Errors
 /// [`Error::UnknownFormat`], [`Error::Malformed`] for missing columns, text in place of numbers and files without
-/// observers, and the errors of [`read_table`] and [`read_geojson`].
+/// observers, and the errors of [`read_table`] and [`read_features`].
 pub fn read_observers<'a>(source: impl Into<Source<'a>>, crs: &Crs, rows_are: RowsAre) -> Result<ObserverRows> {
     let source = source.into();
     let name = source.name().to_owned();
@@ -130,9 +130,9 @@ pub fn read_observers<'a>(source: impl Into<Source<'a>>, crs: &Crs, rows_are: Ro
     refuse_other_shapes(path)?;
     let rows = match source.extension().as_str() {
         "csv" | "txt" => of_table(source, path, crs, rows_are)?,
-        "geojson" | "json" => of_geojson(source, path, crs)?,
+        "geojson" | "json" | "gpkg" | "shp" => of_geojson(source, path, crs)?,
         _ => {
-            let supported = ".csv .txt .geojson .json";
+            let supported = ".csv .txt .geojson .json .gpkg .shp";
             return Err(Error::UnknownFormat { path: path.to_owned(), kind: "observers", supported });
         }
     };
@@ -180,7 +180,7 @@ fn of_table(source: Source<'_>, path: &Path, crs: &Crs, rows_are: RowsAre) -> Re
 fn of_geojson(source: Source<'_>, path: &Path, crs: &Crs) -> Result<ObserverRows> {
     let scale = crs.metres_per_unit_xyz();
     let (mut rows, mut names, mut used) = (Vec::new(), Vec::<String>::new(), Vec::new());
-    for feature in read_geojson(source, crs)? {
+    for feature in read_features(source, crs)? {
         let corners = match feature.shape {
             FeatureShape::Point(place) => vec![place],
             FeatureShape::Line(corners) => corners,

@@ -332,8 +332,7 @@ pub(crate) fn extension(path: &Path) -> String {
 /// An error with the conversion to run, for formats of shapes that are not read.
 pub(crate) fn refuse_other_shapes(name: &Path) -> Result<()> {
     let format = match extension(name).as_str() {
-        "gpkg" => "a GeoPackage",
-        "shp" | "dbf" | "shx" => "a Shapefile",
+        "dbf" | "shx" | "prj" => "a part of a Shapefile",
         "kml" | "kmz" => "KML",
         "gml" => "GML",
         _ => return Ok(()),

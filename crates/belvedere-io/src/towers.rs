@@ -1,6 +1,6 @@
 //! Towers from tables and GeoJSON.
 
-use crate::geojson_read::{FeatureShape, read_geojson};
+use crate::map_features::{FeatureShape, read_features};
 use crate::observers::{number_of, words_of};
 use crate::source::{Source, refuse_other_shapes};
 use crate::table::read_table;
@@ -31,7 +31,7 @@ pub struct TowerRow {
 ///
 /// # Errors
 /// [`Error::UnknownFormat`], [`Error::Malformed`] for missing columns, empty cells and text in place of numbers, and
-/// for files without towers; the errors of [`read_table`] and [`read_geojson`].
+/// for files without towers; the errors of [`read_table`] and [`read_features`].
 pub fn read_towers<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<TowerRow>> {
     let source = source.into();
     let name = source.name().to_owned();
@@ -39,9 +39,9 @@ pub fn read_towers<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<T
     refuse_other_shapes(path)?;
     let rows = match source.extension().as_str() {
         "csv" | "txt" => of_table(source, path)?,
-        "geojson" | "json" => of_points(source, path, crs)?,
+        "geojson" | "json" | "gpkg" | "shp" => of_points(source, path, crs)?,
         _ => {
-            let supported = ".csv .txt .geojson .json";
+            let supported = ".csv .txt .geojson .json .gpkg .shp";
             return Err(Error::UnknownFormat { path: path.to_owned(), kind: "towers", supported });
         }
     };
@@ -53,7 +53,7 @@ pub fn read_towers<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<T
 
 fn of_points(source: Source<'_>, path: &Path, crs: &Crs) -> Result<Vec<TowerRow>> {
     let mut rows = Vec::new();
-    for feature in read_geojson(source, crs)? {
+    for feature in read_features(source, crs)? {
         let FeatureShape::Point([x, y, z]) = feature.shape else {
             return Err(Error::malformed(path, "has lines or polygons; towers are points"));
         };

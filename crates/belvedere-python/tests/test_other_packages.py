@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import subprocess
 
 import belvedere
 import numpy as np
@@ -103,3 +104,44 @@ def test_units_and_suns_come_along(scene, places):
     assert [hours[name].unit for name in ("sun_hours", "sun_share", "first_light")] == ["h", "1", "h"]
     assert scene.irradiance(clear_sky="haurwitz", cell=8)["kwh_m2"].unit == "kWh/m2"
     assert hours["sun_hours"].to_xarray().attrs["units"] == "h" and lit.to_xarray().attrs["time"] == lit.tags["TIME"]
+
+
+def test_packages_and_shapefiles_of_geopandas_are_those_of_geojson(scene, run_program, folder, places):
+    geopandas = pytest.importorskip("geopandas")
+    shapely = pytest.importorskip("shapely")
+    line = shapely.LineString(places)
+    frame = geopandas.GeoDataFrame({"name": ["walk"]}, geometry=[line], crs=28992)
+    frame.to_crs(4326).to_file(folder / "walk.geojson")
+    frame.to_file(folder / "walk.gpkg", layer="walks")
+    frame.to_crs(4326).to_file(folder / "degrees.gpkg")
+    frame.to_file(folder / "walk.shp")
+    tables = {}
+    for name in ("walk.geojson", "walk.gpkg", "degrees.gpkg", "walk.shp"):
+        run_program(
+            *("comfort", "tile.laz", "--route", name, "--date", "2026-03-21", "--time-step-min", 60, "-o", "walk.csv")
+        )
+        tables[name] = np.genfromtxt(folder / "walk.csv", delimiter=",", names=True, usecols=("x", "y", "sun_hours"))
+    for name, table in tables.items():
+        for column in ("x", "y"):
+            np.testing.assert_allclose(table[column], tables["walk.gpkg"][column], atol=0.02, err_msg=name)
+    # the same place in the plane of the file, to its last digit
+    np.testing.assert_array_equal(tables["walk.shp"], tables["walk.gpkg"])
+    # two layers are one too many
+    frame.to_file(folder / "walk.gpkg", layer="others")
+    with pytest.raises(subprocess.CalledProcessError):
+        run_program("comfort", "tile.laz", "--route", "walk.gpkg", "--date", "2026-03-21", "-o", "walk.csv")
+
+
+def test_areas_in_a_package_are_read_by_geopandas(run_program, folder):
+    geopandas = pytest.importorskip("geopandas")
+    shadow = ("shadow", "tile.laz", "--sun", "180,40", "--cell", 2, "-o", "lit.tif", "--casters", "--outlines")
+    run_program(*shadow, "shade.gpkg")
+    run_program(*shadow, "shade.geojson")
+    package, json = (geopandas.read_file(folder / name) for name in ("shade.gpkg", "shade.geojson"))
+    # the cloud has heights of NAP
+    assert package.crs.to_epsg() in (7415, 28992) and set(package["caster"]) == set(json["caster"])
+    assert package.geometry.is_valid.all()
+    np.testing.assert_allclose(package.geometry.area, package["area_m2"], rtol=1e-6)
+    same = json.to_crs(28992).geometry.area
+    np.testing.assert_allclose(same, package.geometry.area, rtol=0.01)
+    assert geopandas.list_layers(folder / "shade.gpkg")["name"].tolist() == ["shade"]

@@ -6,7 +6,7 @@ use crate::scene::{PageScene, ShownCloud};
 use belvedere::apps::ask::remarks_on_model;
 use belvedere::cloud::to_local;
 use belvedere::control::{Control, OpenStages, StageEnd, Watcher};
-use belvedere::io::{PlacedRaster, Source, has_point_results, read_geojson, read_point_results, read_tif};
+use belvedere::io::{PlacedRaster, Source, has_point_results, read_features, read_point_results, read_tif};
 use belvedere::model::SceneModel;
 use belvedere::{Bounds, Frame, Mesh, PointCloud, Result};
 use serde::Serialize;
@@ -77,7 +77,9 @@ impl Loading {
         let path = source.name().to_owned();
         let file = match source.extension().as_str() {
             "tif" | "tiff" => ResultFile::of_raster(&path, read_tif(source)?, frame, bounds)?,
-            "geojson" => ResultFile::of_shapes(&path, read_geojson(source, &frame.crs)?, frame, bounds)?,
+            "geojson" | "gpkg" | "shp" => {
+                ResultFile::of_shapes(&path, read_features(source, &frame.crs)?, frame, bounds)?
+            }
             _ => ResultFile::of_points(&path, (read_point_results(source)?, points_of), frame, bounds)?,
         };
         self.state().results.push(Arc::new(file));
@@ -171,7 +173,7 @@ impl Loading {
 /// file.
 pub fn are_results<'a>(open: impl Fn() -> Source<'a>) -> bool {
     match open().extension().as_str() {
-        "tif" | "tiff" | "geojson" => true,
+        "tif" | "tiff" | "geojson" | "gpkg" | "shp" => true,
         "las" | "laz" => has_point_results(open()).unwrap_or(false),
         _ => false,
     }

@@ -5,7 +5,7 @@ use crate::scene::PageScene;
 use belvedere::apps::ask::scene::KnownGround;
 use belvedere::cloud::to_local;
 use belvedere::control::Control;
-use belvedere::io::{FeatureShape, GeojsonFeature, Georeference, PlacedRaster, PointResults};
+use belvedere::io::{FeatureShape, Georeference, MapFeature, PlacedRaster, PointResults};
 use belvedere::{Bounds, Error, Frame, Result};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -90,12 +90,7 @@ impl ResultFile {
     ///
     /// # Errors
     /// [`Error::Malformed`] for shapes that all lie beside the scene.
-    pub(crate) fn of_shapes(
-        path: &Path,
-        features: Vec<GeojsonFeature>,
-        frame: &Frame,
-        bounds: &Bounds,
-    ) -> Result<Self> {
+    pub(crate) fn of_shapes(path: &Path, features: Vec<MapFeature>, frame: &Frame, bounds: &Bounds) -> Result<Self> {
         let shapes: Vec<FeatureShape> = features.into_iter().map(|feature| feature.shape).collect();
         let corners = shapes.iter().flat_map(|shape| match shape {
             FeatureShape::Point(place) => vec![*place],

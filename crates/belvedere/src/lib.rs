@@ -47,7 +47,7 @@
 //! | `figures` | pictures; needs `io` | yes |
 //! | `cache` | scenes kept in a folder; needs `apps` and `npy` | yes |
 //! | `gpu` | sky views, sun hours, irradiance and depth maps on a graphics processor, with the same answers | no |
-//! | `las` `e57` `ply` `npy` `tiff` | single file formats; need `io` | yes |
+//! | `las` `e57` `ply` `npy` `tiff` `gpkg` `shp` | single file formats; need `io` | yes |
 //! | `scanner-estimate` | finding scanner positions; without it, clouds without count as scanned from above | yes |
 //! | `crs` | the database of reference systems; without it, a system is carried, but not found by its code | yes |
 //!

@@ -261,7 +261,8 @@ def _outputs(command, described, key):
     is_main = described["name"] == "--output"
     if described["type"] == "folder":
         return (Output(key, "folder", label, ()),)
-    left = list(dict.fromkeys(described["formats"]))
+    # QGIS writes packages itself
+    left = [one for one in dict.fromkeys(described["formats"]) if one != ".gpkg"]
     if is_main and command in LINES_IN_TABLES:
         left.remove(".geojson")
     found = []

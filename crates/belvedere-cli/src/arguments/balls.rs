@@ -33,7 +33,7 @@ pub(crate) struct NormalsArguments {
 
 #[derive(Args, Clone)]
 pub(crate) struct SurfacesArguments {
-    /// Roofs, edges, ridges and walls (.geojson) or the points on roofs and walls (.laz .las .ply .csv); repeatable
+    /// Roofs, edges, ridges, walls (.geojson .gpkg) or points on roofs and walls (.laz .las .ply .csv); repeatable
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     #[command(flatten)]

@@ -21,7 +21,7 @@ pub(crate) struct CamerasArguments {
     /// Height of cameras without Z above the ground or the roof, in metres [default: 4 above the ground, 1 above roofs]
     #[arg(long, value_name = "M", value_parser = height::<f64>, allow_negative_numbers = true, help_heading = "Candidates (one of)")]
     pub(crate) camera_height: Option<f64>,
-    /// Cameras that exist already and stay, from a table (.csv) or GeoJSON; they do not count towards --count
+    /// Cameras that exist and stay: a table (.csv) or points (.geojson .gpkg .shp); --count is without them
     ///
     /// The columns are those of --candidates. Each row needs heading and tilt, unless the cameras turn or see all
     /// around.
@@ -59,14 +59,14 @@ pub(crate) struct CamerasArguments {
     pub(crate) certain: Option<f64>,
     #[command(flatten)]
     pub(crate) north: NorthArguments,
-    /// Cameras (.geojson), cameras per cell (.tif), map (.png) or a table of the targets (.csv); repeatable
+    /// Cameras (.geojson .gpkg), cameras per cell (.tif), map (.png) or a table of the targets (.csv); repeatable
     ///
     /// .geojson: a point in WGS 84 for each camera with its pose and what it adds; it can be used as --existing. .tif:
     /// the number of cameras that cover each cell, 0 for blind spots, nodata 65535. .csv: a row for each target with
     /// the number of cameras that cover it and their numbers.
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
-    /// Also write the cells that each camera covers as areas in WGS 84 (.geojson)
+    /// Also write the cells that each camera covers as areas (.geojson .gpkg)
     #[arg(long, value_name = "OUT", help_heading = "Result")]
     pub(crate) footprints: Option<PathBuf>,
     /// Also write the coverage after each camera (.csv)
@@ -80,7 +80,7 @@ pub(crate) struct CamerasArguments {
 #[command(next_help_heading = "Candidates (one of)")]
 #[group(id = "candidate_places", required = true, multiple = false)]
 pub(crate) struct CandidatesArguments {
-    /// Places for cameras from a table with columns x and y (.csv) or from GeoJSON, whose lines are walked along
+    /// Places for cameras from a table with columns x and y (.csv), or points and lines (.geojson .gpkg .shp)
     ///
     /// Columns or properties z, height, heading, tilt, fov, min_distance, max_distance, azimuth_from, azimuth_to,
     /// elevation_from and elevation_to override the flags. The last four are the range of a camera that turns.
@@ -131,7 +131,7 @@ pub(crate) struct CameraLensArguments {
     /// Minimum horizontal distance in metres [default: 0]
     #[arg(long, value_name = "M", value_parser = length, allow_negative_numbers = true)]
     pub(crate) min_distance: Option<f32>,
-    /// Places that no camera may see: points (.csv) or polygons (.geojson)
+    /// Places that no camera may see: points (.csv) or polygons (.geojson .gpkg .shp)
     ///
     /// Cells of polygons and points without Z are --target-height above the ground. A heading is not used if any of
     /// these places could be in its picture, at any distance.
@@ -154,7 +154,7 @@ pub(crate) struct CameraGoalArguments {
 #[derive(Args)]
 #[command(next_help_heading = "Targets [default: cells on the ground]")]
 pub(crate) struct CameraTargetsArguments {
-    /// Polygons with cells (.geojson), points (.csv .geojson or a cloud), or a mesh (.obj .json .ply with faces)
+    /// Polygons with cells (.geojson .gpkg .shp), points (.csv or a cloud), or a mesh (.obj .json .ply with faces)
     ///
     /// Column or property weight: how much each target counts; a cell in several polygons has the largest. Surfaces
     /// with normals (meshes, points of a cloud) count with the pixels per metre at the angle at which they are seen,

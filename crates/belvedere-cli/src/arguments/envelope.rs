@@ -58,10 +58,10 @@ impl FromStr for Hours {
 
 #[derive(Args)]
 pub(crate) struct EnvelopeArguments {
-    /// Parcel: polygons (GeoJSON), a table of corners with columns x and y (.csv), or "X,Y X,Y X,Y ..."
+    /// Parcel: polygons (GeoJSON, GeoPackage, Shapefile), corners x, y (.csv), or "X,Y X,Y X,Y ..."
     #[arg(long, value_name = "FILE|CORNERS", required = true, allow_hyphen_values = true, help_heading = "Land")]
     pub(crate) parcel: CornersArgument,
-    /// Lines, polygon outlines, points (GeoJSON) or facades that stay free of new shadows; repeatable
+    /// Lines, outlines, points (GeoJSON, GeoPackage, Shapefile) or facades that stay free of shadows; repeatable
     ///
     /// Also a line from a table with columns x, y and optionally z (.csv) or as "X,Y X,Y ..."; or facades as a mesh
     /// (.obj .json .ply with faces).
@@ -172,8 +172,9 @@ pub(crate) struct ComfortArguments {
 #[command(next_help_heading = "Targets (one of)")]
 #[group(required = true, multiple = false)]
 pub(crate) struct ComfortPlaces {
-    /// Walking routes: lines (GeoJSON), a table with columns x, y and optionally z (.csv), or "X,Y X,Y ..."
+    /// Walking routes: lines (GeoJSON, GeoPackage, Shapefile), a table (.csv), or "X,Y X,Y ..."
     ///
+    /// A table has the columns x, y and optionally z.
     /// z is the height of the eye.
     #[arg(long, value_name = "FILE|CORNERS", allow_hyphen_values = true)]
     pub(crate) route: Option<CornersArgument>,

@@ -28,7 +28,7 @@ pub(crate) struct IrradianceArguments {
     pub(crate) shell: Shell,
     #[command(flatten)]
     pub(crate) trees: ThroughTreesArguments,
-    /// Also write the roof planes, as a table (.csv) or outlines (.geojson); repeatable
+    /// Also write the roof planes, as a table (.csv) or outlines (.geojson .gpkg); repeatable
     ///
     /// Columns: building, tilt, azimuth from true north, area, radiation, the minimum and maximum shading loss, and the
     /// peak power and electricity of panels there.
@@ -80,7 +80,7 @@ pub(crate) struct PvArguments {
     /// Planes that touch in plan are one building, unless --footprints says otherwise.
     #[arg(long, value_name = "OUT", requires = "planes")]
     pub(crate) buildings: Option<PathBuf>,
-    /// Outlines of buildings: polygons (.geojson) or a city model (.city.json, .city.jsonl)
+    /// Outlines of buildings: polygons (.geojson .gpkg .shp) or a city model (.city.json, .city.jsonl)
     ///
     /// A plane belongs to the outline with most of it. Names are those of the members name, identificatie, identifier
     /// or id, or of city objects.

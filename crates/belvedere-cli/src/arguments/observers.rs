@@ -14,7 +14,7 @@ use std::str::FromStr;
 pub(crate) struct LineOfSightArguments {
     #[command(flatten)]
     pub(crate) lines: LinesArguments,
-    /// Places of a network, of which each pair is tested (.csv .geojson)
+    /// Places of a network, of which each pair is tested (.csv .geojson .gpkg .shp)
     ///
     /// Columns or properties: x, y, and z or height above the ground (--observer-height where neither is given), and
     /// name or id. Lines of sight are the same in both directions.
@@ -57,7 +57,7 @@ pub(crate) struct LineOfSightArguments {
     /// without a value block nothing.
     #[arg(long, value_name = "DTM", help_heading = "Far terrain")]
     pub(crate) terrain: Option<PathBuf>,
-    /// Table with a row for each pair, in their order (.csv), lines (.geojson), or a network (.graphml); repeatable
+    /// Table with a row for each pair (.csv), lines (.geojson .gpkg), or a network (.graphml); repeatable
     ///
     /// A network needs --among: places are its nodes, and visible and unproven pairs its edges. Columns: with --among a
     /// and b, the names of both places; ax,ay,az,bx,by,bz, answer (0 blocked, 1 visible, 2 unproven, 3 no line, 4
@@ -78,7 +78,7 @@ pub(crate) struct LineOfSightArguments {
 #[command(next_help_heading = "Lines of sight (one of)")]
 #[group(id = "lines", required = true, multiple = true)]
 pub(crate) struct LinesArguments {
-    /// Table with columns ax,ay,az,bx,by,bz in file coordinates: observer A, target B (.csv), or lines (.geojson)
+    /// Table with columns ax,ay,az,bx,by,bz: observer A, target B (.csv), or lines (.geojson .gpkg .shp)
     ///
     /// Of a line the first corner is the observer, and the last the target. An end without a height is
     /// --observer-height or --target-height above the ground.
@@ -229,7 +229,7 @@ pub(crate) struct ViewshedArguments {
     /// Side of a cell in metres [default: 0.5, doubled until there are at most 4 million cells]
     #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Cells")]
     pub(crate) cell: Option<f64>,
-    /// Raster (.tif), map (.png), visible areas (.geojson) or points (.laz .las .ply .csv); repeatable
+    /// Raster (.tif), map (.png), visible areas (.geojson .gpkg) or points (.laz .las .ply .csv); repeatable
     ///
     /// On a grid: .tif has 1 visible, 0 blocked, 2 unproven, 255 nodata; with several observers it has their number,
     /// 65535 nodata. .png is a map with a legend. .geojson has the visible areas in WGS 84. Points of the cloud: column
@@ -237,7 +237,7 @@ pub(crate) struct ViewshedArguments {
     /// their number.
     #[arg(short, long, value_name = "OUT", required_unless_present = "far_output", help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
-    /// Raster (.tif), map (.png) or visible areas (.geojson) of the terrain beyond the cloud; repeatable
+    /// Raster (.tif), map (.png) or visible areas (.geojson .gpkg) of the terrain beyond the cloud; repeatable
     ///
     /// Values are those of -o. Cells are those of --terrain within --max-distance; nodata within the extent of the
     /// cloud and where the terrain has no height. Targets are --target-height above the terrain.
@@ -277,7 +277,7 @@ pub(crate) struct Who {
     /// An observer in file coordinates or as LAT,LON; without Z --observer-height above the ground; repeatable
     #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
     pub(crate) observer: Vec<MapPosition>,
-    /// Observers from a table with columns x and y (.csv) or from GeoJSON, whose lines are paths
+    /// Observers from a table with columns x and y (.csv), or points and lines (.geojson .gpkg .shp)
     ///
     /// Columns or properties z, height, min_distance, max_distance, azimuth_from, azimuth_to, elevation_from and
     /// elevation_to override the flags, also under their names in QGIS (observ_hgt, radius) and ArcGIS (OFFSETA,

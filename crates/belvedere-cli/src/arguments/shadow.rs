@@ -31,7 +31,7 @@ pub(crate) struct ShadowArguments {
     /// target itself, 8 and more the meshes of --add. Needs classes of points.
     #[arg(long, help_heading = "Result")]
     pub(crate) casters: bool,
-    /// Also write the shadows on a grid as areas (.geojson): one for each sun; with --casters one for each caster
+    /// Also write the shadows on a grid as areas (.geojson .gpkg): one for each sun; with --casters for each caster
     ///
     /// Its area, the caster, and the time and position of the sun are properties. Light of less than a half counts as
     /// shadow.

@@ -68,7 +68,7 @@ pub(crate) struct ReportArguments {
     /// may have tilt (90: vertical), name and room: for a rule, the sun of the windows of one room adds up.
     #[arg(long, value_name = "FILE", required_unless_present = "area", help_heading = "Windows and areas")]
     pub(crate) windows: Option<PathBuf>,
-    /// Areas that keep their sun, such as gardens: polygons (GeoJSON), or "X,Y X,Y X,Y"; repeatable
+    /// Areas such as gardens: polygons (GeoJSON, GeoPackage, Shapefile), or "X,Y X,Y X,Y"; repeatable
     ///
     /// Their ground counts, on cells of 0.5 m.
     #[arg(long, value_name = "FILE|CORNERS", allow_hyphen_values = true, help_heading = "Windows and areas")]

@@ -52,8 +52,9 @@ pub(crate) struct LandmarkArguments {
     #[arg(long, value_enum, requires = "target", conflicts_with_all = ["target_class", "target_polygon"],
         help_heading = "Landmark (one of)")]
     pub(crate) back_faces: Option<BackFacesChoice>,
-    /// Observers from a table with columns x and y (.csv), optionally z and height, or from GeoJSON [default: a grid]
+    /// Observers from a table (.csv) or points (.geojson .gpkg .shp) [default: a grid]
     ///
+    /// Columns or properties: x and y, optionally z and height.
     /// The default is one observer in the middle of each cell of a grid over the scene.
     #[arg(long, value_name = "FILE", help_heading = "Observers")]
     pub(crate) observers: Option<PathBuf>,
@@ -121,7 +122,7 @@ pub(crate) struct What {
     /// Landmark as the points of this ASPRS class
     #[arg(long, value_name = "N")]
     pub(crate) target_class: Option<u8>,
-    /// Landmark as the points above a polygon that are not ground (GeoJSON, or .csv with columns x and y)
+    /// Landmark as the points above a polygon that are not ground (.geojson .gpkg .shp, or .csv with columns x and y)
     #[arg(long, value_name = "FILE")]
     pub(crate) target_polygon: Option<PathBuf>,
 }
@@ -132,7 +133,7 @@ pub(crate) struct EyesArguments {
     /// An observer in file coordinates or as LAT,LON; without Z --observer-height above the ground; repeatable
     #[arg(long = "observer", value_name = "X,Y[,Z]", allow_hyphen_values = true, required_unless_present = "eyes")]
     pub(crate) eye: Vec<MapPosition>,
-    /// Observers from a table with columns x and y (.csv) or from GeoJSON
+    /// Observers from a table with columns x and y (.csv) or from points (.geojson .gpkg .shp)
     ///
     /// Columns or properties z and height override the flags, also as observ_hgt of QGIS, and OFFSETA and SPOT of
     /// ArcGIS.

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 pub(crate) struct SurveyPlanArguments {
     #[command(flatten)]
     pub(crate) lines: LinesArguments,
-    /// Observers of all cells on the ground, from a table with columns x and y (.csv) or from points (.geojson)
+    /// Observers of all cells on the ground: a table with x and y (.csv) or points (.geojson .gpkg .shp)
     #[arg(long, value_name = "FILE", group = "lines", conflicts_with_all = ["pairs", "random", "from", "to"],
         help_heading = "Lines of sight (one of)")]
     pub(crate) observers: Option<PathBuf>,
@@ -63,7 +63,7 @@ pub(crate) struct SurveyPlanArguments {
     /// shape of the cloud. cloud=FILE: the ground of another cloud, which a ball file needs.
     #[arg(long, value_name = "HOW", default_value = "auto", help_heading = "Scanner")]
     pub(crate) ground: GroundChoice,
-    /// Candidates with what is expected of them (.csv .geojson); repeatable
+    /// Candidates with what is expected of them (.csv .geojson .gpkg); repeatable
     ///
     /// A table, or points in WGS 84.
     ///
@@ -81,7 +81,7 @@ pub(crate) struct SurveyPlanArguments {
 #[command(next_help_heading = "Candidates (one of)")]
 #[group(id = "station_places", required = true, multiple = false)]
 pub(crate) struct StationPlaces {
-    /// Places for the scanner from a table with columns x and y (.csv) or from GeoJSON, whose lines are walked along
+    /// Places for the scanner from a table with columns x and y (.csv), or points and lines (.geojson .gpkg .shp)
     ///
     /// Column or property z is the height of the scanner, height its height above the ground. A flight line is a line
     /// with heights.

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 #[derive(Args)]
 pub(crate) struct TowersArguments {
-    /// Towers: a table (.csv) with the columns x, y and tip, or points (.geojson) with the property tip
+    /// Towers: a table (.csv) with the columns x, y and tip, or points (.geojson .gpkg .shp) with tip
     ///
     /// They may have base, hub, name and scheme. tip and hub are metres above the base; base is a height of the file.
     /// Without it a tower stands on the ground of the cloud, or on --terrain. x and y may be latitude and longitude.

@@ -41,7 +41,7 @@ pub(crate) struct WindowViewsArguments {
     pub(crate) giving_way: GivingWay,
     #[command(flatten)]
     pub(crate) far: FarTerrainArguments,
-    /// Table (.csv), points (.geojson .laz .las .ply) or a map (.png); repeatable
+    /// Table (.csv), points (.geojson .gpkg .laz .las .ply) or a map (.png); repeatable
     ///
     /// A row or a point for each window. The map shows the share of --map-of.
     #[arg(short, long, value_name = "OUT", required = true, help_heading = "Result")]

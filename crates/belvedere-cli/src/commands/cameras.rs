@@ -91,7 +91,7 @@ fn question(arguments: &CamerasArguments) -> Result<ask::CamerasQuestion> {
 fn check(arguments: &CamerasArguments) -> Result<()> {
     let are_cells = camera_targets::are_cells(&arguments.targets);
     for output in &arguments.output {
-        check_output("-o", output, &["geojson", "tif", "tiff", "png", "csv"])?;
+        check_output("-o", output, &["geojson", "gpkg", "tif", "tiff", "png", "csv"])?;
         let is_map = ["tif", "tiff", "png"].contains(&super::extension(output).as_str());
         if is_map && !are_cells {
             let output = output.display();
@@ -102,7 +102,7 @@ fn check(arguments: &CamerasArguments) -> Result<()> {
         check_output("--curve", output, &["csv"])?;
     }
     if let Some(output) = &arguments.footprints {
-        check_output("--footprints", output, &["geojson"])?;
+        check_output("--footprints", output, &["geojson", "gpkg"])?;
         if !are_cells {
             return Err(Usage("--footprints needs cells as targets".to_owned()).into());
         }

@@ -17,8 +17,8 @@ use belvedere::apps::ask::{
 use belvedere::apps::profile::SightProfile;
 use belvedere::figures::{DistanceProfile, profile_picture, write_png};
 use belvedere::io::{
-    FeatureShape, GeojsonFeature, PathLine, RowsAre, TableCells, TextRows, property, read_geojson, read_table,
-    row_properties, with_columns_read, write_geojson, write_graphml, write_table,
+    FEATURE_EXTENSIONS, FeatureShape, MapFeature, PathLine, RowsAre, TableCells, TextRows, property, read_features,
+    read_table, row_properties, with_columns_read, write_graphml, write_places, write_table,
 };
 use belvedere::query::{Answer, UnprovenAs, random_pairs};
 use belvedere::vector::{length, sub};
@@ -89,7 +89,7 @@ fn check(arguments: &LineOfSightArguments, question: &LinesOfSightQuestion) -> R
         return Err(Usage("--max-distance limits the pairs of --among, which is missing".to_owned()).into());
     }
     for output in &arguments.outputs {
-        check_output("-o", output, &["csv", "geojson", "graphml"])?;
+        check_output("-o", output, &["csv", "geojson", "gpkg", "graphml"])?;
         if extension(output) == "graphml" && arguments.among.is_none() {
             let what =
                 format!("-o {}: a network is one of places that may see each other: give --among", output.display());
@@ -134,8 +134,8 @@ pub(super) fn pairs(
             Usage("lines of sight are missing: give --pairs, --random, or --observer and --target".to_owned()).into()
         );
     };
-    if ["geojson", "json"].contains(&extension(path).as_str()) {
-        let features = run.stage("reading pairs", 0, |_| read_geojson(path, &frame.crs))?;
+    if FEATURE_EXTENSIONS.contains(&extension(path).as_str()) {
+        let features = run.stage("reading pairs", 0, |_| read_features(path, &frame.crs))?;
         return Ok((ends_of_lines(path, &features, frame)?, TextRows::default()));
     }
     let table = run.stage("reading pairs", 0, |_| read_table(path))?;
@@ -158,14 +158,14 @@ pub(super) fn pairs(
 }
 
 /// The first and the last corner of each line, local metres.
-fn ends_of_lines(path: &Path, features: &[GeojsonFeature], frame: &Frame) -> Result<Vec<[Standing; 2]>> {
+fn ends_of_lines(path: &Path, features: &[MapFeature], frame: &Frame) -> Result<Vec<[Standing; 2]>> {
     let unit = frame.crs.metres_per_unit_xyz()[2];
     let local = |corner: &[f64; 3]| std::array::from_fn(|axis| corner[axis] - frame.origin[axis]);
-    let end = |corner: &[f64; 3], feature: &GeojsonFeature, name: &str| {
+    let end = |corner: &[f64; 3], feature: &MapFeature, name: &str| {
         let height = property(&feature.properties, name).and_then(Value::as_f64).map(|height| height * unit);
         Standing { height, ..standing(local(corner)) }
     };
-    let ends = |(number, feature): (usize, &GeojsonFeature)| match &feature.shape {
+    let ends = |(number, feature): (usize, &MapFeature)| match &feature.shape {
         FeatureShape::Line(corners) if corners.len() > 1 => {
             let [above_observer, above_target] = HEIGHTS;
             Ok([end(&corners[0], feature, above_observer), end(&corners[corners.len() - 1], feature, above_target)])
@@ -235,7 +235,7 @@ fn write(output: &Path, found: &SightsResults, scene: &Scene, rows: &TextRows) -
     columns.extend(terrain.as_ref().map(|terrain| ("block_terrain", TableCells::Whole(terrain))));
     let read = rows.columns(0..rows.row_count());
     match (extension(output).as_str(), &found.network) {
-        ("geojson", _) => {
+        ("geojson" | "gpkg", _) => {
             let columns: Vec<_> = with_columns_read(&read, &ENDS, &columns);
             let of_line = |row: usize| {
                 let places = found.pairs[row].map(|end| std::array::from_fn(|axis| end[axis] + frame.origin[axis]));
@@ -246,7 +246,7 @@ fn write(output: &Path, found: &SightsResults, scene: &Scene, rows: &TextRows) -
             // an end without a height is nowhere
             let has_place = |&row: &usize| found.pairs[row].iter().all(|end| end[2].is_finite());
             let lines: Vec<PathLine> = (0..found.pairs.len()).filter(has_place).map(of_line).collect();
-            write_geojson(output, &[], &lines, &frame.crs).map(|_| ())
+            write_places(output, &[], &lines, &frame.crs).map(|_| ())
         }
         ("graphml", Some(network)) => {
             columns

@@ -3,7 +3,7 @@
 use crate::arguments::CornersArgument;
 use anyhow::{Result, bail};
 use belvedere::Frame;
-use belvedere::io::{FeatureShape, RowsAre, read_geojson, read_observers};
+use belvedere::io::{FEATURE_EXTENSIONS, FeatureShape, RowsAre, read_features, read_observers};
 use std::path::Path;
 
 /// A shape and what to call it.
@@ -41,7 +41,7 @@ pub(super) fn shapes(
     let from_origin = |corner: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|i| corner[i] - frame.origin[i]) };
     let file = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let found: Vec<NamedShape> = match super::extension(path).as_str() {
-        "geojson" | "json" => read_geojson(path, &frame.crs)?
+        extension if FEATURE_EXTENSIONS.contains(&extension) => read_features(path, &frame.crs)?
             .into_iter()
             .enumerate()
             .map(|(i, feature)| {

@@ -14,7 +14,7 @@ use belvedere::apps::shadow::{Edges, HALF_LIGHT};
 use belvedere::apps::targets::{Measure, Targets};
 use belvedere::figures::{MapLegend, MapPicture, Picture, map_picture, write_apng, write_png};
 use belvedere::ground::MapGrid;
-use belvedere::io::{PolygonArea, atomic, outlines, write_geojson_areas};
+use belvedere::io::{PolygonArea, atomic, outlines, write_areas};
 use belvedere::query::UnprovenAs;
 use belvedere::raster::Raster;
 use belvedere_tiles::SurveyCells;
@@ -98,7 +98,7 @@ impl ShadowShapes<'_> {
                 }
             }
         }
-        write_geojson_areas(output, &areas, &targets.frame.crs)?;
+        write_areas(output, &areas, &targets.frame.crs)?;
         Ok(())
     }
 }
@@ -172,7 +172,7 @@ fn check(arguments: &ShadowArguments, question: &ask::ShadowQuestion) -> Result<
         check_output("--film", film, &["png", "apng"])?;
     }
     if let Some(output) = &arguments.outlines {
-        check_output("--outlines", output, &["geojson"])?;
+        check_output("--outlines", output, &["geojson", "gpkg"])?;
     }
     let needs_grid = arguments.film.is_some() || arguments.frames.is_some() || arguments.outlines.is_some();
     if needs_grid && !arguments.places.is_grid() {

@@ -8,7 +8,7 @@ use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::apps::ask::{remark_on_axis, remark_on_roofs};
 use belvedere::apps::roof_planes::MAX_LEVEL;
-use belvedere::io::{ExtraColumn, ExtraValues, PathLine, Spot, WriteReport, write_cloud, write_geojson};
+use belvedere::io::{ExtraColumn, ExtraValues, PathLine, Spot, WriteReport, write_cloud, write_places};
 use belvedere::medial::CarvedParams;
 use belvedere::model::{BallParams, OrientedSurvey};
 use belvedere::planes::{BuildingSurfaces, PlaneParams, PointOnSurface, Surface, median_sd};
@@ -20,7 +20,7 @@ use std::path::Path;
 
 pub(crate) fn run(arguments: &SurfacesArguments, global: &Global) -> Result<Summary> {
     for output in &arguments.output {
-        check_output("-o", output, &["geojson", "json", "laz", "las", "ply", "csv"])?;
+        check_output("-o", output, &["geojson", "gpkg", "json", "laz", "las", "ply", "csv"])?;
     }
     let parameters = arguments.points.parameters()?;
     let mut run = CommandContext::new(global);
@@ -64,9 +64,9 @@ pub(crate) fn run(arguments: &SurfacesArguments, global: &Global) -> Result<Summ
 }
 
 fn write(output: &Path, found: &BuildingSurfaces, cloud: &PointCloud) -> Result<WriteReport> {
-    if matches!(extension(output).as_str(), "geojson" | "json") {
+    if matches!(extension(output).as_str(), "geojson" | "json" | "gpkg") {
         let (roofs, lines) = features(found, &cloud.frame);
-        write_geojson(output, &roofs, &lines, &cloud.frame.crs)?;
+        write_places(output, &roofs, &lines, &cloud.frame.crs)?;
         return Ok(WriteReport::default());
     }
     write_points(output, found, cloud)

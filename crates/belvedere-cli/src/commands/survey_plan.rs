@@ -14,14 +14,14 @@ use belvedere::apps::ask::{
     Ask, Candidates, GridCells, Places, PlannedStation, Scene, Standing, SunPlace, Suns, SurveyPlanQuestion,
     SurveyPlanResults,
 };
-use belvedere::io::{RowsAre, Spot, TableCells, write_geojson, write_table};
+use belvedere::io::{RowsAre, Spot, TableCells, write_places, write_table};
 use belvedere::report::rounded;
 use serde_json::{Map, Value};
 use std::path::Path;
 
 pub(crate) fn run(arguments: &SurveyPlanArguments, global: &Global) -> Result<Summary> {
     for output in &arguments.output {
-        check_output("-o", output, &["geojson", "csv"])?;
+        check_output("-o", output, &["geojson", "gpkg", "csv"])?;
     }
     let mut question = question(arguments);
     question.check()?;
@@ -89,13 +89,13 @@ fn question(arguments: &SurveyPlanArguments) -> SurveyPlanQuestion {
 /// A row or a point for each candidate that can be used.
 fn write(output: &Path, found: &SurveyPlanResults, scene: &Scene) -> Result<()> {
     let (stations, frame) = (found.stations(), scene.frame());
-    if extension(output) == "geojson" {
+    if ["geojson", "gpkg"].contains(&&*extension(output)) {
         let spot = |station: &PlannedStation| {
             let place = std::array::from_fn(|i| station.eye[i] + frame.origin[i]);
             Spot { place, properties: properties(station, found) }
         };
         let spots: Vec<Spot> = stations.iter().map(spot).collect();
-        write_geojson(output, &spots, &[], &frame.crs)?;
+        write_places(output, &spots, &[], &frame.crs)?;
         return Ok(());
     }
     let places: Vec<[f64; 3]> = stations.iter().map(|station| frame.file_from_local(station.eye)).collect();

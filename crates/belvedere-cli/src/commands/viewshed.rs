@@ -154,10 +154,10 @@ fn is_of_points(path: &Path) -> bool {
 
 fn check_outputs(arguments: &ViewshedArguments) -> Result<()> {
     for output in &arguments.output {
-        check_output("-o", output, &["tif", "tiff", "png", "geojson", "laz", "las", "ply", "csv"])?;
+        check_output("-o", output, &["tif", "tiff", "png", "geojson", "gpkg", "laz", "las", "ply", "csv"])?;
     }
     for output in &arguments.far_output {
-        check_output("--far-output", output, &["tif", "tiff", "png", "geojson"])?;
+        check_output("--far-output", output, &["tif", "tiff", "png", "geojson", "gpkg"])?;
     }
     if let Some(output) = &arguments.heights {
         check_output("--heights", output, &["tif", "tiff", "npy"])?;

@@ -78,7 +78,7 @@ pub(crate) fn run(arguments: &WindowViewsArguments, global: &Global) -> Result<S
 
 fn check(arguments: &WindowViewsArguments) -> Result<()> {
     for output in &arguments.output {
-        check_output("-o", output, &["csv", "geojson", "laz", "las", "ply", "png"])?;
+        check_output("-o", output, &["csv", "geojson", "gpkg", "laz", "las", "ply", "png"])?;
     }
     if let Some(output) = &arguments.buildings {
         check_output("--buildings", output, &["csv"])?;

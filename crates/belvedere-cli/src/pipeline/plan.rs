@@ -7,7 +7,7 @@ use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::apps::ask::{remark_on_cleared, remark_on_faces};
 use belvedere::crs::Crs;
-use belvedere::io::{FeatureShape, read_geojson, read_mesh_in};
+use belvedere::io::{FeatureShape, read_features, read_mesh_in};
 use belvedere::model::{ClearReport, ClearedArea, SceneModel};
 use belvedere::{Frame, Mesh};
 use std::path::Path;
@@ -51,7 +51,7 @@ pub(crate) fn areas(choice: &AreaChoice, frame: &Frame) -> Result<Vec<ClearedAre
         AreaChoice::File(path) => path,
     };
     let local = |ring: &Vec<[f64; 3]>| ring.iter().map(|c| [c[0] - frame.origin[0], c[1] - frame.origin[1]]).collect();
-    let polygons = read_geojson(path, &frame.crs)?.into_iter().filter_map(|feature| match feature.shape {
+    let polygons = read_features(path, &frame.crs)?.into_iter().filter_map(|feature| match feature.shape {
         FeatureShape::Polygon(rings) => Some(rings.iter().map(local).collect()),
         _ => None,
     });

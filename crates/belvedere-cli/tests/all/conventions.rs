@@ -165,7 +165,7 @@ fn every_parameter_is_described_in_one_short_line_with_its_type() {
     assert_eq!(parameter("query", "--orient")["builds_balls"], true);
     assert_eq!(parameter("balls", "--trees")["choices"][0]["name"], "opaque");
     let output = parameter("viewshed", "--output");
-    assert_eq!((&output["written"], output["formats"].as_array().unwrap().len()), (&true.into(), 7), "{output}");
+    assert_eq!((&output["written"], output["formats"].as_array().unwrap().len()), (&true.into(), 8), "{output}");
     assert_eq!(parameter("shadow", "--measures")["type"], "folder");
     let parcel = parameter("envelope", "--parcel");
     assert_eq!((&parcel["written"], &parcel["formats"][0]), (&false.into(), &".geojson".into()), "{parcel}");

@@ -106,9 +106,9 @@ fn shadows_are_as_long_as_two_offices_say() {
     place.write_cloud("field.laz", &cloud);
     let (foot, height) = ([-42.0, -42.0], 10.0);
     place.write("mast.obj", block(foot.map(|v| v - 0.25), foot.map(|v| v + 0.25), height));
-    // San Rafael (California), "Preparing a Shadow Diagram": direction of the shadow, degrees from north, and its length
-    // for each metre of height on 21 December. Its whole degrees and tenths, and 0.3 m for cells and the mast; the
-    // afternoon's own figures do not agree with the sun (3.37) by more than their rounding.
+    // San Rafael (California), "Preparing a Shadow Diagram": direction of the shadow, degrees from north, and its
+    // length for each metre of height on 21 December. Tolerances are its rounding, and 0.3 m for cells and the mast.
+    // The length of the afternoon is 2 % less than the sun says (3.37).
     let san_rafael = "--location 37.9735,-122.5311 --zone America/Los_Angeles";
     // Landkreis Ostallgäu, guide to local plans: at noon on 21 December the sun stands 18.8 degrees high
     let ostallgaeu = "--location 47.78,10.62 --zone Europe/Berlin";

@@ -3,12 +3,12 @@
 use crate::common::Workplace;
 use belvedere::control::Control;
 use belvedere::io::{
-    FeatureShape, GeojsonFeature, PointResults, ReadOptions, read_cloud, read_geojson, read_mesh, read_point_results,
+    FeatureShape, MapFeature, PointResults, ReadOptions, read_cloud, read_features, read_mesh, read_point_results,
 };
 use belvedere::vector::{cross, dot, length, sub};
 use serde_json::Value;
 
-fn text<'a>(feature: &'a GeojsonFeature, name: &str) -> &'a str {
+fn text<'a>(feature: &'a MapFeature, name: &str) -> &'a str {
     feature.properties.get(name).and_then(Value::as_str).unwrap_or("")
 }
 
@@ -40,7 +40,7 @@ fn roofs_and_edges_lie_where_those_of_the_mesh_do() {
     place.summary("simulate town -o town --extent 80 --density 10");
     let made = place.summary("surfaces town/cloud.laz -o found.geojson -o found.laz");
     let (mut cloud, _) = read_cloud([&place.path("town/cloud.laz")], &ReadOptions::new(), &Control::none()).unwrap();
-    let features = read_geojson(&place.path("found.geojson"), &cloud.frame.crs).unwrap();
+    let features = read_features(&place.path("found.geojson"), &cloud.frame.crs).unwrap();
     let of = |kind: &str| features.iter().filter(|feature| text(feature, "kind") == kind).collect::<Vec<_>>();
     let (roofs, edges, walls) = (of("roof"), of("edge"), of("wall"));
     let lines = of("ridge").len() + of("valley").len();
@@ -94,7 +94,7 @@ fn roofs_and_edges_lie_where_those_of_the_mesh_do() {
 
 /// Points of roofs and walls lie on faces of the mesh that face the same way, and scatter about their planes as these
 /// say.
-fn points_lie_on_their_surfaces(place: &Workplace, triangles: &[[[f64; 3]; 3]], features: &[GeojsonFeature]) {
+fn points_lie_on_their_surfaces(place: &Workplace, triangles: &[[[f64; 3]; 3]], features: &[MapFeature]) {
     let PointResults { places, columns } = read_point_results(&place.path("found.laz")).unwrap();
     let column = |name: &str| columns.iter().find(|(own, _)| own == name).unwrap().1.clone();
     let [kinds, numbers, distances] = ["kind", "number", "distance"].map(column);

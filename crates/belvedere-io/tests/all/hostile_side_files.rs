@@ -8,7 +8,7 @@ use belvedere_data::crs::Crs;
 use belvedere_data::trajectory::Trajectory;
 use belvedere_data::{GpsTimeKind, Mesh, Result};
 use belvedere_io::{
-    Output, RowsAre, Source, VehicleHeading, read_geojson, read_mesh, read_observers, read_table, read_text_rows,
+    Output, RowsAre, Source, VehicleHeading, read_features, read_mesh, read_observers, read_table, read_text_rows,
     read_trajectory, read_weather, write_mesh, write_trajectory,
 };
 
@@ -97,7 +97,7 @@ fn formats() -> Vec<Format> {
         Format {
             name: "shapes.geojson",
             valid: SHAPES.into(),
-            read: |source| read_geojson(source, &dutch()).map(|shapes| format!("{shapes:?}")),
+            read: |source| read_features(source, &dutch()).map(|shapes| format!("{shapes:?}")),
         },
         Format {
             name: "observers.csv",
@@ -181,7 +181,7 @@ fn counts_and_depths_that_files_lie_about_are_refused() {
         ("negative.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -1 -2 -9\n".to_owned()),
     ] {
         let error = match name.ends_with("geojson") {
-            true => read_geojson(Source::bytes(name, text.as_bytes()), &Crs::default()).map(|_| ()),
+            true => read_features(Source::bytes(name, text.as_bytes()), &Crs::default()).map(|_| ()),
             false => read_mesh(Source::bytes(name, text.as_bytes())).map(|_| ()),
         };
         assert!(error.is_err_and(|error| error.to_string().starts_with(name)), "{name}");

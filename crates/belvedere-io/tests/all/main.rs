@@ -7,6 +7,7 @@ mod hostile_archives;
 mod hostile_input;
 mod hostile_laz;
 mod hostile_side_files;
+mod map_files;
 mod odd_clouds;
 mod odd_meshes;
 mod odd_tables;

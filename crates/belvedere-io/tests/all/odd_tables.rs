@@ -5,8 +5,8 @@ use std::io::Cursor;
 
 use belvedere_data::crs::Crs;
 use belvedere_io::{
-    FeatureShape, ObserverRow, ObserverRows, Output, PolygonArea, RowsAre, Source, read_geojson, read_observers,
-    read_table, write_geojson_areas,
+    FeatureShape, ObserverRow, ObserverRows, Output, PolygonArea, RowsAre, Source, read_features, read_observers,
+    read_table, write_areas,
 };
 
 fn dutch() -> Crs {
@@ -130,7 +130,7 @@ fn tables_in_utf_16_are_read() {
     }
     let geojson = "\u{feff}{\"type\": \"Point\", \"coordinates\": [155010, 463010]}";
     let bytes: Vec<u8> = geojson.encode_utf16().flat_map(u16::to_le_bytes).collect();
-    assert_eq!(read_geojson(Source::bytes("a.geojson", &bytes), &dutch()).unwrap().len(), 1);
+    assert_eq!(read_features(Source::bytes("a.geojson", &bytes), &dutch()).unwrap().len(), 1);
     // half a character at the end, and halves of pairs, are no reason to fail
     let odd: Vec<u8> =
         [0xff, 0xfe].into_iter().chain("x,y\n1,2\n".encode_utf16().flat_map(u16::to_le_bytes)).chain([0x33]).collect();
@@ -154,10 +154,10 @@ fn polygons_across_180_degrees_are_cut_on_writing_and_whole_again_on_reading() {
             .to_vec();
         let area = PolygonArea { polygons: vec![vec![square]], ..PolygonArea::default() };
         let mut cursor = Cursor::new(Vec::new());
-        write_geojson_areas(Output::writer("a.geojson", &mut cursor), &[area], &crs).unwrap();
+        write_areas(Output::writer("a.geojson", &mut cursor), &[area], &crs).unwrap();
         let bytes = cursor.into_inner();
         let text = String::from_utf8(bytes.clone()).unwrap();
-        let found = read_geojson(Source::bytes("a.geojson", &bytes), &crs).unwrap();
+        let found = read_features(Source::bytes("a.geojson", &bytes), &crs).unwrap();
         assert_eq!(found.len(), 2, "EPSG:{code}: {text}");
         assert!(text.contains("180.0") && text.contains("-180.0"), "EPSG:{code}: {text}");
         let mut sum = 0.0;
@@ -181,7 +181,7 @@ fn polygons_across_180_degrees_are_cut_on_writing_and_whole_again_on_reading() {
                     .map(|[x, y]| format!("[{}, {y}]", if beyond { longitude(x) } else { x }))
                     .to_vec();
             let text = format!("{{\"type\": \"Polygon\", \"coordinates\": [[{}]]}}", ring.join(", "));
-            let found = read_geojson(Source::bytes("a.geojson", text.as_bytes()), &crs).unwrap();
+            let found = read_features(Source::bytes("a.geojson", text.as_bytes()), &crs).unwrap();
             let FeatureShape::Polygon(rings) = &found[0].shape else { panic!("{found:?}") };
             let xs = rings[0].iter().map(|corner| corner[0]);
             let width = xs.clone().fold(f64::MIN, f64::max) - xs.fold(f64::MAX, f64::min);

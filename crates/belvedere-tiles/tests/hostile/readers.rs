@@ -9,7 +9,7 @@ use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{
     ReadOptions, RowsAre, Source, SystemBeside, Within, cloud_files, has_point_results, is_ball_file, read_balls,
-    read_cloud, read_geojson, read_horizon, read_las_head, read_mesh, read_observers, read_point_results,
+    read_cloud, read_features, read_horizon, read_las_head, read_mesh, read_observers, read_point_results,
     read_stations, read_table, read_text_rows, read_tif, read_trajectory, read_weather,
 };
 use belvedere::model::SceneModel;
@@ -54,7 +54,7 @@ pub(crate) const READERS: &[TriedReader] = &[
     TriedReader { file: "mesh.json", read: |file, bytes| settle(read_mesh(Source::bytes(file, bytes))) },
     TriedReader {
         file: "shapes.geojson",
-        read: |file, bytes| settle(read_geojson(Source::bytes(file, bytes), &dutch())),
+        read: |file, bytes| settle(read_features(Source::bytes(file, bytes), &dutch())),
     },
     TriedReader {
         file: "observers.csv",

@@ -5,7 +5,7 @@ use belvedere::apps::ask::sun::SunPlace;
 use belvedere::apps::ask::{Context, Remark};
 use belvedere::control::Control;
 use belvedere::crs::{Crs, US_SURVEY_FOOT, text};
-use belvedere::io::{ReadOptions, Source, read_cloud, read_geojson, read_mesh_in, read_terrain};
+use belvedere::io::{ReadOptions, Source, read_cloud, read_features, read_mesh_in, read_terrain};
 use belvedere::{Bounds, Frame, PointCloud, Result};
 use std::fs;
 use std::path::Path;
@@ -137,7 +137,7 @@ fn named(name: &str) -> String {
 
 fn said_of_geojson(member: &str, at: [f64; 2], cloud: &Crs) -> Option<String> {
     let text = geojson(member, at);
-    read_geojson(Source::bytes("places.geojson", text.as_bytes()), cloud).err().map(|error| error.to_string())
+    read_features(Source::bytes("places.geojson", text.as_bytes()), cloud).err().map(|error| error.to_string())
 }
 
 fn said_of_cityjson(system: &str, scene: &str) -> Option<String> {
@@ -581,7 +581,7 @@ fn shapes_of_another_datum_are_brought_to_the_cloud() {
     for (name, at, code, place) in SHAPES_OF_DATUMS {
         let text = geojson(&named(name), at);
         let crs = Crs::parse(code).unwrap();
-        let found = read_geojson(Source::bytes("places.geojson", text.as_bytes()), &crs).unwrap();
+        let found = read_features(Source::bytes("places.geojson", text.as_bytes()), &crs).unwrap();
         let belvedere::io::FeatureShape::Point([x, y, _]) = found[0].shape else { panic!("{found:?}") };
         let error = (x - place[0]).hypot(y - place[1]);
         // steps between datums that need no grid differ by a few metres

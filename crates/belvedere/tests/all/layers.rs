@@ -51,7 +51,7 @@ const LEVELS: [(&str, u8); 18] = [
 ];
 
 /// Crates of others that only one file or folder may name.
-const ONE_HOME: [(&str, &str); 35] = [
+const ONE_HOME: [(&str, &str); 37] = [
     ("ab_glyph_rasterizer::", "figures/src/font.rs"),
     ("sha2::", "/src/cache/key.rs"),
     ("skrifa::", "figures/src/font.rs"),
@@ -64,7 +64,9 @@ const ONE_HOME: [(&str, &str); 35] = [
     ("e57::", "io/src/e57.rs"),
     ("tiff::", "io/src/geotiff"),
     ("flate2::", "io/src/geotiff_cog.rs"),
-    ("geojson::", "io/src/geojson"),
+    ("geojson::", "io/src/map_features"),
+    ("rusqlite::", "io/src/map_features/geopackage"),
+    ("shapefile::", "io/src/map_features/shapefile"),
     ("earcut::", "io/src/"),
     ("ply_rs_bw::", "io/src/"),
     ("pollster::", "gpu/src/device.rs"),

@@ -11,7 +11,7 @@ use belvedere::Frame;
 use belvedere::apps::ask::{self, GridCells, Places, PrivatePlaces, Standing};
 use belvedere::apps::cameras::WeightedArea;
 use belvedere::apps::targets::MeshParams;
-use belvedere::io::{FeatureShape, ReadOptions, RowsAre, is_mesh, property, read_geojson};
+use belvedere::io::{FeatureShape, ReadOptions, RowsAre, is_mesh, property, read_features};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ enum TargetFileKind {
 /// The type of a file. GeoJSON with polygons holds areas.
 fn kind(path: &Path) -> TargetFileKind {
     match extension(path).as_str() {
-        "geojson" => {
+        "geojson" | "gpkg" | "shp" => {
             let text = std::fs::read_to_string(path).unwrap_or_default();
             if text.contains("Polygon\"") { TargetFileKind::Areas } else { TargetFileKind::Places }
         }
@@ -100,7 +100,7 @@ pub(super) fn private(path: &Path, frame: &Frame, run: &mut CommandContext) -> R
 fn areas(path: &Path, frame: &Frame) -> Result<Vec<WeightedArea>> {
     let on_map = |corner: &[f64; 3]| [corner[0] - frame.origin[0], corner[1] - frame.origin[1]];
     let mut found = Vec::new();
-    for feature in read_geojson(path, &frame.crs)? {
+    for feature in read_features(path, &frame.crs)? {
         let FeatureShape::Polygon(rings) = feature.shape else {
             bail!("{}: use polygons, or points, but not both in one file", path.display());
         };

@@ -5,9 +5,7 @@ use anyhow::Result;
 use belvedere::apps::ask::{CamerasResults, ChosenCamera, Scene};
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, write_png};
 use belvedere::ground::{Ground, highest_points};
-use belvedere::io::{
-    PolygonArea, Spot, TableCells, outlines, write_geojson, write_geojson_areas, write_table, write_tif_u16,
-};
+use belvedere::io::{PolygonArea, Spot, TableCells, outlines, write_areas, write_places, write_table, write_tif_u16};
 use belvedere::raster::Raster;
 use belvedere::report::rounded;
 use belvedere::results::{ResultKind, georeference};
@@ -79,7 +77,7 @@ impl CameraOutput<'_> {
             let place: [f64; 3] = std::array::from_fn(|i| pose.camera.eye[i] + frame.origin[i]);
             spots.push(Spot { place, properties });
         }
-        write_geojson(output, &spots, &[], &frame.crs)?;
+        write_places(output, &spots, &[], &frame.crs)?;
         Ok(())
     }
 
@@ -89,7 +87,7 @@ impl CameraOutput<'_> {
         for (number, camera) in (1..).zip(&self.found.cameras) {
             areas.extend(self.footprint(camera, number)?);
         }
-        write_geojson_areas(output, &areas, &self.found.targets.frame.crs)?;
+        write_areas(output, &areas, &self.found.targets.frame.crs)?;
         Ok(())
     }
 

@@ -9,7 +9,7 @@ use belvedere::apps::ask::{self, Context, SkyParts, SunPlace, Suns};
 use belvedere::apps::shadow::Edges;
 use belvedere::apps::sun::zone_of_instant;
 use belvedere::crs::Crs;
-use belvedere::io::{read_geojson, read_horizon, read_mesh, read_tif, read_weather};
+use belvedere::io::{read_features, read_horizon, read_mesh, read_tif, read_weather};
 use belvedere_tiles::{CellSizes, Plan, TileQuestion, Topic};
 
 /// Refuses questions that cannot be answered, before the survey is read.
@@ -45,7 +45,7 @@ pub(super) fn check(arguments: &CityPlan) -> Result<()> {
     }
     for choice in &arguments.clear {
         if let AreaChoice::File(path) = choice {
-            match read_geojson(path, &Crs::default()) {
+            match read_features(path, &Crs::default()) {
                 // that of the survey is not known yet
                 Ok(_) | Err(Error::UnusableCrs { .. }) => {}
                 Err(error) => return Err(error.into()),

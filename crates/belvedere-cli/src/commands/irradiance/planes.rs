@@ -14,7 +14,7 @@ use belvedere::apps::horizon::{HorizonParams, horizons};
 use belvedere::apps::irradiance::{building_columns, horizon_places, roof_columns};
 use belvedere::apps::result_columns::{ResultColumn, ResultValues};
 use belvedere::apps::sun::Site;
-use belvedere::io::{PolygonArea, atomic, outlines, write_geojson_areas};
+use belvedere::io::{PolygonArea, atomic, outlines, write_areas};
 use belvedere::query::SkylinePoint;
 use serde_json::Value;
 use std::f64::consts::FRAC_PI_2;
@@ -25,7 +25,7 @@ const AZIMUTHS: usize = 48;
 
 pub(super) fn check(arguments: &IrradianceArguments) -> Result<()> {
     for output in &arguments.planes {
-        check_output("--planes", output, &["csv", "geojson"])?;
+        check_output("--planes", output, &["csv", "geojson", "gpkg"])?;
     }
     if let Some(output) = &arguments.photovoltaics.buildings {
         check_output("--buildings", output, &["csv"])?;
@@ -117,7 +117,7 @@ fn write_outlines(output: &Path, roofs: &RoofsResults, frame: &Frame, site: &Sit
         }
         areas.push(area);
     }
-    write_geojson_areas(output, &areas, &frame.crs)?;
+    write_areas(output, &areas, &frame.crs)?;
     Ok(())
 }
 

@@ -7,7 +7,7 @@ use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::apps::ask;
-use belvedere::io::{FeatureShape, read_geojson, read_table};
+use belvedere::io::{FEATURE_EXTENSIONS, FeatureShape, read_features, read_table};
 use belvedere::query::SurfacePieces;
 use belvedere::{Frame, Mesh};
 use std::path::Path;
@@ -69,9 +69,9 @@ pub(in crate::commands) fn objects_of(mesh: Mesh, names: &[String], path: &Path)
 /// Polygons of a file, each an outer ring and holes, local metres.
 fn polygons_of(path: &Path, frame: &Frame) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
     let polygons: Vec<Vec<Vec<[f64; 2]>>> = match extension(path).as_str() {
-        "geojson" | "json" | "gpkg" | "shp" => {
+        extension if FEATURE_EXTENSIONS.contains(&extension) => {
             let place = |corner: &[f64; 3]| [corner[0] - frame.origin[0], corner[1] - frame.origin[1]];
-            read_geojson(path, &frame.crs)?
+            read_features(path, &frame.crs)?
                 .into_iter()
                 .filter_map(|feature| match feature.shape {
                     FeatureShape::Polygon(rings) => {

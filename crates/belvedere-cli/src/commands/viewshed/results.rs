@@ -10,8 +10,8 @@ use belvedere::apps::viewshed::{Viewshed, title_of_cells};
 use belvedere::figures::{MapLegend, MapMark, MapPicture, Picture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, MapGrid, highest_points};
 use belvedere::io::{
-    ExtraColumn, ExtraValues, Georeference, MetadataTag, PolygonArea, WriteReport, outlines, write_cloud,
-    write_geojson_areas, write_npy_u32_bands, write_tif_u32,
+    ExtraColumn, ExtraValues, Georeference, MetadataTag, PolygonArea, WriteReport, outlines, write_areas, write_cloud,
+    write_npy_u32_bands, write_tif_u32,
 };
 use belvedere::query::Answer;
 use belvedere::raster::Raster;
@@ -68,7 +68,7 @@ impl SeenCells<'_> {
     pub(super) fn write(&self, output: &Path, tags: &[MetadataTag]) -> Result<()> {
         let place = self.on.georeference(self.frame);
         match extension(output).as_str() {
-            "geojson" => self.write_areas(output, &place),
+            "geojson" | "gpkg" => self.write_areas(output, &place),
             "png" => self.write_map(output),
             _ => {
                 let size = self.on.size();
@@ -98,7 +98,7 @@ impl SeenCells<'_> {
             area.polygons = polygons.iter().map(|polygon| polygon.rings(corner)).collect();
             areas.push(area);
         }
-        write_geojson_areas(output, &areas, &self.frame.crs)?;
+        write_areas(output, &areas, &self.frame.crs)?;
         Ok(())
     }
 

@@ -11,7 +11,7 @@ use belvedere::apps::targets::{Measure, Targets};
 use belvedere::apps::window_views::{SeenKind, named_columns};
 use belvedere::figures::{MapLegend, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{GroundPoints, highest_points};
-use belvedere::io::{Spot, TableCells, TextRows, WriteReport, with_columns_read, write_geojson, write_table};
+use belvedere::io::{Spot, TableCells, TextRows, WriteReport, with_columns_read, write_places, write_table};
 use belvedere::report::rounded;
 use belvedere::results::{TakenFrom, georeference, write_measures};
 use serde_json::{Map, Value};
@@ -41,7 +41,7 @@ impl WindowOutput<'_> {
     pub(super) fn write(&self, output: &Path) -> belvedere::Result<WriteReport> {
         match extension(output).as_str() {
             "csv" => self.write_table(output).map(|()| WriteReport::default()),
-            "geojson" => self.write_geojson(output).map(|()| WriteReport::default()),
+            "geojson" | "gpkg" => self.write_points(output).map(|()| WriteReport::default()),
             _ => {
                 let centers: Vec<[f64; 3]> = self.found.windows.iter().map(|window| window.center).collect();
                 let targets = Targets::of_places(&centers, self.scene.frame().clone());
@@ -66,7 +66,7 @@ impl WindowOutput<'_> {
         write_table(output, &with_columns_read(&read, &["x", "y", "z", "azimuth", "tilt"], &cells))
     }
 
-    fn write_geojson(&self, output: &Path) -> belvedere::Result<()> {
+    fn write_points(&self, output: &Path) -> belvedere::Result<()> {
         let frame = self.scene.frame();
         let spot = |(row, window): (usize, &belvedere::apps::targets::Window)| {
             let mut properties: Map<String, Value> = Map::new();
@@ -90,7 +90,7 @@ impl WindowOutput<'_> {
             Spot { place, properties }
         };
         let spots: Vec<Spot> = self.found.windows.iter().enumerate().map(spot).collect();
-        write_geojson(output, &spots, &[], &frame.crs).map(|_| ())
+        write_places(output, &spots, &[], &frame.crs).map(|_| ())
     }
 
     /// A row for each building.

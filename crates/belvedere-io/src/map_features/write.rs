@@ -1,4 +1,4 @@
-//! Areas as GeoJSON.
+//! Areas, places and lines as GeoJSON and GeoPackage.
 
 use std::path::Path;
 
@@ -46,29 +46,27 @@ pub struct PathLine {
 
 /// Coordinates of a GeoJSON file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GeojsonCoordinates {
+pub enum FeatureCoordinates {
     /// Longitude and latitude of WGS 84, as RFC 7946 wants.
     Wgs84,
     /// Coordinates of the cloud's file: its system gives no longitude and latitude.
     OfTheFile,
 }
 
-/// Writes each of `areas` as a feature with a multipolygon, and returns the kind of its coordinates. They are longitude
-/// and latitude if `crs`, the system of the areas, gives these. Otherwise they are easting and northing in the unit of
-/// `crs`, with a member `crs_note`. Polygons that cross 180 degrees are cut there.
+/// Writes each of `areas` as a feature with a multipolygon (.geojson .gpkg), and returns the kind of its coordinates.
+///
+/// A GeoPackage has those of the cloud's file, and its system. In GeoJSON they are longitude and latitude if `crs`, the
+/// system of the areas, gives these. Otherwise they are easting and northing in the unit of `crs`, with a member
+/// `crs_note`. Polygons that cross 180 degrees are cut there.
 ///
 /// # Errors
 /// [`Error::Io`], and [`Error::UnusableCrs`] for places that have no longitude and latitude.
 ///
 /// # Source
 /// RFC 7946, sections 3.1.7, 3.1.9, 3.3 and 4.
-pub fn write_geojson_areas<'a>(
-    output: impl Into<Output<'a>>,
-    areas: &[PolygonArea],
-    crs: &Crs,
-) -> Result<GeojsonCoordinates> {
+pub fn write_areas<'a>(output: impl Into<Output<'a>>, areas: &[PolygonArea], crs: &Crs) -> Result<FeatureCoordinates> {
     let output = output.into();
-    let projection = crs.geographic_projection().ok();
+    let projection = projection_for(&output, crs);
     let mut features = Vec::with_capacity(areas.len());
     for area in areas {
         let mut polygons = Vec::with_capacity(area.polygons.len());
@@ -85,18 +83,18 @@ pub fn write_geojson_areas<'a>(
 }
 
 /// Writes each of `spots` as a point and each of `lines` as a line, with heights in the unit of the heights of `crs`,
-/// and otherwise as [`write_geojson_areas`] does.
+/// and otherwise as [`write_areas`] does.
 ///
 /// # Errors
-/// Those of [`write_geojson_areas`].
-pub fn write_geojson<'a>(
+/// Those of [`write_areas`].
+pub fn write_places<'a>(
     output: impl Into<Output<'a>>,
     spots: &[Spot],
     lines: &[PathLine],
     crs: &Crs,
-) -> Result<GeojsonCoordinates> {
+) -> Result<FeatureCoordinates> {
     let output = output.into();
-    let projection = crs.geographic_projection().ok();
+    let projection = projection_for(&output, crs);
     let position = |&[x, y, z]: &[f64; 3]| -> Result<Position> {
         let on_map = written_ring(&[[x, y]], projection.as_ref(), crs, output.name())?;
         let height = rounded(z / crs.metres_per_unit_xyz()[2], METRE_DECIMALS);
@@ -113,14 +111,23 @@ pub fn write_geojson<'a>(
     write_features(output, features, projection.is_some(), crs)
 }
 
+/// The projection to longitude and latitude; `None` where coordinates stay those of the file.
+fn projection_for(output: &Output<'_>, crs: &Crs) -> Option<GeographicProjection> {
+    if output.extension() == "gpkg" { None } else { crs.geographic_projection().ok() }
+}
+
 fn feature(geometry: Geometry, properties: &Map<String, Value>) -> Feature {
     Feature { geometry: Some(geometry), properties: Some(properties.clone()), ..Feature::default() }
 }
 
-fn write_features(output: Output<'_>, features: Vec<Feature>, is_wgs84: bool, crs: &Crs) -> Result<GeojsonCoordinates> {
+fn write_features(output: Output<'_>, features: Vec<Feature>, is_wgs84: bool, crs: &Crs) -> Result<FeatureCoordinates> {
+    if output.extension() == "gpkg" {
+        write_geopackage(output, &features, crs)?;
+        return Ok(FeatureCoordinates::OfTheFile);
+    }
     let mut collection = FeatureCollection { features, ..FeatureCollection::default() };
-    let coordinates = if is_wgs84 { GeojsonCoordinates::Wgs84 } else { GeojsonCoordinates::OfTheFile };
-    if coordinates == GeojsonCoordinates::OfTheFile {
+    let coordinates = if is_wgs84 { FeatureCoordinates::Wgs84 } else { FeatureCoordinates::OfTheFile };
+    if coordinates == FeatureCoordinates::OfTheFile {
         let note = format!("coordinates are not WGS 84 but those of the cloud: {}", crs.describe());
         collection.foreign_members = Some(Map::from_iter([("crs_note".to_owned(), note.into())]));
     }
@@ -129,6 +136,17 @@ fn write_features(output: Output<'_>, features: Vec<Feature>, is_wgs84: bool, cr
         writeln!(output).map_err(Error::io(path))
     })?;
     Ok(coordinates)
+}
+
+#[cfg(feature = "gpkg")]
+fn write_geopackage(output: Output<'_>, features: &[Feature], crs: &Crs) -> Result<()> {
+    let bytes = super::geopackage::written(output.name(), features, crs)?;
+    output.write(|path, output| output.write_all(&bytes).map_err(Error::io(path)))
+}
+
+#[cfg(not(feature = "gpkg"))]
+fn write_geopackage(output: Output<'_>, _: &[Feature], _: &Crs) -> Result<()> {
+    Err(Error::missing_feature(output.name(), "gpkg"))
 }
 
 fn written_ring(

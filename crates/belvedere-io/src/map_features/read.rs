@@ -1,11 +1,11 @@
-//! Points, lines and polygons from GeoJSON.
+//! Points, lines and polygons from GeoJSON, GeoPackage and Shapefile.
 
 use std::path::Path;
 
 use geojson::{GeoJson, Geometry, GeometryValue, Position};
 use serde_json::{Map, Value};
 
-use super::source::{Source, refuse_other_shapes};
+use crate::source::{Source, refuse_other_shapes};
 
 use belvedere_data::crs::evidence::Comparison;
 use belvedere_data::crs::{Crs, CrsKind, GeographicProjection};
@@ -24,28 +24,95 @@ pub enum FeatureShape {
 
 /// A shape with its properties in the file. Features of several shapes give one for each.
 #[derive(Clone, Debug, PartialEq)]
-pub struct GeojsonFeature {
+pub struct MapFeature {
     /// Its place.
     pub shape: FeatureShape,
     /// Its properties.
     pub properties: Map<String, Value>,
 }
 
-/// Reads the shapes of a GeoJSON file and brings them into the system `crs` of the cloud.
+/// Extensions of files of points, lines and polygons.
+pub const FEATURE_EXTENSIONS: [&str; 4] = ["geojson", "json", "gpkg", "shp"];
+
+/// Reads the shapes of a file (.geojson .json .gpkg .shp) and brings them into the system `crs` of the cloud.
 ///
-/// Coordinates are longitude and latitude of WGS 84 (RFC 7946) unless the file names a system in the older member
-/// `crs`. Longitude and latitude of another datum are converted to WGS 84; a plane must be that of the cloud. In a file
-/// without that member, coordinates that cannot be longitude and latitude are taken as those of the cloud's file. So
-/// are all if the cloud has no location on earth. Heights are in the unit of the cloud's heights. Features without
+/// A GeoPackage has one layer of features. A Shapefile has its attributes and its system in the files beside it. Both
+/// are in the system of the cloud, or in longitude and latitude.
+///
+/// Coordinates of GeoJSON are longitude and latitude of WGS 84 (RFC 7946) unless the file names a system in the older
+/// member `crs`. Longitude and latitude of another datum are converted to WGS 84; a plane must be that of the cloud. In
+/// a file without that member, coordinates that cannot be longitude and latitude are taken as those of the cloud's file.
+/// So are all if the cloud has no location on earth. Heights are in the unit of the cloud's heights. Features without
 /// geometry are skipped.
 ///
 /// # Errors
 /// - [`Error::Io`].
-/// - [`Error::Malformed`] for a file that is no GeoJSON and for coordinates that are not finite.
+/// - [`Error::Malformed`] for a file that is not of its format, a GeoPackage with several layers, and coordinates that
+///   are not finite.
+/// - [`Error::MissingFeature`] for a format that was not built in.
 /// - [`Error::UnusableCrs`] if the file names another plane than the cloud's, a system that is not known, or degrees
 ///   that do not lead to the cloud.
-pub fn read_geojson<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<GeojsonFeature>> {
+pub fn read_features<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<MapFeature>> {
     let source = source.into();
+    let name = source.name().to_owned();
+    match source.extension().as_str() {
+        "gpkg" => of_geopackage(source, &name, crs),
+        "shp" => of_shapefile(&source, &name, crs),
+        _ => of_geojson(source, crs),
+    }
+}
+
+#[cfg(feature = "gpkg")]
+fn of_geopackage(source: Source<'_>, path: &Path, crs: &Crs) -> Result<Vec<MapFeature>> {
+    let layer = super::geopackage::read(source)?;
+    let mut raw = Vec::new();
+    for (geometry, properties) in layer.features {
+        of_geometry(geometry, &properties, path, &mut raw)?;
+    }
+    let given = layer.system.as_deref().map(|text| system_of_text(text, path)).transpose()?;
+    placed(raw, given, OTHER_ADVICE, path, crs)
+}
+
+#[cfg(not(feature = "gpkg"))]
+fn of_geopackage(_: Source<'_>, path: &Path, _: &Crs) -> Result<Vec<MapFeature>> {
+    Err(Error::missing_feature(path, "gpkg"))
+}
+
+#[cfg(feature = "shp")]
+fn of_shapefile(source: &Source<'_>, path: &Path, crs: &Crs) -> Result<Vec<MapFeature>> {
+    use crate::source::SystemBeside;
+    let (raw, beside) = super::shapefile::read(source)?;
+    let given = match beside {
+        Some(SystemBeside::Known { crs, .. }) => Some(crs),
+        Some(SystemBeside::Unreadable { found_in }) => {
+            let what = format!("its reference system, in {found_in}, cannot be read; {OTHER_ADVICE}");
+            return Err(Error::UnusableCrs { path: path.to_owned(), what });
+        }
+        None => None,
+    };
+    placed(raw, given, OTHER_ADVICE, path, crs)
+}
+
+#[cfg(not(feature = "shp"))]
+fn of_shapefile(_: &Source<'_>, path: &Path, _: &Crs) -> Result<Vec<MapFeature>> {
+    Err(Error::missing_feature(path, "shp"))
+}
+
+/// The system of a code, or of well-known text.
+#[cfg(feature = "gpkg")]
+fn system_of_text(text: &str, path: &Path) -> Result<Crs> {
+    system_of_name(text).or_else(|| Crs::parse(text).ok()).ok_or_else(|| Error::UnusableCrs {
+        path: path.to_owned(),
+        what: format!("its reference system is unknown; {OTHER_ADVICE}"),
+    })
+}
+
+/// Advice for files in a system that leads nowhere.
+const GEOJSON_ADVICE: &str = "write the file in WGS 84, as RFC 7946 requires";
+#[cfg(any(feature = "gpkg", feature = "shp"))]
+const OTHER_ADVICE: &str = "write the file in the system of the cloud, or in WGS 84";
+
+fn of_geojson(source: Source<'_>, crs: &Crs) -> Result<Vec<MapFeature>> {
     refuse_other_shapes(source.name())?;
     let (name, bytes) = source.read_text()?;
     let path = name.as_path();
@@ -72,7 +139,24 @@ pub fn read_geojson<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<
         }
     };
     let named = named_system(members.as_ref().and_then(|members| members.get("crs")), path)?;
-    let placing = Placing::new(named.as_deref(), &raw, path, crs)?;
+    let given = named.as_deref().map(|name| {
+        system_of_name(name).ok_or_else(|| Error::UnusableCrs {
+            path: path.to_owned(),
+            what: format!("its reference system \"{name}\" is unknown; {GEOJSON_ADVICE}"),
+        })
+    });
+    placed(raw, given.transpose()?, GEOJSON_ADVICE, path, crs)
+}
+
+/// The features in the system `crs` of the cloud; `given` is theirs, where the file names one.
+fn placed(
+    mut raw: Vec<MapFeature>,
+    given: Option<Crs>,
+    advice: &str,
+    path: &Path,
+    crs: &Crs,
+) -> Result<Vec<MapFeature>> {
+    let placing = Placing::new(given, &raw, advice, path, crs)?;
     for feature in &mut raw {
         match &mut feature.shape {
             FeatureShape::Point(p) => *p = placing.place(*p, path)?,
@@ -113,9 +197,9 @@ fn of_geometry(
     geometry: Geometry,
     properties: &Map<String, Value>,
     path: &Path,
-    found: &mut Vec<GeojsonFeature>,
+    found: &mut Vec<MapFeature>,
 ) -> Result<()> {
-    let mut push = |shape| found.push(GeojsonFeature { shape, properties: properties.clone() });
+    let mut push = |shape| found.push(MapFeature { shape, properties: properties.clone() });
     match geometry.value {
         GeometryValue::Point { coordinates } => push(FeatureShape::Point(position(&coordinates, path)?)),
         GeometryValue::MultiPoint { coordinates } => {
@@ -178,7 +262,7 @@ struct Placing {
 }
 
 impl Placing {
-    fn new(named: Option<&str>, features: &[GeojsonFeature], path: &Path, crs: &Crs) -> Result<Self> {
+    fn new(given: Option<Crs>, features: &[MapFeature], advice: &str, path: &Path, crs: &Crs) -> Result<Self> {
         let scale = crs.metres_per_unit_xyz();
         let unusable = |what: String| Error::UnusableCrs { path: path.to_owned(), what };
         let all = features.iter().flat_map(|feature| match &feature.shape {
@@ -188,24 +272,17 @@ impl Placing {
         });
         let all: Vec<[f64; 3]> = all.collect();
         let no_degrees = all.iter().find(|[x, y, _]| !(x.abs() <= 360.0 && y.abs() <= 90.0));
-        let Some(name) = named else {
+        let Some(given) = given else {
             let projection = if no_degrees.is_none() { crs.geographic_projection().ok() } else { None };
             return Ok(Self { projection, datum: None, scale });
         };
-        let given = system_of_name(name).ok_or_else(|| {
-            unusable(format!(
-                "its reference system \"{name}\" is unknown; write the file in WGS 84, as RFC 7946 requires"
-            ))
-        })?;
         let own = given.describe();
         if given.kind != CrsKind::Geographic {
             let somewhere = all.first().map_or([f64::NAN; 2], |p| [p[0], p[1]]);
             let is_apart = matches!(given.compare(crs, somewhere), Comparison::Apart(_));
             if is_apart || (given.contradicts(crs) && given.compare(crs, somewhere) == Comparison::Unknown) {
                 let cloud = crs.describe();
-                return Err(unusable(format!(
-                    "is in {own}, but the cloud is in {cloud}; write the file in WGS 84, as RFC 7946 requires"
-                )));
+                return Err(unusable(format!("is in {own}, but the cloud is in {cloud}; {advice}")));
             }
             return Ok(Self { projection: None, datum: None, scale });
         }

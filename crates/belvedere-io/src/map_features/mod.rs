@@ -1,0 +1,13 @@
+//! Points, lines and polygons on the map, with their properties: GeoJSON, GeoPackage and Shapefile.
+
+#[cfg(feature = "gpkg")]
+mod geopackage;
+mod read;
+#[cfg(feature = "shp")]
+mod shapefile;
+#[cfg(feature = "gpkg")]
+mod wkb;
+mod write;
+
+pub use read::{FEATURE_EXTENSIONS, FeatureShape, MapFeature, read_features};
+pub use write::{FeatureCoordinates, PathLine, PolygonArea, Spot, write_areas, write_places};

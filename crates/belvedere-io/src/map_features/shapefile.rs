@@ -1,0 +1,112 @@
+//! Shapefile: points, lines and polygons, with the attributes of the table beside them.
+
+use crate::map_features::{FeatureShape, MapFeature};
+use crate::source::{Content, Source, SystemBeside};
+use belvedere_data::{Error, Result};
+use serde_json::{Map, Value};
+use shapefile::dbase::{FieldValue, Reader as TableReader, Record};
+use shapefile::record::polygon::{GenericPolygon, PolygonRing};
+use shapefile::{NO_DATA, Shape, ShapeReader};
+use std::path::Path;
+
+/// Reads the shapes of a file, of any coordinates, and the well-known text of their system from the file `.prj`.
+///
+/// # Errors
+/// [`Error::Io`], and [`Error::Malformed`] for a file that is no Shapefile, for surfaces in space, and without a file
+/// on this machine: its table and system lie beside it.
+pub(crate) fn read(source: &Source<'_>) -> Result<(Vec<MapFeature>, Option<SystemBeside>)> {
+    let path = source.name();
+    let wrong = |error: shapefile::Error| Error::malformed(path, format!("is no Shapefile: {error}"));
+    if !matches!(source.content, Content::Path) || crate::source::web_address(path).is_some() {
+        let what = "a Shapefile is read from a folder on this machine, since its table lies beside it";
+        return Err(Error::malformed(path, what));
+    }
+    let mut reader = ShapeReader::from_path(path).map_err(|error| match error {
+        shapefile::Error::IoError(error) => Error::io(path)(error),
+        other => wrong(other),
+    })?;
+    let records = records_beside(path)?;
+    let mut features = Vec::new();
+    for (number, shape) in reader.iter_shapes().enumerate() {
+        let properties = records.get(number).cloned().unwrap_or_default();
+        for shape in shapes_of(shape.map_err(wrong)?, path)? {
+            features.push(MapFeature { shape, properties: properties.clone() });
+        }
+    }
+    Ok((features, source.system_beside()))
+}
+
+/// Rows of the table beside a file; empty where there is none.
+fn records_beside(path: &Path) -> Result<Vec<Map<String, Value>>> {
+    let beside = ["dbf", "DBF"].map(|extension| path.with_extension(extension));
+    let Some(table) = beside.iter().find(|table| table.is_file()) else { return Ok(Vec::new()) };
+    let wrong = |error: shapefile::dbase::Error| Error::malformed(table, format!("is no table of dBASE: {error}"));
+    let mut reader = TableReader::from_path(table).map_err(wrong)?;
+    reader.iter_records().map(|record| Ok(properties_of(record.map_err(wrong)?))).collect()
+}
+
+fn properties_of(record: Record) -> Map<String, Value> {
+    let value = |value: FieldValue| -> Option<Value> {
+        Some(match value {
+            FieldValue::Character(text) => text?.trim().to_owned().into(),
+            FieldValue::Memo(text) => text.into(),
+            FieldValue::Numeric(number) => number?.into(),
+            FieldValue::Float(number) => f64::from(number?).into(),
+            FieldValue::Double(number) | FieldValue::Currency(number) => number.into(),
+            FieldValue::Integer(number) => number.into(),
+            FieldValue::Logical(is) => is?.into(),
+            FieldValue::Date(date) => {
+                let date = date?;
+                format!("{:04}-{:02}-{:02}", date.year(), date.month(), date.day()).into()
+            }
+            _ => return None,
+        })
+    };
+    record.into_iter().filter_map(|(name, field)| Some((name, value(field)?))).collect()
+}
+
+fn shapes_of(shape: Shape, path: &Path) -> Result<Vec<FeatureShape>> {
+    let flat = |x: f64, y: f64| [x, y, f64::NAN];
+    // no height is a number below all
+    let high = |x: f64, y: f64, z: f64| [x, y, if z > NO_DATA { z } else { f64::NAN }];
+    let points = |points: Vec<[f64; 3]>| points.into_iter().map(FeatureShape::Point).collect();
+    Ok(match shape {
+        Shape::NullShape => Vec::new(),
+        Shape::Point(p) => points(vec![flat(p.x, p.y)]),
+        Shape::PointM(p) => points(vec![flat(p.x, p.y)]),
+        Shape::PointZ(p) => points(vec![high(p.x, p.y, p.z)]),
+        Shape::Multipoint(all) => points(all.points().iter().map(|p| flat(p.x, p.y)).collect()),
+        Shape::MultipointM(all) => points(all.points().iter().map(|p| flat(p.x, p.y)).collect()),
+        Shape::MultipointZ(all) => points(all.points().iter().map(|p| high(p.x, p.y, p.z)).collect()),
+        Shape::Polyline(lines) => of_lines(lines.parts(), |p| flat(p.x, p.y)),
+        Shape::PolylineM(lines) => of_lines(lines.parts(), |p| flat(p.x, p.y)),
+        Shape::PolylineZ(lines) => of_lines(lines.parts(), |p| high(p.x, p.y, p.z)),
+        Shape::Polygon(polygon) => of_polygon(&polygon, |p| flat(p.x, p.y)),
+        Shape::PolygonM(polygon) => of_polygon(&polygon, |p| flat(p.x, p.y)),
+        Shape::PolygonZ(polygon) => of_polygon(&polygon, |p| high(p.x, p.y, p.z)),
+        Shape::Multipatch(_) => {
+            return Err(Error::malformed(path, "has surfaces in space; write it as points, lines or polygons"));
+        }
+    })
+}
+
+fn of_lines<P>(lines: &[Vec<P>], place: impl Fn(&P) -> [f64; 3]) -> Vec<FeatureShape> {
+    lines.iter().map(|line| FeatureShape::Line(line.iter().map(&place).collect())).collect()
+}
+
+/// Polygons of outer rings, each with the inner rings that follow it.
+fn of_polygon<P>(polygon: &GenericPolygon<P>, place: impl Fn(&P) -> [f64; 3]) -> Vec<FeatureShape> {
+    let mut found: Vec<Vec<Vec<[f64; 3]>>> = Vec::new();
+    for ring in polygon.rings() {
+        let (points, is_inner) = match ring {
+            PolygonRing::Outer(points) => (points, false),
+            PolygonRing::Inner(points) => (points, true),
+        };
+        let corners: Vec<[f64; 3]> = points.iter().map(&place).collect();
+        match found.last_mut().filter(|_| is_inner) {
+            Some(last) => last.push(corners),
+            None => found.push(vec![corners]),
+        }
+    }
+    found.into_iter().map(FeatureShape::Polygon).collect()
+}

@@ -1,0 +1,199 @@
+//! GeoPackage and Shapefile: the same features as GeoJSON, and what is refused.
+
+use belvedere_data::crs::Crs;
+use belvedere_data::frame::Frame;
+use belvedere_io::{
+    FeatureCoordinates, FeatureShape, MapFeature, Output, PathLine, PolygonArea, Source, Spot, read_features,
+    read_footprints, write_areas, write_places,
+};
+use serde_json::{Map, Value, json};
+use std::io::Cursor;
+
+fn properties(value: Value) -> Map<String, Value> {
+    value.as_object().unwrap().clone()
+}
+
+fn rd() -> Crs {
+    Crs::from_epsg(28_992).unwrap()
+}
+
+fn written(name: &str, write: impl FnOnce(Output<'_>) -> FeatureCoordinates) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    write(Output::writer(name, &mut bytes));
+    bytes.into_inner()
+}
+
+fn areas() -> Vec<PolygonArea> {
+    let ring = |[x, y]: [f64; 2], side: f64| vec![[x, y], [x + side, y], [x + side, y + side], [x, y + side], [x, y]];
+    let hole = ring([155_002.0, 463_002.0], 2.0).into_iter().rev().collect();
+    vec![
+        PolygonArea {
+            polygons: vec![vec![ring([155_000.0, 463_000.0], 10.0), hole]],
+            properties: properties(json!({"name": "garden", "area_m2": 96, "is_open": true})),
+        },
+        PolygonArea {
+            polygons: vec![vec![ring([155_100.0, 463_000.0], 5.0)], vec![ring([155_110.0, 463_000.0], 5.0)]],
+            properties: properties(json!({"name": "O'Hara \"yard\"", "area_m2": 50.5})),
+        },
+    ]
+}
+
+/// Greatest difference of coordinates of two features of the same shape, metres.
+fn difference(a: &MapFeature, b: &MapFeature) -> f64 {
+    let corners = |feature: &MapFeature| match &feature.shape {
+        FeatureShape::Point(place) => vec![*place],
+        FeatureShape::Line(corners) => corners.clone(),
+        FeatureShape::Polygon(rings) => rings.concat(),
+    };
+    let (a, b) = (corners(a), corners(b));
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(&b).flat_map(|(a, b)| (0..2).map(|i| (a[i] - b[i]).abs())).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_geopackage_has_the_features_of_the_geojson() {
+    let of = |name: &str| written(name, |output| write_areas(output, &areas(), &rd()).unwrap());
+    let (json, package) = (of("areas.geojson"), of("areas.gpkg"));
+    assert!(package.starts_with(b"SQLite format 3\0"));
+    assert_eq!(package, of("areas.gpkg"), "the same features are the same bytes");
+    let read = |name: &str, bytes: &[u8], crs: &Crs| read_features(Source::bytes(name, bytes), crs);
+    let by_json = read("areas.geojson", &json, &rd()).unwrap();
+    let by_package = read("areas.gpkg", &package, &rd()).unwrap();
+    assert_eq!([by_json.len(), by_package.len()], [3, 3]);
+    for (a, b) in by_json.iter().zip(&by_package) {
+        // seven decimals of a degree
+        assert!(difference(a, b) < 0.02, "{}", difference(a, b));
+        assert_eq!(a.properties["name"], b.properties["name"]);
+        assert_eq!(a.properties["area_m2"].as_f64(), b.properties["area_m2"].as_f64());
+    }
+    assert_eq!(by_package[1].properties["name"], "O'Hara \"yard\"");
+    let FeatureShape::Polygon(rings) = &by_package[0].shape else { panic!("a polygon") };
+    assert_eq!((rings.len(), rings[0][0][0], rings[0][0][1]), (2, 155_000.0, 463_000.0));
+    // another plane leads nowhere
+    let error = read("areas.gpkg", &package, &Crs::from_epsg(25_832).unwrap()).unwrap_err().to_string();
+    assert!(error.contains("28992") && error.contains("WGS 84"), "{error}");
+    // outlines of buildings too
+    let frame = Frame { origin: [155_000.0, 463_000.0, 0.0], crs: rd() };
+    let footprints = read_footprints(Source::bytes("areas.gpkg", &package), &frame).unwrap();
+    assert_eq!(footprints.iter().map(|one| one.polygons.len()).collect::<Vec<_>>(), [1, 2]);
+}
+
+#[test]
+fn places_and_lines_keep_their_heights_in_a_geopackage() {
+    let spots = [Spot { place: [155_000.5, 463_000.25, 12.5], properties: properties(json!({"id": 7})) }];
+    let lines =
+        [PathLine { places: vec![[155_000.0, 463_000.0, 1.0], [155_010.0, 463_000.0, 2.0]], ..PathLine::default() }];
+    let bytes = written("places.gpkg", |output| write_places(output, &spots, &lines, &rd()).unwrap());
+    let found = read_features(Source::bytes("places.gpkg", &bytes), &rd()).unwrap();
+    assert_eq!(found[0].shape, FeatureShape::Point([155_000.5, 463_000.25, 12.5]));
+    assert_eq!(found[0].properties["id"], 7);
+    assert_eq!(found[1].shape, FeatureShape::Line(vec![[155_000.0, 463_000.0, 1.0], [155_010.0, 463_000.0, 2.0]]));
+    // and nothing at all is a table without rows
+    let bytes = written("none.gpkg", |output| write_areas(output, &[], &Crs::default()).unwrap());
+    assert_eq!(read_features(Source::bytes("none.gpkg", &bytes), &rd()).unwrap(), []);
+}
+
+#[test]
+fn damaged_geopackages_are_refused_or_read() {
+    let bytes = written("areas.gpkg", |output| write_areas(output, &areas(), &rd()).unwrap());
+    let names = |bytes: &[u8]| read_features(Source::bytes("damaged.gpkg", bytes), &rd()).map(|found| found.len());
+    for end in [0, 1, 17, 99, 100, 4096, bytes.len() / 2, bytes.len() - 1] {
+        if let Err(error) = names(&bytes[..end]) {
+            assert!(error.to_string().starts_with("damaged.gpkg"), "{error}");
+        }
+    }
+    assert!(names(b"not a database at all, but long enough to look like one").is_err());
+    let mut refused = 0;
+    for i in 0..3000_u64 {
+        let mut damaged = bytes.clone();
+        for k in 0..4 {
+            let at = belvedere_data::random::uniform(3, 8 * i + k) * damaged.len() as f64;
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place in the file")]
+            let at = at as usize;
+            damaged[at] ^= 1 << (i % 8);
+        }
+        refused += usize::from(names(&damaged).is_err());
+    }
+    assert!(refused > 100, "{refused}");
+}
+
+/// Writes a Shapefile of two polygons, of which the first has a hole, into a folder; returns its path.
+fn shapefile_in(folder: &std::path::Path) -> std::path::PathBuf {
+    use shapefile::dbase::{FieldName, FieldValue, Record, TableWriterBuilder};
+    use shapefile::record::polygon::PolygonRing;
+    use shapefile::{Point, Polygon, Writer};
+    let path = folder.join("yards.shp");
+    let ring = |[x, y]: [f64; 2], side: f64| {
+        [[x, y], [x, y + side], [x + side, y + side], [x + side, y], [x, y]].map(|[x, y]| Point::new(x, y)).to_vec()
+    };
+    let hole = ring([155_002.0, 463_002.0], 2.0).into_iter().rev().collect();
+    let polygons = [
+        Polygon::with_rings(vec![PolygonRing::Outer(ring([155_000.0, 463_000.0], 10.0)), PolygonRing::Inner(hole)]),
+        Polygon::new(PolygonRing::Outer(ring([155_100.0, 463_000.0], 5.0))),
+    ];
+    let table = TableWriterBuilder::new()
+        .add_character_field(FieldName::try_from("name").unwrap(), 20)
+        .add_numeric_field(FieldName::try_from("height").unwrap(), 10, 2);
+    let mut writer = Writer::from_path(&path, table).unwrap();
+    for (polygon, name) in polygons.iter().zip(["garden", "yard"]) {
+        let mut record = Record::default();
+        record.insert("name".to_owned(), FieldValue::Character(Some(name.to_owned())));
+        record.insert("height".to_owned(), FieldValue::Numeric(Some(2.5)));
+        writer.write_shape_and_record(polygon, &record).unwrap();
+    }
+    path
+}
+
+#[test]
+fn a_shapefile_has_its_attributes_and_its_system_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = shapefile_in(folder.path());
+    let found = read_features(&path, &rd()).unwrap();
+    let FeatureShape::Polygon(rings) = &found[0].shape else { panic!("a polygon") };
+    assert_eq!((found.len(), rings.len(), rings[1].len()), (2, 2, 5));
+    assert_eq!((rings[0][0][0], rings[0][0][1], rings[0][0][2].is_nan()), (155_000.0, 463_000.0, true));
+    assert_eq!((&found[1].properties["name"], found[1].properties["height"].as_f64()), (&json!("yard"), Some(2.5)));
+    // a system beside it that is another one
+    let utm = "PROJCS[\"ETRS89 / UTM zone 32N\",GEOGCS[\"ETRS89\",DATUM[\"D_ETRS_1989\",SPHEROID[\"GRS_1980\",6378137,\
+               298.257222101]],PRIMEM[\"Greenwich\",0],UNIT[\"Degree\",0.017453292519943295]],PROJECTION[\"Transverse_Mercator\"],\
+               PARAMETER[\"latitude_of_origin\",0],PARAMETER[\"central_meridian\",9],PARAMETER[\"scale_factor\",0.9996],\
+               PARAMETER[\"false_easting\",500000],PARAMETER[\"false_northing\",0],UNIT[\"Meter\",1]]";
+    std::fs::write(path.with_extension("prj"), utm).unwrap();
+    let error = read_features(&path, &rd()).unwrap_err().to_string();
+    assert!(error.contains("yards.shp") && error.contains("UTM zone 32N"), "{error}");
+    std::fs::write(path.with_extension("prj"), "nonsense").unwrap();
+    assert!(read_features(&path, &rd()).unwrap_err().to_string().contains("yards.prj"));
+    std::fs::remove_file(path.with_extension("prj")).unwrap();
+    std::fs::remove_file(path.with_extension("dbf")).unwrap();
+    assert!(read_features(&path, &rd()).unwrap()[0].properties.is_empty());
+    let error = read_features(folder.path().join("none.shp"), &rd()).unwrap_err().to_string();
+    assert!(error.contains("none.shp"), "{error}");
+}
+
+#[test]
+fn damaged_shapefiles_are_refused_or_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = shapefile_in(folder.path());
+    for extension in ["shp", "dbf"] {
+        let own = path.with_extension(extension);
+        let bytes = std::fs::read(&own).unwrap();
+        for i in 0..1000_u64 {
+            let mut damaged = bytes.clone();
+            if i % 10 == 0 {
+                damaged.truncate(usize::try_from(i).unwrap() * bytes.len() / 1000);
+            }
+            for k in 0..3 {
+                let at = belvedere_data::random::uniform(4, 8 * i + k) * damaged.len() as f64;
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place in the file")]
+                if let Some(byte) = damaged.get_mut(at as usize) {
+                    *byte ^= 1 << (i % 8);
+                }
+            }
+            std::fs::write(&own, &damaged).unwrap();
+            if let Err(error) = read_features(&path, &rd()) {
+                assert!(error.to_string().contains("yards."), "{error}");
+            }
+        }
+        std::fs::write(&own, &bytes).unwrap();
+    }
+}
