@@ -40,10 +40,10 @@ pub const FEATURE_EXTENSIONS: [&str; 4] = ["geojson", "json", "gpkg", "shp"];
 /// are in the system of the cloud, or in longitude and latitude.
 ///
 /// Coordinates of GeoJSON are longitude and latitude of WGS 84 (RFC 7946) unless the file names a system in the older
-/// member `crs`. Longitude and latitude of another datum are converted to WGS 84; a plane must be that of the cloud. In
-/// a file without that member, coordinates that cannot be longitude and latitude are taken as those of the cloud's file.
-/// So are all if the cloud has no location on earth. Heights are in the unit of the cloud's heights. Features without
-/// geometry are skipped.
+/// member `crs`. Longitude and latitude of another datum are converted to WGS 84; a plane must be that of the cloud.
+/// In a file without that member, coordinates that cannot be longitude and latitude are taken as those of the cloud's
+/// file. So are all if the cloud has no location on earth. Heights are in the unit of the cloud's heights. Features
+/// without geometry are skipped.
 ///
 /// # Errors
 /// - [`Error::Io`].
