@@ -8,8 +8,8 @@ const LINE_HEIGHT: usize = (HEIGHT + 4) * SCALE;
 const MARGIN: usize = 8 * SCALE;
 /// Rows of names above towers at most: more names than fit are drawn over each other.
 const NAME_ROWS: usize = 5;
-/// Maximum rows above the level of the eye.
-const MAX_ABOVE: f64 = 1400.0;
+/// Maximum rows above and below the level of the eye: what is farther up or down is cut.
+const MAX_ROWS: f64 = 1400.0;
 const SKY: [u8; 3] = [238, 244, 250];
 const NEAR: [u8; 3] = [152, 170, 122];
 const FAR: [u8; 3] = [206, 216, 226];
@@ -40,7 +40,7 @@ pub struct WirelinePlane {
     pub azimuths: Vec<(f64, String)>,
     /// Rows and texts of elevations.
     pub elevations: Vec<(f64, String)>,
-    /// Rows below the level of the eye.
+    /// Rows below the level of the eye at least.
     pub below: f64,
     /// Rows above the level of the eye at least.
     pub above: f64,
@@ -124,9 +124,10 @@ fn draw_plane(plane: &WirelinePlane) -> Picture {
     let names = placed_names(&plane.towers, columns);
     let top = (1 + names.iter().map(|name| name.row).max().unwrap_or(0)) * LINE_HEIGHT;
     let left = MARGIN + text_width("-00°", SCALE) + 3 * SCALE;
-    let highest = plane.towers.iter().map(|tower| tower.rows[1]).fold(plane.above, f64::max).min(MAX_ABOVE);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 2000 rows")]
-    let [above, below] = [highest, plane.below].map(|rows| rows.ceil() as usize);
+    let highest = plane.towers.iter().map(|tower| tower.rows[1]).fold(plane.above, f64::max).min(MAX_ROWS);
+    let lowest = plane.towers.iter().map(|tower| -tower.rows[0]).fold(plane.below, f64::max).min(MAX_ROWS);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 2800 rows")]
+    let [above, below] = [highest, lowest].map(|rows| rows.ceil() as usize);
     let bottom = top + above + below;
     let width = left + columns + MARGIN;
     let mut sheet = Sheet {
@@ -154,14 +155,14 @@ fn draw_surroundings(sheet: &mut Sheet, plane: &WirelinePlane) {
         let pieces = plane.terrain.get(column).map_or(&[][..], Vec::as_slice);
         let at = sheet.left + column;
         let before = pieces.partition_point(|[_, distances]| distances[1] < range);
-        draw_terrain(sheet, (at, plane.below), pieces, before..pieces.len());
+        draw_terrain(sheet, at, pieces, before..pieces.len());
         if range.is_finite() {
-            sheet.fill(at, [-plane.below, skyline], 1, SOLID);
+            sheet.fill(at, [-MAX_ROWS, skyline], 1, SOLID);
             let beside = column.checked_sub(1).and_then(|before| plane.skyline.get(before));
-            let beside = beside.map_or(skyline, |[row, _]| *row).max(-plane.below);
+            let beside = beside.map_or(skyline, |[row, _]| *row).max(-MAX_ROWS);
             sheet.fill(at, [skyline.min(beside) - 1.0, skyline.max(beside)], 1, SOLID_EDGE);
         }
-        draw_terrain(sheet, (at, plane.below), pieces, 0..before);
+        draw_terrain(sheet, at, pieces, 0..before);
     }
     let level = [0.0, 0.0];
     for column in (sheet.left..sheet.right).step_by(12) {
@@ -170,16 +171,11 @@ fn draw_surroundings(sheet: &mut Sheet, plane: &WirelinePlane) {
 }
 
 /// Draws pieces of terrain in a column, the far ones first: each down to the lower edge, which nearer ones cover.
-fn draw_terrain(
-    sheet: &mut Sheet,
-    (column, below): (usize, f64),
-    pieces: &[[[f64; 2]; 2]],
-    which: std::ops::Range<usize>,
-) {
+fn draw_terrain(sheet: &mut Sheet, column: usize, pieces: &[[[f64; 2]; 2]], which: std::ops::Range<usize>) {
     let [near, far] = COLOR_DISTANCES.map(f64::ln);
     let share = |distance: f64| ((distance.max(1.0).ln() - near) / (far - near)).clamp(0.0, 1.0);
     for [rows, distances] in pieces[which.clone()].iter().rev() {
-        sheet.fill(column, [-below, rows[1]], 1, mixed(NEAR, FAR, share(distances[1])));
+        sheet.fill(column, [-MAX_ROWS, rows[1]], 1, mixed(NEAR, FAR, share(distances[1])));
     }
     // last, since rounding lets a piece reach a row into the one behind
     for number in which {
@@ -225,6 +221,7 @@ fn draw_tower(sheet: &mut Sheet, tower: &DrawnTower) {
 /// A name above a plane.
 struct Name<'a> {
     tower: &'a DrawnTower,
+    label: String,
     /// Pixels from the left edge of the plane.
     left: usize,
     /// Row of text, the lowest first.
@@ -237,34 +234,36 @@ fn placed_names<'a>(towers: &'a [DrawnTower], columns: usize) -> Vec<Name<'a>> {
     order.sort_by(|a, b| a.column.total_cmp(&b.column));
     let mut ends = [0; NAME_ROWS];
     let place = |tower: &'a DrawnTower| {
-        let width = text_width(&tower.label, SCALE);
+        let label = fitted(&tower.label, columns, SCALE);
+        let width = text_width(&label, SCALE);
         let left = (tower.column + columns as f64 / 2.0 - width as f64 / 2.0).max(0.0);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the plane")]
         let left = (left as usize).min(columns.saturating_sub(width));
         let row = ends.iter().position(|end| *end <= left).unwrap_or(NAME_ROWS - 1);
         ends[row] = left + width + 4 * SCALE;
-        Name { tower, left, row }
+        Name { tower, label, left, row }
     };
     order.into_iter().map(place).collect()
 }
 
 /// Draws names, with a line down to each tip.
 fn draw_names(sheet: &mut Sheet, names: &[Name<'_>]) {
-    for Name { tower, left, row } in names {
+    for Name { tower, label, left, row } in names {
         let Some(column) = sheet.column(tower.column) else { continue };
         let top = sheet.top - (row + 1) * LINE_HEIGHT + SCALE;
         let color = if tower.visible.is_empty() { FAINT } else { INK };
         let from = top + HEIGHT * SCALE + SCALE;
         let tip = sheet.row(tower.rows[1]);
         sheet.picture.fill_rectangle([column, from], [1, tip.saturating_sub(from + 2)], FAINT);
-        draw_text(&mut sheet.picture, sheet.left + left, top, &tower.label, SCALE, color);
+        draw_text(&mut sheet.picture, sheet.left + left, top, label, SCALE, color);
     }
 }
 
 fn draw_scales(sheet: &mut Sheet, plane: &WirelinePlane) {
     let (left, bottom) = (sheet.left, sheet.bottom);
     for (row, text) in &plane.elevations {
-        if !(-plane.below..=plane.above.max(0.0)).contains(row) {
+        let on_sheet = sheet.level - row;
+        if !(sheet.top as f64..=sheet.bottom as f64).contains(&on_sheet) {
             continue;
         }
         let row = sheet.row(*row);

@@ -151,8 +151,8 @@ pub use las::{LasHead, read_las_head};
 #[cfg(feature = "las")]
 pub use las_results::{PointResults, has_point_results, read_point_results};
 pub use map_features::{
-    FEATURE_EXTENSIONS, FeatureCoordinates, FeatureShape, MapFeature, PathLine, PolygonArea, Spot, read_features,
-    write_areas, write_places,
+    FEATURE_EXTENSIONS, FeatureCoordinates, FeatureShape, MapFeature, PathLine, PolygonArea, Spot, holds_polygons,
+    read_features, write_areas, write_places,
 };
 pub use mesh::{is_mesh, read_mesh, read_mesh_in};
 pub use observers::{ObserverRow, ObserverRows, RowsAre, property, read_observers};

@@ -50,8 +50,8 @@ def test_wirelines_are_pictures_and_a_table_of_each_place_and_tower(scene, folde
     places = [(155030.0, 463000.0, 90.0), (154980.0, 463000.0, 90.0)]
     with pytest.warns(belvedere.BelvedereWarning, match="beyond the cloud"):
         seen = scene.towers(TOWERS, targets=places, wirelines=folder / "views")
-    assert {path.name for path in (folder / "views").iterdir()} == {"towers.csv", "wireline_1.png", "wireline_2.png"}
-    table = pandas.read_csv(folder / "views" / "towers.csv")
+    assert {path.name for path in (folder / "views").iterdir()} == {"wirelines.csv", "wireline_1.png", "wireline_2.png"}
+    table = pandas.read_csv(folder / "views" / "wirelines.csv")
     assert list(table["tower"]) == TOWERS["name"] * 2
     assert table.groupby("place")["visible_m"].sum().to_numpy() == pytest.approx(seen["metres"], abs=0.2)
     row = table.iloc[0]

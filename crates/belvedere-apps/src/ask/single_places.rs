@@ -3,7 +3,7 @@
 use super::observers::{Reach, Standing};
 use super::places::cells_of;
 use super::scene::Scene;
-use super::shadow::UNPROVEN;
+use super::shadow::{CASTER, UNPROVEN, caster_name};
 use super::{Context, Remark};
 use crate::shadow::LIT;
 use crate::targets::{CellLevel, CellParams, Measure, Targets, grid_around, set_on_terrain};
@@ -300,6 +300,11 @@ fn sentence(place: &PlaceSection, measures: &[Measure], row: usize) -> String {
 fn figure(measure: &Measure, value: f64, has_several_suns: bool) -> String {
     if measure.name == UNPROVEN {
         return if value > 0.0 { "unproven".to_owned() } else { String::new() };
+    }
+    if measure.name.starts_with(CASTER) {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of a caster")]
+        let number = value as u8;
+        return if number == 0 { String::new() } else { format!("shaded by: {}", caster_name(number, &[])) };
     }
     if measure.description == LIT {
         let found = match value {

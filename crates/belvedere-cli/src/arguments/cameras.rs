@@ -80,10 +80,11 @@ pub(crate) struct CamerasArguments {
 #[command(next_help_heading = "Candidates (one of)")]
 #[group(id = "candidate_places", required = true, multiple = false)]
 pub(crate) struct CandidatesArguments {
-    /// Places for cameras from a table with columns x and y (.csv), or points and lines (.geojson .gpkg .shp)
+    /// Places: a table (.csv), or points and lines (.geojson .gpkg .shp)
     ///
-    /// Columns or properties z, height, heading, tilt, fov, min_distance, max_distance, azimuth_from, azimuth_to,
-    /// elevation_from and elevation_to override the flags. The last four are the range of a camera that turns.
+    /// A table has the columns x and y. Columns or properties z, height, heading, tilt, fov, min_distance,
+    /// max_distance, azimuth_from, azimuth_to, elevation_from and elevation_to override the flags. The last four are
+    /// the range of a camera that turns.
     #[arg(long = "candidates", value_name = "FILE")]
     pub(crate) file: Option<PathBuf>,
     /// Places for cameras above the ground, in the middle of each cell of this side in metres

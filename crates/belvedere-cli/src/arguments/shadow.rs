@@ -25,10 +25,11 @@ pub(crate) struct ShadowArguments {
     pub(crate) trees: ThroughTreesArguments,
     #[command(flatten)]
     pub(crate) outputs: SkyOutputs,
-    /// Also say what casts each shadow: the first obstacle between the target and the sun
+    /// Also say what casts each shadow: building, trees, plan and so on
     ///
-    /// 0 sun, 1 building, 2 trees, 3 ground, 4 water, 5 other things, 6 terrain beyond the cloud, 7 the surface of the
-    /// target itself, 8 and more the meshes of --add. Needs classes of points.
+    /// The first obstacle between the target and the sun. 0 sun, 1 building, 2 trees, 3 ground, 4 water, 5 other
+    /// things, 6 terrain beyond the cloud, 7 the surface of the target itself, 8 and more the meshes of --add. Needs
+    /// classes of points.
     #[arg(long, help_heading = "Result")]
     pub(crate) casters: bool,
     /// Also write the shadows on a grid as areas (.geojson .gpkg): one for each sun; with --casters for each caster

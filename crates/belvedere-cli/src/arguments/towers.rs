@@ -40,7 +40,7 @@ pub(crate) struct TowersArguments {
     /// The same for eyes on the cells of --terrain within --max-distance: raster (.tif) or map (.png); repeatable
     #[arg(long, value_name = "OUT", requires = "terrain", help_heading = "Far terrain")]
     pub(crate) far_output: Vec<PathBuf>,
-    /// Folder for a picture of what each eye of --at or --targets sees of the towers, and towers.csv
+    /// Folder for a picture of what each eye of --at or --targets sees of the towers, and wirelines.csv
     ///
     /// Up to 100 eyes, which may stand on --terrain. Frames of 53.5 degrees, as in the guidance for wind farms, hold
     /// all towers: terrain, the skyline of the cloud, and the visible parts of towers and of the discs that blades

@@ -14,7 +14,7 @@ use belvedere::apps::shadow::{Edges, HALF_LIGHT};
 use belvedere::apps::targets::{Measure, Targets};
 use belvedere::figures::{MapLegend, MapPicture, Picture, map_picture, write_apng, write_png};
 use belvedere::ground::MapGrid;
-use belvedere::io::{PolygonArea, atomic, outlines, write_areas};
+use belvedere::io::{PolygonArea, atomic, is_mesh, outlines, write_areas};
 use belvedere::query::UnprovenAs;
 use belvedere::raster::Raster;
 use belvedere_tiles::SurveyCells;
@@ -173,6 +173,9 @@ fn check(arguments: &ShadowArguments, question: &ask::ShadowQuestion) -> Result<
     }
     if let Some(output) = &arguments.outlines {
         check_output("--outlines", output, &["geojson", "gpkg"])?;
+    }
+    if arguments.casters && arguments.places.places.targets.as_deref().is_some_and(is_mesh) {
+        return Err(Usage("--casters applies only to cells and points".to_owned()).into());
     }
     let needs_grid = arguments.film.is_some() || arguments.frames.is_some() || arguments.outlines.is_some();
     if needs_grid && !arguments.places.is_grid() {

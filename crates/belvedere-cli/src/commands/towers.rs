@@ -2,7 +2,7 @@
 
 use super::targets::{TargetOutput, remark_on_first};
 use super::viewshed::Sheet;
-use super::{check_output, extension};
+use super::{check_folder, check_output, extension};
 use crate::arguments::{Global, SkyPlaces, TowersArguments, Usage};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
@@ -82,16 +82,18 @@ fn question(arguments: &TowersArguments, rows: &[TowerRow]) -> Result<ask::Tower
 
 /// Refuses wirelines of cells, and other results among their files.
 fn check_wirelines(folder: &Path, places: &SkyPlaces, arguments: &TowersArguments) -> Result<()> {
-    if places.is_grid() {
+    if places.is_grid() || places.places.own {
         let what = "--wirelines needs places: --at X,Y or --targets FILE";
         return Err(Usage(what.to_owned()).into());
     }
-    let real = |path: &Path| std::path::absolute(path).ok();
+    check_folder(folder)?;
+    let real = |path: &Path| path.canonicalize().or_else(|_| std::path::absolute(path)).ok();
     let own = wireline_files(folder, MAX_WIRELINES);
-    let mut others = arguments.outputs.output.iter().chain(&arguments.far_output);
-    match others.find(|output| own.iter().any(|file| real(file) == real(output))) {
-        Some(output) => {
-            let what = format!("{}: a file of --wirelines has this name; choose another", output.display());
+    let inputs = std::iter::once(&arguments.towers).chain(&places.places.targets).chain(&places.far.terrain);
+    let mut others = arguments.outputs.output.iter().chain(&arguments.far_output).chain(inputs);
+    match others.find(|other| own.iter().any(|file| real(file) == real(other))) {
+        Some(other) => {
+            let what = format!("{}: a file of --wirelines has this name; choose another folder", other.display());
             Err(Usage(what).into())
         }
         None => Ok(()),

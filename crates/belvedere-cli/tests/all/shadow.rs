@@ -94,6 +94,16 @@ fn a_house_and_a_plan_cast_shadows_of_their_own() {
     };
     let cells = |number: f64| caster.iter().filter(|caster| **caster == number).count() as f64 * 0.25;
     assert_eq!([of("hall.obj"), of("building")], [cells(8.0), cells(1.0)]);
+    let [x, y, _] = at(7.0, 0.0, 0.0);
+    let run = place.run(&format!("shadow {HOUSE} --sun 90,45 --grid-north --casters --add hall.obj --at {x},{y}"));
+    assert!(run.stdout.contains("in shadow, shaded by: plan"), "{}", run.stdout);
+    // no sun casts no shadow
+    place.summary(&format!(
+        "shadow {HOUSE} --time 2026-06-21T01:00+02:00 --location 52,5 --cell 2 --casters -o night.csv"
+    ));
+    assert!(column(&place, "night.csv", "caster").iter().all(|caster| caster.is_nan()));
+    let run = place.run(&format!("shadow {HOUSE} --sun 90,45 --casters --targets hall.obj -o mesh.csv"));
+    assert!(run.status == 2 && run.stderr.contains("--casters applies only to cells and points"), "{}", run.stderr);
     let run = place.run(&format!("shadow house.laz {sun} --memory 1M -o lit.csv"));
     assert!(run.status > 0 && run.stderr.contains("--casters"), "{}", run.stderr);
 }

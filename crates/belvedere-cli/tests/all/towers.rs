@@ -55,7 +55,7 @@ fn wirelines_show_masts_from_places_and_list_them() {
     let place = place();
     let summary = place.summary(&format!("{TOWERS} --targets places.csv -o seen.csv --wirelines views"));
     assert_eq!(summary["wirelines_written"].as_array().unwrap().len(), 3);
-    let of = |name: &str| column(&place, "views/towers.csv", name);
+    let of = |name: &str| column(&place, "views/wirelines.csv", name);
     assert_eq!([of("place"), of("visible_m")[1..].to_vec()], [vec![1.0, 1.0, 2.0, 2.0], vec![0.0, 300.0, 40.0]]);
     let angle = (298.3_f64 / 212.0).atan().to_degrees();
     assert!((of("tip_deg")[0] - angle).abs() < 0.01, "{:?}", of("tip_deg"));
@@ -65,9 +65,13 @@ fn wirelines_show_masts_from_places_and_list_them() {
         let bytes = std::fs::read(place.path(&format!("views/wireline_{number}.png"))).unwrap();
         assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 5000);
     }
+    let run = place.run(&format!("{TOWERS} --targets places.csv -o seen.csv --wirelines masts.csv"));
+    assert!(run.status > 0 && run.stderr.contains("a folder is needed"), "{}", run.stderr);
     for (rest, words) in [
         ("--cell 1 -o seen.tif --wirelines views", "--at X,Y or --targets"),
-        ("--targets places.csv -o views/towers.csv --wirelines views", "choose another"),
+        ("--self -o seen.csv --wirelines views", "--at X,Y or --targets"),
+        ("--targets places.csv -o views/wirelines.csv --wirelines views", "choose another"),
+        ("--targets views/wirelines.csv -o seen.csv --wirelines views", "choose another"),
     ] {
         let run = place.run(&format!("{TOWERS} {rest}"));
         assert!(run.status == 2 && run.stderr.contains(words), "{}", run.stderr);

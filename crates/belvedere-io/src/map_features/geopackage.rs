@@ -4,7 +4,7 @@
 //! OGC 12-128r19, GeoPackage 1.4.
 
 use super::wkb;
-use crate::source::Source;
+use crate::source::{Content, Source, web_address};
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Result};
 use geojson::{Feature, Geometry, GeometryValue};
@@ -16,6 +16,8 @@ use std::path::Path;
 /// Version of the format that is written, and the application that files of SQLite name: "GPKG".
 const USER_VERSION: i32 = 10_400;
 const APPLICATION_ID: i32 = 0x4750_4b47;
+/// First bytes of a file of SQLite.
+const HEAD: &[u8] = b"SQLite format 3\0";
 /// Place in the head of a file of SQLite of the two bytes that say whether changes may lie in a second file.
 const JOURNAL_BYTES: std::ops::Range<usize> = 18..20;
 /// Bytes of the box of a geometry by the three bits of its flags.
@@ -32,9 +34,13 @@ pub(crate) struct Layer {
 /// # Errors
 /// [`Error::Io`], and [`Error::Malformed`] for a file that is no GeoPackage, or has none or several such layers.
 pub(crate) fn read(source: Source<'_>) -> Result<Layer> {
+    refuse_unsaved(&source)?;
     let (name, mut bytes) = source.read_all()?;
     let path = name.as_path();
     let wrong = |error: rusqlite::Error| Error::malformed(path, format!("is no GeoPackage: {error}"));
+    if !bytes.starts_with(HEAD) {
+        return Err(Error::malformed(path, "is no GeoPackage"));
+    }
     if let Some(journal) = bytes.get_mut(JOURNAL_BYTES) {
         journal.fill(1);
     }
@@ -44,7 +50,7 @@ pub(crate) fn read(source: Source<'_>) -> Result<Layer> {
     base.pragma_update(None, "trusted_schema", false).map_err(wrong)?;
     let sql = "SELECT c.table_name, g.column_name, g.srs_id FROM gpkg_contents c JOIN gpkg_geometry_columns g \
                ON g.table_name = c.table_name JOIN sqlite_schema s ON s.name = c.table_name \
-               WHERE c.data_type = 'features' AND s.type = 'table' AND s.sql NOT LIKE '%VIRTUAL%' ORDER BY 1";
+               WHERE c.data_type = 'features' AND s.type = 'table' AND s.sql NOT LIKE 'CREATE VIRTUAL%' ORDER BY 1";
     let mut statement = base.prepare(sql).map_err(wrong)?;
     let layers: rusqlite::Result<Vec<(String, String, i64)>> =
         statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?))).map_err(wrong)?.collect();
@@ -63,7 +69,13 @@ pub(crate) fn read(source: Source<'_>) -> Result<Layer> {
             return Err(Error::malformed(path, what));
         }
     };
-    let system = system_of(&base, *system).map_err(wrong)?;
+    let system = match system_of(&base, *system).map_err(wrong)? {
+        Some(system) => system,
+        None => {
+            let what = format!("its reference system {system} is not described in it");
+            return Err(Error::UnusableCrs { path: path.to_owned(), what });
+        }
+    };
     let names = columns_in(&base, table).map_err(wrong)?;
     let mut statement = base.prepare(&format!("SELECT * FROM {}", quoted(table))).map_err(wrong)?;
     let Some(geometry_column) = names.iter().position(|name| name.eq_ignore_ascii_case(column)) else {
@@ -73,7 +85,7 @@ pub(crate) fn read(source: Source<'_>) -> Result<Layer> {
     let mut features = Vec::new();
     while let Some(row) = rows.next().map_err(wrong)? {
         if let ValueRef::Blob(bytes) = row.get_ref(geometry_column).map_err(wrong)? {
-            let what = "has a geometry that cannot be read";
+            let what = "has a geometry that is no point, line or polygon, such as a curve, or that is damaged";
             let geometry = geometry_of(bytes).ok_or_else(|| Error::malformed(path, what))?;
             features.push((geometry, properties_of(row, &names).map_err(wrong)?));
         }
@@ -111,12 +123,25 @@ fn geometry_of(bytes: &[u8]) -> Option<Geometry> {
     wkb::read(bytes.get(8 + box_bytes..)?)
 }
 
-/// The system with a number of the file: its code, or its well-known text.
-fn system_of(base: &Connection, number: i64) -> rusqlite::Result<Option<String>> {
+/// Refuses a file with changes that lie in a second one: it is open in another program.
+fn refuse_unsaved(source: &Source<'_>) -> Result<()> {
+    let path = source.name();
+    let mut beside = path.as_os_str().to_owned();
+    beside.push("-wal");
+    let is_path = matches!(source.content, Content::Path) && web_address(path).is_none();
+    match is_path && Path::new(&beside).metadata().is_ok_and(|found| found.len() > 0) {
+        true => Err(Error::malformed(path, "has changes that are not saved in it; close it in other programs first")),
+        false => Ok(()),
+    }
+}
+
+/// The system with a number of the file: its code, or its well-known text; `Some(None)` where it is undefined, and
+/// `None` for a number that the file does not describe.
+fn system_of(base: &Connection, number: i64) -> rusqlite::Result<Option<Option<String>>> {
     let sql = "SELECT organization, organization_coordsys_id, definition FROM gpkg_spatial_ref_sys WHERE srs_id = ?1";
     let found: Option<(String, i64, String)> =
         base.query_row(sql, [number], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?))).optional()?;
-    Ok(found.and_then(|(organization, code, definition)| match organization.eq_ignore_ascii_case("epsg") {
+    Ok(found.map(|(organization, code, definition)| match organization.eq_ignore_ascii_case("epsg") {
         true => Some(format!("EPSG:{code}")),
         false => (number > 0 && !definition.eq_ignore_ascii_case("undefined")).then_some(definition),
     }))
@@ -128,7 +153,9 @@ fn system_of(base: &Connection, number: i64) -> rusqlite::Result<Option<String>>
 /// [`Error::Malformed`] for geometries and columns that the format does not have.
 pub(crate) fn written(path: &Path, features: &[Feature], crs: &Crs) -> Result<Vec<u8>> {
     let wrong = |error: rusqlite::Error| Error::malformed(path, format!("cannot be written: {error}"));
-    let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let name = path.file_stem().map(|stem| stem.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let is_reserved = name.is_empty() || ["gpkg_", "sqlite_", "rtree_"].iter().any(|start| name.starts_with(start));
+    let name = if is_reserved { format!("layer_{name}") } else { name };
     let mut base = Connection::open_in_memory().map_err(wrong)?;
     let transaction = base.transaction().map_err(wrong)?;
     write_tables(&transaction, &name, features, crs).map_err(wrong)?;
@@ -209,22 +236,22 @@ fn add_system(base: &Connection, crs: &Crs) -> rusqlite::Result<i64> {
 fn add_features(base: &Connection, name: &str, features: &[Feature], system: i64) -> rusqlite::Result<()> {
     let columns = columns_of(features);
     let table = quoted(name);
-    let listed = |text: &dyn Fn(usize, &(String, &str)) -> String| -> String {
+    let listed = |text: &dyn Fn(usize, &Column) -> String| -> String {
         columns.iter().enumerate().map(|(number, column)| text(number, column)).collect()
     };
     base.execute_batch(&format!(
         "CREATE TABLE {table} (fid INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, geom BLOB{})",
-        listed(&|_, (column, kind)| format!(", {} {kind}", quoted(column)))
+        listed(&|_, column| format!(", {} {}", quoted(&column.name), column.kind.unwrap_or("TEXT")))
     ))?;
     let mut insert = base.prepare(&format!(
         "INSERT INTO {table} (geom{}) VALUES (?1{})",
-        listed(&|_, (column, _)| format!(", {}", quoted(column))),
+        listed(&|_, column| format!(", {}", quoted(&column.name))),
         listed(&|number, _| format!(", ?{}", number + 2))
     ))?;
     for feature in features {
         let Some(geometry) = &feature.geometry else { continue };
-        let cell = |(column, _): &(String, &str)| {
-            cell_of(feature.properties.as_ref().and_then(|properties| properties.get(column)))
+        let cell = |column: &Column| {
+            cell_of(feature.properties.as_ref().and_then(|properties| properties.get(&column.property)))
         };
         let geometry = blob_of(geometry, system).map_or(Cell::Null, Cell::Blob);
         insert.execute(params_from_iter(std::iter::once(geometry).chain(columns.iter().map(cell))))?;
@@ -245,25 +272,44 @@ fn cell_of(value: Option<&Value>) -> Cell {
     }
 }
 
-/// Columns of all properties, in the order in which they come first, with their types.
-fn columns_of(features: &[Feature]) -> Vec<(String, &'static str)> {
-    let mut columns: Vec<(String, &'static str)> = Vec::new();
-    for (name, value) in features.iter().filter_map(|feature| feature.properties.as_ref()).flatten() {
+/// A column for a property.
+struct Column {
+    /// Name of the property.
+    property: String,
+    /// Name of the column, which differs where another has it but for upper and lower case.
+    name: String,
+    kind: Option<&'static str>,
+}
+
+/// Columns of all properties, in the order in which they come first.
+fn columns_of(features: &[Feature]) -> Vec<Column> {
+    let mut columns: Vec<Column> = Vec::new();
+    for (property, value) in features.iter().filter_map(|feature| feature.properties.as_ref()).flatten() {
         let kind = match value {
-            Value::Null => continue,
-            Value::Bool(_) => "BOOLEAN",
-            Value::Number(number) if number.is_i64() => "INTEGER",
-            Value::Number(_) => "DOUBLE",
-            _ => "TEXT",
+            Value::Null => None,
+            Value::Bool(_) => Some("BOOLEAN"),
+            Value::Number(number) if number.is_i64() => Some("INTEGER"),
+            Value::Number(_) => Some("DOUBLE"),
+            _ => Some("TEXT"),
         };
-        match columns.iter_mut().find(|(known, _)| known.eq_ignore_ascii_case(name)) {
-            None => columns.push((name.clone(), kind)),
-            Some((_, known)) if *known == "INTEGER" && kind == "DOUBLE" => *known = "DOUBLE",
-            Some((_, known)) if *known != kind && (*known, kind) != ("DOUBLE", "INTEGER") => *known = "TEXT",
-            Some(_) => {}
-        }
+        let Some(known) = columns.iter_mut().find(|column| column.property == *property) else {
+            let is_taken = |name: &str| {
+                let own = ["fid", "geom"].into_iter();
+                own.chain(columns.iter().map(|column| column.name.as_str()))
+                    .any(|other| other.eq_ignore_ascii_case(name))
+            };
+            let numbered = (1..).map(|number: u32| format!("{property}_{number}"));
+            let name = std::iter::once(property.clone()).chain(numbered).find(|name| !is_taken(name));
+            columns.push(Column { property: property.clone(), name: name.unwrap_or_default(), kind });
+            continue;
+        };
+        known.kind = match (known.kind, kind) {
+            (None, other) | (other, None) => other,
+            (Some("INTEGER"), Some("DOUBLE")) | (Some("DOUBLE"), Some("INTEGER")) => Some("DOUBLE"),
+            (Some(a), Some(b)) if a == b => Some(a),
+            _ => Some("TEXT"),
+        };
     }
-    columns.retain(|(name, _)| !["fid", "geom"].iter().any(|own| name.eq_ignore_ascii_case(own)));
     columns
 }
 

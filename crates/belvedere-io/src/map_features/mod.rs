@@ -9,5 +9,5 @@ mod shapefile;
 mod wkb;
 mod write;
 
-pub use read::{FEATURE_EXTENSIONS, FeatureShape, MapFeature, read_features};
+pub use read::{FEATURE_EXTENSIONS, FeatureShape, MapFeature, holds_polygons, read_features};
 pub use write::{FeatureCoordinates, PathLine, PolygonArea, Spot, write_areas, write_places};

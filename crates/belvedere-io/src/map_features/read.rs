@@ -22,6 +22,18 @@ pub enum FeatureShape {
     Polygon(Vec<Vec<[f64; 3]>>),
 }
 
+impl FeatureShape {
+    /// Its corners, one ring after the other.
+    pub fn corners(&self) -> impl Iterator<Item = &[f64; 3]> {
+        let (one, line, rings): (_, &[[f64; 3]], &[Vec<[f64; 3]>]) = match self {
+            Self::Point(place) => (Some(place), &[], &[]),
+            Self::Line(corners) => (None, corners, &[]),
+            Self::Polygon(rings) => (None, &[], rings),
+        };
+        one.into_iter().chain(line).chain(rings.iter().flatten())
+    }
+}
+
 /// A shape with its properties in the file. Features of several shapes give one for each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapFeature {
@@ -55,47 +67,70 @@ pub const FEATURE_EXTENSIONS: [&str; 4] = ["geojson", "json", "gpkg", "shp"];
 pub fn read_features<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec<MapFeature>> {
     let source = source.into();
     let name = source.name().to_owned();
+    placed(raw_features(source)?, &name, crs)
+}
+
+/// Returns true if a file of features holds a polygon.
+///
+/// # Errors
+/// Those of [`read_features`], but for places that lead nowhere.
+pub fn holds_polygons<'a>(source: impl Into<Source<'a>>) -> Result<bool> {
+    let raw = raw_features(source.into())?;
+    Ok(raw.features.iter().any(|feature| matches!(feature.shape, FeatureShape::Polygon(_))))
+}
+
+/// Features as a file has them.
+struct RawFeatures {
+    features: Vec<MapFeature>,
+    /// Their system, where the file names one.
+    system: Option<Crs>,
+    /// Advice where that leads nowhere.
+    advice: &'static str,
+}
+
+fn raw_features(source: Source<'_>) -> Result<RawFeatures> {
     match source.extension().as_str() {
-        "gpkg" => of_geopackage(source, &name, crs),
-        "shp" => of_shapefile(&source, &name, crs),
-        _ => of_geojson(source, crs),
+        "gpkg" => of_geopackage(source),
+        "shp" => of_shapefile(&source),
+        _ => of_geojson(source),
     }
 }
 
 #[cfg(feature = "gpkg")]
-fn of_geopackage(source: Source<'_>, path: &Path, crs: &Crs) -> Result<Vec<MapFeature>> {
+fn of_geopackage(source: Source<'_>) -> Result<RawFeatures> {
+    let name = source.name().to_owned();
     let layer = super::geopackage::read(source)?;
-    let mut raw = Vec::new();
+    let mut features = Vec::new();
     for (geometry, properties) in layer.features {
-        of_geometry(geometry, &properties, path, &mut raw)?;
+        of_geometry(geometry, &properties, &name, &mut features)?;
     }
-    let given = layer.system.as_deref().map(|text| system_of_text(text, path)).transpose()?;
-    placed(raw, given, OTHER_ADVICE, path, crs)
+    let system = layer.system.as_deref().map(|text| system_of_text(text, &name)).transpose()?;
+    Ok(RawFeatures { features, system, advice: OTHER_ADVICE })
 }
 
 #[cfg(not(feature = "gpkg"))]
-fn of_geopackage(_: Source<'_>, path: &Path, _: &Crs) -> Result<Vec<MapFeature>> {
-    Err(Error::missing_feature(path, "gpkg"))
+fn of_geopackage(source: Source<'_>) -> Result<RawFeatures> {
+    Err(Error::missing_feature(source.name(), "gpkg"))
 }
 
 #[cfg(feature = "shp")]
-fn of_shapefile(source: &Source<'_>, path: &Path, crs: &Crs) -> Result<Vec<MapFeature>> {
+fn of_shapefile(source: &Source<'_>) -> Result<RawFeatures> {
     use crate::source::SystemBeside;
-    let (raw, beside) = super::shapefile::read(source)?;
-    let given = match beside {
+    let (features, beside) = super::shapefile::read(source)?;
+    let system = match beside {
         Some(SystemBeside::Known { crs, .. }) => Some(crs),
         Some(SystemBeside::Unreadable { found_in }) => {
             let what = format!("its reference system, in {found_in}, cannot be read; {OTHER_ADVICE}");
-            return Err(Error::UnusableCrs { path: path.to_owned(), what });
+            return Err(Error::UnusableCrs { path: source.name().to_owned(), what });
         }
         None => None,
     };
-    placed(raw, given, OTHER_ADVICE, path, crs)
+    Ok(RawFeatures { features, system, advice: OTHER_ADVICE })
 }
 
 #[cfg(not(feature = "shp"))]
-fn of_shapefile(_: &Source<'_>, path: &Path, _: &Crs) -> Result<Vec<MapFeature>> {
-    Err(Error::missing_feature(path, "shp"))
+fn of_shapefile(source: &Source<'_>) -> Result<RawFeatures> {
+    Err(Error::missing_feature(source.name(), "shp"))
 }
 
 /// The system of a code, or of well-known text.
@@ -112,7 +147,7 @@ const GEOJSON_ADVICE: &str = "write the file in WGS 84, as RFC 7946 requires";
 #[cfg(any(feature = "gpkg", feature = "shp"))]
 const OTHER_ADVICE: &str = "write the file in the system of the cloud, or in WGS 84";
 
-fn of_geojson(source: Source<'_>, crs: &Crs) -> Result<Vec<MapFeature>> {
+fn of_geojson(source: Source<'_>) -> Result<RawFeatures> {
     refuse_other_shapes(source.name())?;
     let (name, bytes) = source.read_text()?;
     let path = name.as_path();
@@ -145,17 +180,17 @@ fn of_geojson(source: Source<'_>, crs: &Crs) -> Result<Vec<MapFeature>> {
             what: format!("its reference system \"{name}\" is unknown; {GEOJSON_ADVICE}"),
         })
     });
-    placed(raw, given.transpose()?, GEOJSON_ADVICE, path, crs)
+    Ok(RawFeatures { features: raw, system: given.transpose()?, advice: GEOJSON_ADVICE })
 }
 
-/// The features in the system `crs` of the cloud; `given` is theirs, where the file names one.
-fn placed(
-    mut raw: Vec<MapFeature>,
-    given: Option<Crs>,
-    advice: &str,
-    path: &Path,
-    crs: &Crs,
-) -> Result<Vec<MapFeature>> {
+/// The features in the system `crs` of the cloud.
+fn placed(raw: RawFeatures, path: &Path, crs: &Crs) -> Result<Vec<MapFeature>> {
+    let RawFeatures { features: mut raw, system: given, advice } = raw;
+    let is_known = |place: &[f64; 3]| place[0].is_finite() && place[1].is_finite();
+    raw.retain(|feature| feature.shape.corners().next().is_some());
+    if raw.iter().any(|feature| !feature.shape.corners().all(is_known)) {
+        return Err(Error::malformed(path, "has coordinates that are not finite"));
+    }
     let placing = Placing::new(given, &raw, advice, path, crs)?;
     for feature in &mut raw {
         match &mut feature.shape {
@@ -265,12 +300,7 @@ impl Placing {
     fn new(given: Option<Crs>, features: &[MapFeature], advice: &str, path: &Path, crs: &Crs) -> Result<Self> {
         let scale = crs.metres_per_unit_xyz();
         let unusable = |what: String| Error::UnusableCrs { path: path.to_owned(), what };
-        let all = features.iter().flat_map(|feature| match &feature.shape {
-            FeatureShape::Point(p) => vec![*p],
-            FeatureShape::Line(corners) => corners.clone(),
-            FeatureShape::Polygon(rings) => rings.concat(),
-        });
-        let all: Vec<[f64; 3]> = all.collect();
+        let all: Vec<[f64; 3]> = features.iter().flat_map(|feature| feature.shape.corners().copied()).collect();
         let no_degrees = all.iter().find(|[x, y, _]| !(x.abs() <= 360.0 && y.abs() <= 90.0));
         let Some(given) = given else {
             let projection = if no_degrees.is_none() { crs.geographic_projection().ok() } else { None };

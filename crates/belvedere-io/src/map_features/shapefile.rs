@@ -25,24 +25,39 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Vec<MapFeature>, Option<Syste
         shapefile::Error::IoError(error) => Error::io(path)(error),
         other => wrong(other),
     })?;
+    let shapes = reader.iter_shapes().collect::<std::result::Result<Vec<Shape>, _>>().map_err(wrong)?;
     let records = records_beside(path)?;
+    // a deleted row is in the table no more, and its shape still there: all that follow would be another's
+    if let Some(records) = &records
+        && records.len() != shapes.len()
+    {
+        let what = format!(
+            "its table has {} rows for {} shapes; write it again, such as by ogr2ogr one.gpkg {}",
+            records.len(),
+            shapes.len(),
+            path.display()
+        );
+        return Err(Error::malformed(path, what));
+    }
+    let mut records = records.unwrap_or_default().into_iter();
     let mut features = Vec::new();
-    for (number, shape) in reader.iter_shapes().enumerate() {
-        let properties = records.get(number).cloned().unwrap_or_default();
-        for shape in shapes_of(shape.map_err(wrong)?, path)? {
+    for shape in shapes {
+        let properties = records.next().unwrap_or_default();
+        for shape in shapes_of(shape, path)? {
             features.push(MapFeature { shape, properties: properties.clone() });
         }
     }
     Ok((features, source.system_beside()))
 }
 
-/// Rows of the table beside a file; empty where there is none.
-fn records_beside(path: &Path) -> Result<Vec<Map<String, Value>>> {
+/// Rows of the table beside a file, if there is one.
+fn records_beside(path: &Path) -> Result<Option<Vec<Map<String, Value>>>> {
     let beside = ["dbf", "DBF"].map(|extension| path.with_extension(extension));
-    let Some(table) = beside.iter().find(|table| table.is_file()) else { return Ok(Vec::new()) };
+    let Some(table) = beside.iter().find(|table| table.is_file()) else { return Ok(None) };
     let wrong = |error: shapefile::dbase::Error| Error::malformed(table, format!("is no table of dBASE: {error}"));
     let mut reader = TableReader::from_path(table).map_err(wrong)?;
-    reader.iter_records().map(|record| Ok(properties_of(record.map_err(wrong)?))).collect()
+    let rows = reader.iter_records().map(|record| Ok(properties_of(record.map_err(wrong)?)));
+    rows.collect::<Result<Vec<_>>>().map(Some)
 }
 
 fn properties_of(record: Record) -> Map<String, Value> {

@@ -3,8 +3,8 @@
 use belvedere_data::crs::Crs;
 use belvedere_data::frame::Frame;
 use belvedere_io::{
-    FeatureCoordinates, FeatureShape, MapFeature, Output, PathLine, PolygonArea, Source, Spot, read_features,
-    read_footprints, write_areas, write_places,
+    FeatureCoordinates, FeatureShape, MapFeature, Output, PathLine, PolygonArea, Source, Spot, holds_polygons,
+    read_features, read_footprints, write_areas, write_places,
 };
 use serde_json::{Map, Value, json};
 use std::io::Cursor;
@@ -117,6 +117,43 @@ fn damaged_geopackages_are_refused_or_read() {
     assert!(refused > 100, "{refused}");
 }
 
+#[test]
+fn odd_names_and_columns_of_packages_are_kept() {
+    let place = [155_000.0, 463_000.0, 1.0];
+    let own = json!({"fid": 9, "geom": "g", "Name": "a", "name": "b", "nothing": null, "is_virtual": true});
+    let spots = [Spot { place, properties: properties(own) }];
+    for name in ["gpkg_contents.gpkg", "sqlite_x.gpkg", "A \"quoted\" name.GPKG"] {
+        let bytes = written(name, |output| write_places(output, &spots, &[], &rd()).unwrap());
+        let found = read_features(Source::bytes("odd.gpkg", &bytes), &rd()).unwrap();
+        let values = ["fid_1", "geom_1", "Name", "name_1", "is_virtual"].map(|key| found[0].properties[key].clone());
+        assert_eq!(values, [json!(9), json!("g"), json!("a"), json!("b"), json!(1)], "{name}");
+    }
+    // places without coordinates are refused in each format
+    let nowhere = [Spot { place: [f64::NAN, 463_000.0, 1.0], ..Spot::default() }];
+    let bytes = written("nowhere.gpkg", |output| write_places(output, &nowhere, &[], &rd()).unwrap());
+    let found = read_features(Source::bytes("nowhere.gpkg", &bytes), &rd());
+    assert!(found.is_ok_and(|found| found.is_empty()), "a point without coordinates is empty");
+    let line = [PathLine { places: vec![place, [1.0, f64::INFINITY, 0.0]], ..PathLine::default() }];
+    let bytes = written("nowhere.gpkg", |output| write_places(output, &[], &line, &rd()).unwrap());
+    let error = read_features(Source::bytes("nowhere.gpkg", &bytes), &rd()).unwrap_err().to_string();
+    assert!(error.contains("not finite"), "{error}");
+    assert!(
+        read_features(Source::bytes("empty.gpkg", b""), &rd()).unwrap_err().to_string().contains("is no GeoPackage")
+    );
+}
+
+#[test]
+fn a_package_with_changes_beside_it_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("areas.gpkg");
+    write_areas(&path, &areas(), &rd()).unwrap();
+    assert_eq!(read_features(&path, &rd()).unwrap().len(), 3);
+    assert!(holds_polygons(&path).unwrap());
+    std::fs::write(folder.path().join("areas.gpkg-wal"), b"changes").unwrap();
+    let error = read_features(&path, &rd()).unwrap_err().to_string();
+    assert!(error.contains("not saved"), "{error}");
+}
+
 /// Writes a Shapefile of two polygons, of which the first has a hole, into a folder; returns its path.
 fn shapefile_in(folder: &std::path::Path) -> std::path::PathBuf {
     use shapefile::dbase::{FieldName, FieldValue, Record, TableWriterBuilder};
@@ -164,7 +201,17 @@ fn a_shapefile_has_its_attributes_and_its_system_beside_it() {
     std::fs::write(path.with_extension("prj"), "nonsense").unwrap();
     assert!(read_features(&path, &rd()).unwrap_err().to_string().contains("yards.prj"));
     std::fs::remove_file(path.with_extension("prj")).unwrap();
-    std::fs::remove_file(path.with_extension("dbf")).unwrap();
+    assert!(holds_polygons(&path).unwrap());
+    // a deleted row is a star in its first byte, after 32 bytes of head and for each of two columns, and one at the end
+    let table = path.with_extension("dbf");
+    let mut bytes = std::fs::read(&table).unwrap();
+    let first = 32 * 3 + 1;
+    assert_eq!(bytes[first], b' ');
+    bytes[first] = b'*';
+    std::fs::write(&table, bytes).unwrap();
+    let error = read_features(&path, &rd()).unwrap_err().to_string();
+    assert!(error.contains("1 rows for 2 shapes"), "{error}");
+    std::fs::remove_file(&table).unwrap();
     assert!(read_features(&path, &rd()).unwrap()[0].properties.is_empty());
     let error = read_features(folder.path().join("none.shp"), &rd()).unwrap_err().to_string();
     assert!(error.contains("none.shp"), "{error}");

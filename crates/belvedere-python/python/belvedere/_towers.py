@@ -61,7 +61,7 @@ class Towers:
             Whether eyes stand on the cells of the terrain beyond the cloud, in place of `targets`.
         wirelines : path-like, optional
             Folder for a picture of what each of at most 100 `targets` sees of the towers, ``wireline_1.png`` and so on,
-            and for ``towers.csv``, a row for each target and tower.
+            and for ``wirelines.csv``, a row for each target and tower.
         progress : bool or callable, optional
 
         Returns

@@ -21,7 +21,7 @@ const LEGEND: &str = "Red: visible parts of towers, and of the areas that blades
 #[must_use]
 pub fn wireline_files(folder: &Path, count: usize) -> Vec<PathBuf> {
     let pictures = (1..=count).map(|place| folder.join(format!("wireline_{place}.png")));
-    std::iter::once(folder.join("towers.csv")).chain(pictures).collect()
+    std::iter::once(folder.join("wirelines.csv")).chain(pictures).collect()
 }
 
 /// Writes the picture of each wireline that has frames, and the table of all towers from all places, into `folder`,
@@ -127,7 +127,9 @@ fn write_rows(path: &Path, found: &TowerWirelines) -> Result<()> {
     let names: Vec<&str> = rows.iter().map(|(_, tower)| found.names[tower.number].as_str()).collect();
     let real = |of: &dyn Fn(&TowerOutline) -> f64| -> Vec<f64> { rows.iter().map(|(_, tower)| of(tower)).collect() };
     let optional = |of: Option<f64>| of.unwrap_or(f64::NAN);
-    let azimuths = real(&|tower| (tower.azimuth + found.north.of_grid).rem_euclid(TAU).to_degrees());
+    // what rounds to a whole turn is north
+    let rounded = |degrees: f64| if degrees >= 359.995 { 0.0 } else { degrees };
+    let azimuths = real(&|tower| rounded((tower.azimuth + found.north.of_grid).rem_euclid(TAU).to_degrees()));
     let distances = real(&|tower| tower.distance);
     let feet = real(&|tower| tower.elevations[0].to_degrees());
     let hubs = real(&|tower| optional(tower.hub).to_degrees());

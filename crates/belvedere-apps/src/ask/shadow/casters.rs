@@ -5,7 +5,7 @@ use super::super::{Context, NamedSun, Scene};
 use super::Light;
 use crate::shadow::HALF_LIGHT;
 use crate::sun_calendar::{SunObstacle, sun_lines};
-use crate::targets::Measure;
+use crate::targets::{Measure, TargetLayout};
 use crate::window_views::{ClassMeanings, SeenKind};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
@@ -62,10 +62,19 @@ pub(super) fn casters(
         let (parameter, value) = (Parameter::Mesh, format!("{meshes} of them"));
         return Err(Error::InvalidParameter { parameter, value, expected: "at most 247, where casters are wanted" });
     }
+    if matches!(light.targets.layout, TargetLayout::Surface(_)) {
+        let (parameter, value) = (Parameter::Targets, "faces of a mesh".to_owned());
+        return Err(Error::InvalidParameter {
+            parameter,
+            value,
+            expected: "cells or points, where casters are wanted",
+        });
+    }
     let kinds = kinds_of_balls(scene, &ClassMeanings::default(), context)?;
     let targets = &light.targets;
     let of_target = |(row, light_there): (usize, &f32), to_sun: [f64; 3]| {
-        if light_there.is_nan() {
+        // at night there are no shadows
+        if light_there.is_nan() || !(to_sun[2] > 0.0) {
             return f32::NAN;
         }
         if *light_there >= HALF_LIGHT {

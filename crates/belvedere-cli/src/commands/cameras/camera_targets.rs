@@ -11,7 +11,7 @@ use belvedere::Frame;
 use belvedere::apps::ask::{self, GridCells, Places, PrivatePlaces, Standing};
 use belvedere::apps::cameras::WeightedArea;
 use belvedere::apps::targets::MeshParams;
-use belvedere::io::{FeatureShape, ReadOptions, RowsAre, is_mesh, property, read_features};
+use belvedere::io::{FeatureShape, ReadOptions, RowsAre, holds_polygons, is_mesh, property, read_features};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -23,13 +23,12 @@ enum TargetFileKind {
     Cloud,
 }
 
-/// The type of a file. GeoJSON with polygons holds areas.
+/// The type of a file. Features with polygons are areas.
 fn kind(path: &Path) -> TargetFileKind {
     match extension(path).as_str() {
-        "geojson" | "gpkg" | "shp" => {
-            let text = std::fs::read_to_string(path).unwrap_or_default();
-            if text.contains("Polygon\"") { TargetFileKind::Areas } else { TargetFileKind::Places }
-        }
+        // a file that cannot be read is refused where it is read
+        "geojson" | "gpkg" | "shp" if holds_polygons(path).unwrap_or(false) => TargetFileKind::Areas,
+        "geojson" | "gpkg" | "shp" => TargetFileKind::Places,
         "csv" | "txt" => TargetFileKind::Places,
         _ if is_mesh(path) => TargetFileKind::Mesh,
         _ => TargetFileKind::Cloud,
@@ -91,7 +90,10 @@ pub(super) fn private(path: &Path, frame: &Frame, run: &mut CommandContext) -> R
         TargetFileKind::Places => Ok(PrivatePlaces::Points(points(path, frame, run)?.0)),
         _ => {
             let path = path.display();
-            Err(Usage(format!("--private {path}: use points (.csv .geojson) or polygons (.geojson)")).into())
+            Err(Usage(format!(
+                "--private {path}: use points (.csv .geojson .gpkg .shp) or polygons (.geojson .gpkg .shp)"
+            ))
+            .into())
         }
     }
 }

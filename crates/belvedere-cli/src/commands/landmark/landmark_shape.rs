@@ -94,7 +94,13 @@ fn polygons_of(path: &Path, frame: &Frame) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
             }
             vec![vec![ring]]
         }
-        _ => return Err(Usage(format!("--target-polygon {}: use .geojson .json .csv or .txt", path.display())).into()),
+        _ => {
+            return Err(Usage(format!(
+                "--target-polygon {}: use .geojson .json .gpkg .shp .csv or .txt",
+                path.display()
+            ))
+            .into());
+        }
     };
     if polygons.is_empty() {
         bail!("{}: the file has no polygon", path.display());
