@@ -153,15 +153,16 @@ fn geojson_without_a_reference_system_comes_with_a_warning() {
 fn shapes_of_other_formats_are_refused_with_the_conversion_to_run() {
     let place = Workplace::new();
     place.write_cloud("house.laz", &house());
-    for (flags, name) in [
-        ("viewshed house.laz -o out.tif --observers", "cameras.gpkg"),
-        ("isovist house.laz -o out.csv --observers", "cameras.shp"),
-        ("envelope house.laz -o out.tif --date 2024-03-21 --protect targets.csv --parcel", "parcel.gpkg"),
+    place.write("targets.csv", format!("x,y\n{EAST},{NORTH}\n"));
+    let parcel = "envelope house.laz -o out.tif --date 2024-03-21 --protect targets.csv --parcel";
+    for (flags, name, words) in [
+        ("viewshed house.laz -o out.tif --observers", "cameras.gpkg", "cameras.gpkg: is no GeoPackage"),
+        ("isovist house.laz -o out.csv --observers", "cameras.shp", "cameras.shp: is no Shapefile"),
+        ("isovist house.laz -o out.csv --observers", "cameras.kml", "ogr2ogr -f GeoJSON cameras.geojson cameras.kml"),
+        (parcel, "parcel.gml", "ogr2ogr -f GeoJSON parcel.geojson parcel.gml"),
     ] {
         place.write(name, "binary");
-        place.write("targets.csv", format!("x,y\n{EAST},{NORTH}\n"));
-        let conversion = format!("ogr2ogr -f GeoJSON {}.geojson {name}", name.split_once('.').unwrap().0);
-        place.refusal(1, &format!("{flags} {name}"), &[&conversion]);
+        place.refusal(1, &format!("{flags} {name}"), &[words]);
     }
 }
 
