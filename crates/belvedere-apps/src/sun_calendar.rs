@@ -127,8 +127,8 @@ pub fn sun_of_any<'a>(days: impl IntoIterator<Item = &'a CalendarDay>) -> Calend
     CalendarDay(joined)
 }
 
-/// Computes the lines from `place`, local metres, to suns in `directions`, (D, 3) unit vectors. A sun behind the plane
-/// of `normal` has the wall of the place before it. `kinds` are those of the balls of the model, (B).
+/// Computes the lines from `place`, local metres, to suns in `directions`, (D, 3) unit vectors: [`sun_obstacle`] of
+/// each.
 #[must_use]
 pub fn sun_lines(
     scene: &MedialScene,
@@ -138,17 +138,26 @@ pub fn sun_lines(
     directions: &[[f64; 3]],
 ) -> Vec<SunLine> {
     let of_direction = |&direction: &[f64; 3]| {
-        let obstacle = match normal {
-            Some(normal) if !(dot(normal, direction) > 0.0) => SunObstacle::OwnWall,
-            _ => obstacle_towards(scene, place, kinds, direction),
-        };
+        let obstacle = sun_obstacle(scene, place, normal, kinds, direction);
         let is_unproven = obstacle == SunObstacle::None && scene.is_unproven(place, direction, f64::INFINITY);
         SunLine { obstacle, is_unproven }
     };
     directions.iter().map(of_direction).collect()
 }
 
-fn obstacle_towards(scene: &MedialScene, place: [f64; 3], kinds: &[SeenKind], direction: [f64; 3]) -> SunObstacle {
+/// Returns the first obstacle between `place`, local metres, and a sun in `direction`, a unit vector. A sun behind the
+/// plane of `normal` has the wall of the place before it. `kinds` are those of the balls of the model, (B).
+#[must_use]
+pub fn sun_obstacle(
+    scene: &MedialScene,
+    place: [f64; 3],
+    normal: Option<[f64; 3]>,
+    kinds: &[SeenKind],
+    direction: [f64; 3],
+) -> SunObstacle {
+    if normal.is_some_and(|normal| !(dot(normal, direction) > 0.0)) {
+        return SunObstacle::OwnWall;
+    }
     match scene.first_block(place, direction, f64::INFINITY) {
         Some((Blocker::Ball(row), _)) => SunObstacle::Seen(kinds.get(row).copied().unwrap_or_default()),
         Some((Blocker::Patch(_), _)) => SunObstacle::Seen(SeenKind::Building),

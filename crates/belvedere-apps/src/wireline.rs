@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// Horizontal angle of a frame, degrees.
-pub const FRAME_ANGLE_DEG: f64 = 53.5;
+const FRAME_ANGLE_DEG: f64 = 53.5;
 /// Columns of a frame.
 pub const FRAME_COLUMNS: usize = 1600;
 /// Maximum angle between towers of one frame, degrees: a margin is left at both sides.
@@ -21,7 +21,7 @@ const SKYLINE_AZIMUTHS: usize = 7200;
 /// Vertical lines through a rotor at most.
 const MAX_ROTOR_LINES: usize = 201;
 
-/// What an eye sees of towers, and of what stands before and behind them.
+/// View of towers from an eye, with what stands before and behind them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wireline {
     /// The eye, local metres.
@@ -37,7 +37,7 @@ pub struct Wireline {
 pub struct WirelineFrame {
     /// Azimuth of its middle, radians from grid north.
     pub azimuth: f64,
-    /// Elevation of the skyline of the cloud in each column, radians, and its range, metres; −π/2 where nothing stands.
+    /// Elevation of the skyline of the cloud in each column, radians, and its range, metres; −π/2 where it is empty.
     pub skyline: Vec<[f64; 2]>,
     /// Visible pieces of the terrain beyond the cloud in each column, from near to far.
     pub terrain: Vec<Vec<VisibleTerrain>>,

@@ -59,5 +59,5 @@ def test_wirelines_are_pictures_and_a_table_of_each_place_and_tower(scene, folde
     assert row["tip_deg"] == pytest.approx(np.degrees(np.arctan2(60 - 90, np.hypot(40, 20))), abs=0.01)
     # nothing stands between that high
     assert row["disc_visible_share"] == 1.0 and np.isnan(table["hub_deg"][2])
-    with pytest.raises(belvedere.BelvedereError, match="give places as targets"):
+    with pytest.raises(belvedere.BelvedereError, match="single places, where wirelines are wanted"):
         scene.towers(TOWERS, cell=8, wirelines=folder / "views")

@@ -140,6 +140,9 @@ impl Ask for ShadowQuestion {
         control: &Control<'_>,
     ) -> Result<Answers<ShadowResults>> {
         self.how_sure.check_scene(scene)?;
+        if self.casters {
+            casters::check(places, scene)?;
+        }
         let suns = self.suns.resolve(&self.place, &scene.whereabouts(), context)?;
         let kinds: Vec<ShadowSun> = suns.iter().map(|sun| sun.sun).collect();
         let directions: Vec<[f64; 3]> = kinds.iter().flat_map(|sun| sun_directions(sun.to_sun, self.edges)).collect();
@@ -194,9 +197,8 @@ impl Ask for ShadowQuestion {
             measures.extend(self.how_sure.measures(probabilities, uncertain, &suffix));
         }
         if self.casters {
-            let lit = &measures[..suns.len()];
-            let casters = casters::casters(&suns, lit, &light, (scene, context), control)?;
-            measures.extend(casters);
+            let of_suns = (&suns[..], &measures[..suns.len()]);
+            measures.extend(casters::casters(of_suns, &light, suffix, (scene, context), control)?);
         }
         let title = suns.first().map(|sun| sun.title.clone()).unwrap_or_default();
         Ok(Answers::new(ShadowResults { on: light.titled(title), suns }, measures))

@@ -227,10 +227,6 @@ impl TowersQuestion {
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<TowerWirelines> {
-        if eyes.len() > MAX_WIRELINES {
-            let (parameter, value) = (Parameter::ObserverCount, eyes.len().to_string());
-            return Err(Error::InvalidParameter { parameter, value, expected: "at most 100, for wirelines" });
-        }
         let params = self.params();
         let view = |eye: &[f32; 3]| {
             let eye = eye.map(f64::from);
@@ -303,7 +299,19 @@ impl Ask for TowersQuestion {
     ) -> Result<Answers<TowersResults>> {
         let towers = self.stand(scene, context, control)?;
         let height = self.observer_height.unwrap_or(OBSERVER_HEIGHT);
+        if self.wirelines && matches!(places, Places::Cells(_) | Places::Own(_) | Places::Mesh(..)) {
+            let (parameter, value) = (Parameter::Targets, "cells, a whole cloud or a mesh".to_owned());
+            return Err(Error::InvalidParameter {
+                parameter,
+                value,
+                expected: "single places, where wirelines are wanted",
+            });
+        }
         let mut targets = places.at_height(height).targets_within(Reach::FarTerrain, scene, context, control)?;
+        if self.wirelines && targets.len() > MAX_WIRELINES {
+            let (parameter, value) = (Parameter::ObserverCount, targets.len().to_string());
+            return Err(Error::InvalidParameter { parameter, value, expected: "at most 100, for wirelines" });
+        }
         let blockers = scene.blockers(UnprovenAs::Reported, control)?;
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         Arc::make_mut(&mut targets).leave_out_inside(&blockers, context, control)?;

@@ -93,7 +93,8 @@ pub(crate) struct EnvelopeArguments {
     /// A sun direction: azimuth clockwise from true north and elevation, in degrees; repeatable
     ///
     /// See --grid-north.
-    #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, conflicts_with_all = ["date", "from", "to", "between"], help_heading = "Period")]
+    #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, conflicts_with_all = ["date", "from", "to", "between"],
+        help_heading = "Period")]
     pub(crate) sun: Vec<Numbers<2>>,
     #[command(flatten, next_help_heading = "Period")]
     pub(crate) north: NorthArguments,
@@ -126,15 +127,17 @@ pub(crate) struct ComfortArguments {
     #[command(flatten, next_help_heading = "Targets")]
     pub(crate) north: NorthArguments,
     /// Distance between targets along a route, in metres [default: 2]
-    #[arg(long = "distance-step-m", value_name = "M", requires = "route", conflicts_with = "windows", value_parser = above_zero::<f64>, allow_negative_numbers = true,
+    #[arg(long = "distance-step-m", value_name = "M", requires = "route", conflicts_with = "windows",
+        value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Targets")]
     pub(crate) route_step: Option<f64>,
     /// Height of targets on a route above the ground, in metres [default: 1.1, as defined for PET and UTCI]
-    #[arg(long = "target-height", value_name = "M", requires = "route", conflicts_with = "windows", allow_negative_numbers = true,
-        value_parser = height::<f32>, help_heading = "Targets")]
+    #[arg(long = "target-height", value_name = "M", requires = "route", conflicts_with = "windows",
+        allow_negative_numbers = true, value_parser = height::<f32>, help_heading = "Targets")]
     pub(crate) height: Option<f32>,
     /// Maximum side of the triangles that windows of a mesh are cut into, in metres [default: 0.5]
-    #[arg(long, value_name = "M", requires = "windows", conflicts_with = "route", value_parser = above_zero::<f64>, allow_negative_numbers = true,
+    #[arg(long, value_name = "M", requires = "windows", conflicts_with = "route",
+        value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Targets")]
     pub(crate) spacing: Option<f64>,
     /// Source of the ground heights: auto, classed, found or cloud=FILE

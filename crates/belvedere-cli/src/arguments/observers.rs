@@ -36,11 +36,13 @@ pub(crate) struct LineOfSightArguments {
     #[command(flatten)]
     pub(crate) how_sure: HowSureArguments,
     /// With --observer and --target: terrain and obstacles along the line (.csv .png)
-    #[arg(long, value_name = "OUT", requires = "from", conflicts_with_all = ["pairs", "random", "among"], help_heading = "Result")]
+    #[arg(long, value_name = "OUT", requires = "from", conflicts_with_all = ["pairs", "random", "among"],
+        help_heading = "Result")]
     pub(crate) profile_out: Option<PathBuf>,
     /// Distance between rows of the profile in metres [default: 1/1000 of the line, at least 0.1]
     #[arg(long = "distance-step-m", value_name = "M", requires = "profile_out",
-        conflicts_with_all = ["pairs", "random", "among"], value_parser = above_zero::<f64>, allow_negative_numbers = true,
+        conflicts_with_all = ["pairs", "random", "among"],
+        value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Result")]
     pub(crate) profile_step: Option<f64>,
     /// Source of the ground heights: auto, classed, found or cloud=FILE

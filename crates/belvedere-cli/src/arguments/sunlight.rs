@@ -15,7 +15,8 @@ pub(crate) struct SunCalendarArguments {
     #[command(flatten, next_help_heading = "Places")]
     pub(crate) north: NorthArguments,
     /// Height of --at above the ground, or above the roof that covers it, in metres [default: 0.1]
-    #[arg(long = "target-height", value_name = "M", requires = "at", conflicts_with = "windows", allow_negative_numbers = true, value_parser = height::<f32>,
+    #[arg(long = "target-height", value_name = "M", requires = "at", conflicts_with = "windows",
+        allow_negative_numbers = true, value_parser = height::<f32>,
         help_heading = "Places")]
     pub(crate) height: Option<f32>,
     /// Source of the ground heights: auto, classed, found or cloud=FILE

@@ -39,7 +39,8 @@ pub(crate) struct SurveyPlanArguments {
     /// Take each line of --candidates as one candidate: a flight line
     ///
     /// It is scanned from all of its places, and proves what these prove together.
-    #[arg(long, requires = "file", conflicts_with_all = ["on_ground", "on_roofs"], help_heading = "Candidates (one of)")]
+    #[arg(long, requires = "file", conflicts_with_all = ["on_ground", "on_roofs"],
+        help_heading = "Candidates (one of)")]
     pub(crate) whole_lines: bool,
     /// Height of the scanner for candidates without Z, in metres [default: 1.8]
     ///

@@ -96,8 +96,6 @@ class Towers:
         'm'
         """
         check_finite(observer_height=observer_height, max_distance=max_distance, refraction=refraction)
-        if wirelines is not None and targets is None:
-            raise wrong("wirelines", "without targets", "give places as targets")
         looking = _looking(
             observer_height=observer_height,
             max_distance=max_distance,

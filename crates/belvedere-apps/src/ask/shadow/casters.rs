@@ -1,11 +1,11 @@
 //! Casters of shadows: what stands between each target and the sun.
 
 use super::super::window_views::kinds_of_balls;
-use super::super::{Context, NamedSun, Scene};
+use super::super::{Context, NamedSun, Places, Scene};
 use super::Light;
 use crate::shadow::HALF_LIGHT;
-use crate::sun_calendar::{SunObstacle, sun_lines};
-use crate::targets::{Measure, TargetLayout};
+use crate::sun_calendar::{SunObstacle, sun_obstacle};
+use crate::targets::Measure;
 use crate::window_views::{ClassMeanings, SeenKind};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
@@ -46,59 +46,54 @@ fn number_of(obstacle: SunObstacle) -> u8 {
     }
 }
 
-/// The caster of the shadow of each sun on each target of `light`, of which the measures `lit` say what is in shadow.
+/// Refuses faces of a mesh, over which numbers would be averaged, and more meshes than there are numbers.
+pub(super) fn check(places: &Places, scene: &Scene) -> Result<()> {
+    let refused = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
+    if matches!(places, Places::Mesh(..)) {
+        let value = "faces of a mesh".to_owned();
+        return refused(Parameter::Targets, value, "cells or points, where casters are wanted");
+    }
+    match scene.model().added().map_or(0, |added| added.names().len()) {
+        count if count > usize::from(u8::MAX - FIRST_MESH) => {
+            refused(Parameter::AddedMesh, format!("{count} of them"), "at most 247, where casters are wanted")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The caster of the shadow of each sun on each target of `light`, where its measure of `lit` says shadow. Names end in
+/// what `suffix` says.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for too many meshes, those of [`kinds_of_balls`], and [`Error::Cancelled`].
+/// Those of [`kinds_of_balls`], and [`Error::Cancelled`].
 pub(super) fn casters(
-    suns: &[NamedSun],
-    lit: &[Measure],
+    (suns, lit): (&[NamedSun], &[Measure]),
     light: &Light,
+    suffix: impl Fn(&NamedSun) -> String,
     (scene, context): (&Scene, &mut Context),
     control: &Control<'_>,
 ) -> Result<Vec<Measure>> {
-    let meshes = scene.model().added().map_or(0, |added| added.names().len());
-    if meshes > usize::from(u8::MAX - FIRST_MESH) {
-        let (parameter, value) = (Parameter::Mesh, format!("{meshes} of them"));
-        return Err(Error::InvalidParameter { parameter, value, expected: "at most 247, where casters are wanted" });
-    }
-    if matches!(light.targets.layout, TargetLayout::Surface(_)) {
-        let (parameter, value) = (Parameter::Targets, "faces of a mesh".to_owned());
-        return Err(Error::InvalidParameter {
-            parameter,
-            value,
-            expected: "cells or points, where casters are wanted",
-        });
-    }
     let kinds = kinds_of_balls(scene, &ClassMeanings::default(), context)?;
     let targets = &light.targets;
     let of_target = |(row, light_there): (usize, &f32), to_sun: [f64; 3]| {
+        control.check()?;
         // at night there are no shadows
         if light_there.is_nan() || !(to_sun[2] > 0.0) {
-            return f32::NAN;
+            return Ok(f32::NAN);
         }
         if *light_there >= HALF_LIGHT {
-            return 0.0;
+            return Ok(0.0);
         }
         let place = targets.positions[row].map(f64::from);
         let normal = targets.normals.as_ref().map(|normals| normals[row].map(f64::from));
-        let line = sun_lines(&light.blockers, place, normal, &kinds, &[to_sun]);
-        line.first().map_or(f32::NAN, |line| f32::from(number_of(line.obstacle)))
+        Ok(f32::from(number_of(sun_obstacle(&light.blockers, place, normal, &kinds, to_sun))))
     };
     let of_sun = |(sun, lit): (&NamedSun, &Measure)| {
-        let values: Result<Vec<f32>> = lit
-            .values
-            .par_iter()
-            .enumerate()
-            .with_min_len(CHUNK)
-            .map(|one| {
-                control.check()?;
-                Ok(of_target(one, sun.sun.to_sun))
-            })
-            .collect();
+        let rows = lit.values.par_iter().enumerate().with_min_len(CHUNK);
+        let values = rows.map(|one| of_target(one, sun.sun.to_sun)).collect::<Result<Vec<f32>>>()?;
         control.advance(lit.values.len());
-        let name = if suns.len() == 1 { CASTER.to_owned() } else { format!("{CASTER}_{}", sun.column) };
-        Ok(Measure::new(&name, values?).with_description(DESCRIPTION).with_decimals(0).with_tags(&sun.tags))
+        let name = format!("{CASTER}{}", suffix(sun));
+        Ok(Measure::new(&name, values).with_description(DESCRIPTION).with_decimals(0).with_tags(&sun.tags))
     };
     control.stage("finding casters", suns.len() * targets.len(), || suns.iter().zip(lit).map(of_sun).collect())
 }
