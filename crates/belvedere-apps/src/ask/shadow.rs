@@ -226,7 +226,8 @@ fn settled(lit: &mut [f32], doubts: Option<Vec<f32>>, unproven: UnprovenAs) -> O
 
 /// Reports the light of suns. With a single sun, its unproven light may follow its measure.
 pub(super) fn summarise(suns: &[NamedSun], measures: &[Measure], places: &str, context: &mut Context) {
-    let share = |measure: &Measure| measure.statistics().map_or(f64::NAN, |found| 100.0 * found.mean);
+    // a mean of nothing but zeros may be minus zero
+    let share = |measure: &Measure| measure.statistics().map_or(f64::NAN, |found| 100.0 * found.mean + 0.0);
     match (suns, measures) {
         ([sun], [lit, rest @ ..]) => {
             context.headline(match lit.statistics() {

@@ -125,7 +125,7 @@ fn are_degrees([latitude, longitude]: [f64; 2]) -> bool {
 /// metres above what is below. Lines of sight of this extent may begin beyond the cloud.
 ///
 /// # Errors
-/// Those of [`position_on_map`] and [`end_on_map`].
+/// Those of [`position_on_map`], and of places that lie beyond the terrain too.
 pub fn standing_on_map(
     places: impl IntoIterator<Item = ([f64; 2], Option<f64>)>,
     height: Option<f64>,
@@ -135,11 +135,32 @@ pub fn standing_on_map(
     let frame = scene.frame();
     let bounds = bounds_in_file(frame, &scene.model().bounds());
     let one = |(place, given): ([f64; 2], Option<f64>)| {
-        let on_map = if reach == Reach::Cloud { position_on_map } else { end_on_map };
-        let [x, y] = on_map(place, &frame.crs, bounds)?;
+        let on_cloud = position_on_map(place, &frame.crs, bounds);
+        let [x, y] = if reach == Reach::Cloud { on_cloud? } else { on_cloud.or_else(|_| on_terrain(place, scene))? };
         Ok(Standing { place: frame.local_from_file([x, y, given.unwrap_or(f64::NAN)]), height })
     };
     places.into_iter().map(one).collect()
+}
+
+/// Coordinates of the file of a place on the terrain beyond the cloud, given as for [`position_on_map`].
+fn on_terrain(given: [f64; 2], scene: &Scene) -> Result<[f64; 2]> {
+    let frame = scene.frame();
+    let terrain = scene.model().far_terrain().grid();
+    let is_known = |[x, y]: &[f64; 2]| {
+        let [x, y, _] = frame.local_from_file([*x, *y, 0.0]);
+        terrain.is_some_and(|terrain| terrain.height_at([x, y]).is_some())
+    };
+    let [latitude, longitude] = given;
+    let in_degrees = |degrees| if are_degrees(given) { projected(degrees, &frame.crs).filter(is_known) } else { None };
+    if let Some(place) = Some(given).filter(is_known).or_else(|| in_degrees(given)) {
+        return Ok(place);
+    }
+    let expected = match in_degrees([longitude, latitude]) {
+        Some(_) => SWAPPED,
+        None => "on the points of the cloud, or on the terrain beyond it",
+    };
+    let value = format!("{latitude}, {longitude}");
+    Err(Error::InvalidParameter { parameter: Parameter::Position, value, expected })
 }
 
 impl Standing {

@@ -32,6 +32,9 @@ pub(crate) fn run(arguments: &TowersArguments, global: &Global) -> Result<Summar
     if let Some(rows) = &of_table {
         question(arguments, rows)?.check()?;
     }
+    if places.far.terrain.is_none() {
+        places.check_on_map(&arguments.scene.input)?;
+    }
     let mut scene = pipeline::scene(&arguments.scene, KeepPoints::Keep, &mut run)?;
     places.far.set(&mut scene, &mut run)?;
     let scene = scene.into_question_scene(Some(&arguments.ground), arguments.shell.shell, &run)?;

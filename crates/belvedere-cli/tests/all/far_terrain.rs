@@ -32,6 +32,34 @@ fn range(_: f64, y: f64) -> f32 {
 }
 
 #[test]
+fn eyes_stand_on_the_terrain_beyond_the_cloud_and_nowhere_else() {
+    let place = Workplace::new();
+    place.write_cloud("house.laz", &house());
+    write_terrain(&place, "dtm.tif", 28992, 0.0, range);
+    let [x, y, _] = at(0.0, -1800.0, 0.0);
+    place.write("masts.csv", format!("x,y,base,tip\n{x},{y},400,100\n"));
+    let towers = format!("towers {HOUSE} --towers masts.csv --terrain dtm.tif");
+    // from the plain in the north of the house the edge hides what lies below its line; the range ends 1510 m south
+    let [x, y, _] = at(1000.0, 1000.0, 0.0);
+    let run = place.summary(&format!("{towers} --at {x},{y} -o seen.csv --wirelines views"));
+    assert_eq!(run["at"][0]["height_from"], "ground", "{run}");
+    assert!((column(&place, "seen.csv", "z")[0] - 1.7).abs() < 1e-3, "{:?}", column(&place, "seen.csv", "z"));
+    // 398.3 m of 2510 m to the edge, of 2800 m to the mast; less than half a metre for the curved earth
+    let hidden = 1.7 + 398.3 * 2800.0 / 2510.0 - 400.0;
+    assert!(
+        (column(&place, "seen.csv", "metres")[0] - (100.0 - hidden)).abs() < 0.5,
+        "{:?}",
+        column(&place, "seen.csv", "metres")
+    );
+    let [x, y, _] = at(9000.0, 0.0, 0.0);
+    for wrong in [format!("{x},{y}"), "5.39,52.15".to_owned()] {
+        let run = place.run(&format!("{towers} --at {wrong} --wirelines nowhere"));
+        assert!(run.status > 0 && run.stderr.contains("the terrain beyond it"), "{wrong}: {}", run.stderr);
+    }
+    assert!(!place.path("nowhere").exists());
+}
+
+#[test]
 fn each_place_has_the_horizon_of_the_terrain() {
     let place = Workplace::new();
     place.write_cloud("house.laz", &house());
