@@ -2,7 +2,9 @@
 
 #[cfg(feature = "las")]
 use super::ept;
-use super::source::{Content, Source, SystemBeside, web_address};
+#[cfg(feature = "las")]
+use super::source::Content;
+use super::source::{Source, SystemBeside};
 use belvedere_data::crs::Crs;
 use std::path::Path;
 
@@ -14,12 +16,13 @@ impl Source<'_> {
     /// extension `.prj` beside it on this machine. `None` where there is neither.
     #[must_use]
     pub fn system_beside(&self) -> Option<SystemBeside> {
-        let is_path = matches!(self.content, Content::Path);
         let found = self.system.clone();
         #[cfg(feature = "las")]
-        let found = found.or_else(|| if is_path { ept::system_of_node(&self.name) } else { None });
-        let is_local = is_path && web_address(&self.name).is_none();
-        found.or_else(|| if is_local { prj_beside(&self.name) } else { None })
+        let found = found.or_else(|| match &self.content {
+            Content::Path => ept::system_of_node(&self.name),
+            Content::Reader(_) => None,
+        });
+        found.or_else(|| if self.is_on_disk() { prj_beside(&self.name) } else { None })
     }
 }
 

@@ -117,6 +117,11 @@ impl<'a> Source<'a> {
         &self.name
     }
 
+    /// Returns true for a file or folder on this machine, beside which others may lie.
+    pub(crate) fn is_on_disk(&self) -> bool {
+        matches!(self.content, Content::Path) && web_address(&self.name).is_none()
+    }
+
     /// The extension of the name in lower case; empty where there is none.
     #[must_use]
     pub fn extension(&self) -> String {

@@ -4,7 +4,7 @@
 //! OGC 12-128r19, GeoPackage 1.4.
 
 use super::wkb;
-use crate::source::{Content, Source, web_address};
+use crate::source::Source;
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Result};
 use geojson::{Feature, Geometry, GeometryValue};
@@ -13,8 +13,9 @@ use rusqlite::{Connection, MAIN_DB, OptionalExtension, Row, params, params_from_
 use serde_json::{Map, Value};
 use std::path::Path;
 
-/// Version of the format that is written, and the application that files of SQLite name: "GPKG".
+/// Version of the format that is written, 1.4.
 const USER_VERSION: i32 = 10_400;
+/// Application that files of SQLite name: "GPKG".
 const APPLICATION_ID: i32 = 0x4750_4b47;
 /// First bytes of a file of SQLite.
 const HEAD: &[u8] = b"SQLite format 3\0";
@@ -48,37 +49,14 @@ pub(crate) fn read(source: Source<'_>) -> Result<Layer> {
     base.deserialize_read_exact(MAIN_DB, &bytes[..], bytes.len(), true).map_err(wrong)?;
     drop(bytes);
     base.pragma_update(None, "trusted_schema", false).map_err(wrong)?;
-    let sql = "SELECT c.table_name, g.column_name, g.srs_id FROM gpkg_contents c JOIN gpkg_geometry_columns g \
-               ON g.table_name = c.table_name JOIN sqlite_schema s ON s.name = c.table_name \
-               WHERE c.data_type = 'features' AND s.type = 'table' AND s.sql NOT LIKE 'CREATE VIRTUAL%' ORDER BY 1";
-    let mut statement = base.prepare(sql).map_err(wrong)?;
-    let layers: rusqlite::Result<Vec<(String, String, i64)>> =
-        statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?))).map_err(wrong)?.collect();
-    let layers = layers.map_err(wrong)?;
-    let (table, column, system) = match &layers[..] {
-        [only] => only,
-        [] => return Err(Error::malformed(path, "has no table of points, lines or polygons")),
-        several => {
-            let names: Vec<&str> = several.iter().map(|(table, ..)| table.as_str()).collect();
-            let file = path.display();
-            let what = format!(
-                "has several layers ({}); write one into a file of its own: ogr2ogr one.gpkg {file} {}",
-                names.join(", "),
-                names[0]
-            );
-            return Err(Error::malformed(path, what));
-        }
+    let (table, column, system) = only_layer(&base, path)?;
+    let Some(system) = system_of(&base, system).map_err(wrong)? else {
+        let what = format!("its reference system {system} is not described in it");
+        return Err(Error::UnusableCrs { path: path.to_owned(), what });
     };
-    let system = match system_of(&base, *system).map_err(wrong)? {
-        Some(system) => system,
-        None => {
-            let what = format!("its reference system {system} is not described in it");
-            return Err(Error::UnusableCrs { path: path.to_owned(), what });
-        }
-    };
-    let names = columns_in(&base, table).map_err(wrong)?;
-    let mut statement = base.prepare(&format!("SELECT * FROM {}", quoted(table))).map_err(wrong)?;
-    let Some(geometry_column) = names.iter().position(|name| name.eq_ignore_ascii_case(column)) else {
+    let names = columns_in(&base, &table).map_err(wrong)?;
+    let mut statement = base.prepare(&format!("SELECT * FROM {}", quoted(&table))).map_err(wrong)?;
+    let Some(geometry_column) = names.iter().position(|name| name.eq_ignore_ascii_case(&column)) else {
         return Err(Error::malformed(path, format!("its table {table} has no column {column}")));
     };
     let mut rows = statement.query([]).map_err(wrong)?;
@@ -91,6 +69,32 @@ pub(crate) fn read(source: Source<'_>) -> Result<Layer> {
         }
     }
     Ok(Layer { features, system })
+}
+
+/// Table, column of geometries, and number of the system of the one layer of features.
+fn only_layer(base: &Connection, path: &Path) -> Result<(String, String, i64)> {
+    let wrong = |error: rusqlite::Error| Error::malformed(path, format!("is no GeoPackage: {error}"));
+    let sql = "SELECT c.table_name, g.column_name, g.srs_id FROM gpkg_contents c JOIN gpkg_geometry_columns g \
+               ON g.table_name = c.table_name JOIN sqlite_schema s ON s.name = c.table_name \
+               WHERE c.data_type = 'features' AND s.type = 'table' AND s.sql NOT LIKE 'CREATE VIRTUAL%' ORDER BY 1";
+    let mut statement = base.prepare(sql).map_err(wrong)?;
+    let row = |row: &Row<'_>| Ok((row.get(0)?, row.get(1)?, row.get(2)?));
+    let layers = statement.query_map([], row).map_err(wrong)?.collect::<rusqlite::Result<Vec<_>>>();
+    let mut layers: Vec<(String, String, i64)> = layers.map_err(wrong)?;
+    match layers.pop() {
+        Some(only) if layers.is_empty() => Ok(only),
+        None => Err(Error::malformed(path, "has no table of points, lines or polygons")),
+        Some((last, ..)) => {
+            let names: Vec<&str> = layers.iter().map(|(table, ..)| table.as_str()).chain([last.as_str()]).collect();
+            let what = format!(
+                "has several layers ({}); write one into a file of its own: ogr2ogr one.gpkg {} {}",
+                names.join(", "),
+                path.display(),
+                names[0]
+            );
+            Err(Error::malformed(path, what))
+        }
+    }
 }
 
 /// Names of the columns of a table. Those of a statement would end the program where they are no UTF-8.
@@ -128,8 +132,7 @@ fn refuse_unsaved(source: &Source<'_>) -> Result<()> {
     let path = source.name();
     let mut beside = path.as_os_str().to_owned();
     beside.push("-wal");
-    let is_path = matches!(source.content, Content::Path) && web_address(path).is_none();
-    match is_path && Path::new(&beside).metadata().is_ok_and(|found| found.len() > 0) {
+    match source.is_on_disk() && Path::new(&beside).metadata().is_ok_and(|found| found.len() > 0) {
         true => Err(Error::malformed(path, "has changes that are not saved in it; close it in other programs first")),
         false => Ok(()),
     }

@@ -1,7 +1,7 @@
 //! Shapefile: points, lines and polygons, with the attributes of the table beside them.
 
 use crate::map_features::{FeatureShape, MapFeature};
-use crate::source::{Content, Source, SystemBeside};
+use crate::source::{Source, SystemBeside};
 use belvedere_data::{Error, Result};
 use serde_json::{Map, Value};
 use shapefile::dbase::{FieldValue, Reader as TableReader, Record};
@@ -17,7 +17,7 @@ use std::path::Path;
 pub(crate) fn read(source: &Source<'_>) -> Result<(Vec<MapFeature>, Option<SystemBeside>)> {
     let path = source.name();
     let wrong = |error: shapefile::Error| Error::malformed(path, format!("is no Shapefile: {error}"));
-    if !matches!(source.content, Content::Path) || crate::source::web_address(path).is_some() {
+    if !source.is_on_disk() {
         let what = "a Shapefile is read from a folder on this machine, since its table lies beside it";
         return Err(Error::malformed(path, what));
     }
