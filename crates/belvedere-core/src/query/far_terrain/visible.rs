@@ -8,8 +8,10 @@ use super::piece_over;
 const STEP: f64 = 0.01;
 const MIN_STEP: f64 = 0.25;
 const MAX_STEP_CELLS: f64 = 0.5;
-/// Ratio of the two distances of a piece at most.
-const MAX_RATIO: f64 = 1.05;
+/// Maximum ratio of the two distances of a piece that reaches farther than [`ALIKE_TO`].
+const MAX_RATIO: f64 = 1.1;
+/// Distance up to which terrain is one piece, metres: drawings show it alike, and pieces of 100 views fill memory.
+const ALIKE_TO: f64 = 200.0;
 
 /// A piece of a terrain profile that nothing before it on the profile hides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +45,10 @@ impl FarTerrain {
             match tangent.filter(|tangent| *tangent > highest) {
                 Some(tangent) => {
                     let elevation = tangent.atan();
-                    match pieces.last_mut().filter(|last| is_open && distance <= last.distances[0] * MAX_RATIO) {
+                    match pieces
+                        .last_mut()
+                        .filter(|last| is_open && distance <= (last.distances[0] * MAX_RATIO).max(ALIKE_TO))
+                    {
                         Some(last) => (last.distances[1], last.elevations[1]) = (distance, elevation),
                         None => {
                             // a piece that goes on begins where the one before ends
@@ -95,7 +100,9 @@ mod tests {
         for pair in pieces.windows(2) {
             assert!(pair[0].elevations[1] <= pair[1].elevations[0] && pair[0].distances[1] <= pair[1].distances[0]);
         }
-        assert!(pieces.iter().all(|piece| piece.distances[1] <= piece.distances[0] * MAX_RATIO + 0.25));
+        let end = |piece: &VisibleTerrain| (piece.distances[0] * MAX_RATIO).max(ALIKE_TO);
+        assert!(pieces.iter().all(|piece| piece.distances[1] <= end(piece)));
+        assert!(pieces[0].distances[1] > 0.9 * ALIKE_TO && pieces.len() < 30, "{}", pieces.len());
         // the exact horizon is where the drawing ends
         let exact = terrain.elevations([0.0, 0.0, 2.0], [0.0, 1.0], 1, &EarthParams::flat())[0];
         assert!((exact - tops[1]).abs() < 1e-9);
