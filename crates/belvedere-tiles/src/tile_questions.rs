@@ -40,6 +40,7 @@ impl TileQuestion {
             }
             ask::Question::SunHours(hours) => {
                 let site = hours.place.site_at(whereabouts, context, None)?;
+                context.add(hours.place.remark_on_border(&site, hours.days.times())?);
                 let mut questions = Vec::new();
                 if !hours.days.is_empty() {
                     let days = SunHoursQuestion { rules: Vec::new(), ..hours.clone() };

@@ -148,6 +148,7 @@ impl ComfortQuestion {
     fn schedule(&self, scene: &Scene, context: &mut Context) -> Result<(SunSchedule, Zone)> {
         let site = self.place.site(scene, context, None)?;
         let zone = self.place.zone_at(&site, self.days.times())?;
+        context.add(self.place.remark_on_border(&site, self.days.times())?);
         let params = self.days.params(&self.place);
         let Some(period) = self.days.period(&self.place, &site, &zone)? else { return missing_period() };
         let binning = match self.shade {

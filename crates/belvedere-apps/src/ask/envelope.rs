@@ -186,7 +186,8 @@ impl EnvelopeQuestion {
             ProtectedSuns::Days { days, hours } => {
                 let site = self.place.site(scene, context, None)?;
                 let zone = self.place.zone_at(&site, days.times())?;
-                context.add(remark_on_solar_hours("the sun is protected", *hours, (&zone, &site)));
+                context.add(self.place.remark_on_border(&site, days.times())?);
+                context.add(remark_on_solar_hours("the sun is protected", *hours, &zone));
                 let dates = self.dates(days, &site, &zone)?;
                 let params = days.params(&self.place);
                 let (suns, low) = envelope_suns(&site, &zone, &dates, hours.unwrap_or(ALL_DAY), &params)?;
@@ -314,7 +315,7 @@ impl Ask for EnvelopeQuestion {
             }
             ProtectedSuns::Days { days, hours } => {
                 days.check(&self.place)?;
-                self.dates(days, &anywhere, &self.place.zone_at(&anywhere, days.times())?)?;
+                self.dates(days, &anywhere, &self.place.any_zone(&anywhere, days.times())?)?;
                 check_hours(hours.unwrap_or(ALL_DAY))?;
             }
         }

@@ -137,6 +137,7 @@ impl GlareQuestion {
         let days = self.stepped();
         let site = self.place.site(scene, context, None)?;
         let zone = self.place.zone_at(&site, days.times())?;
+        context.add(self.place.remark_on_border(&site, days.times())?);
         let params = days.params(&self.place);
         let Some(period) = days.period(&self.place, &site, &zone)? else { return missing_days() };
         let schedule = SunSchedule::new(&sun_days_above(&site, &zone, &period, &params)?, Binning::Exact)?;
@@ -203,7 +204,7 @@ impl Ask for GlareQuestion {
         let found = GlareResults { eyes, reflector_count: reflectors.len(), schedule, zone, of_observers };
         let all = (0..found.of_observers.len()).filter_map(|observer| found.of_observer(observer)?.between);
         let hours = all.reduce(|[from, to], [start, end]| [from.min(start), to.max(end)]);
-        context.add(remark_on_solar_hours("glare is", hours.map(|v| v.map(|v| rounded(v, 2))), (&found.zone, &site)));
+        context.add(remark_on_solar_hours("glare is", hours.map(|v| v.map(|v| rounded(v, 2))), &found.zone));
         found.summarise(&params, context);
         Ok(Answers::new(found, Vec::new()))
     }

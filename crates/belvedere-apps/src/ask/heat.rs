@@ -225,8 +225,9 @@ impl HeatQuestion {
     fn days(&self, site: &Site, context: &mut Context) -> Result<(HeatDays, Zone)> {
         let weather = self.weather()?;
         let zone = self.place.zone_at(site, self.days.times())?;
+        context.add(self.place.remark_on_border(site, self.days.times())?);
         let Some(period) = self.dated().period(&self.place, site, &zone)? else { return missing_period() };
-        context.add(remark_on_solar_hours("heat is computed", self.hours, (&zone, site)));
+        context.add(remark_on_solar_hours("heat is computed", self.hours, &zone));
         let rows = HeatRows { period: &period, hours: self.hours.unwrap_or([0.0, 24.0]), zone: &zone };
         let mut found = days_of_heat(weather, &rows, site, (&self.surfaces, self.parts))?;
         for hour in found.days.iter_mut().flat_map(|(hours, _)| hours) {

@@ -92,7 +92,7 @@ pub use shared::SharedObject;
 pub use sight_network::{NetworkSection, SightNetwork};
 pub use single_places::{HeightFrom, PlaceSection, end_on_map, position_on_map, standing_on_map};
 pub use sky_view::{SkyParts, SkyViewQuestion};
-pub use sun::{Days, NamedSun, SunPlace, SunRange, Suns, check_sun, remark_on_sun};
+pub use sun::{Days, NamedSun, SOLAR, SunPlace, SunRange, Suns, check_sun, remark_on_sun};
 pub use sun_and_sky::OnTargets;
 pub use sun_calendar::{SunCalendarQuestion, SunCalendarResults};
 pub use sun_hours::{HourlySun, SunHoursQuestion, rules};

@@ -6,8 +6,8 @@ use super::sections::{LocationSection, SunAt, SunSection};
 use super::{Context, Remark};
 use crate::shadow::ShadowSun;
 use crate::sun::{
-    Date, DayParams, Period, Refraction, Site, SiteFrom, SunDay, Zone, parse_instant, sun_days, sun_position_with,
-    zone_of_instant,
+    Date, DayParams, Period, Refraction, Site, SiteFrom, SunDay, Zone, ZoneOfPlace, parse_instant, sun_days,
+    sun_position_with, zone_of_instant,
 };
 use crate::sun_hours::RuleDays;
 use crate::tree_light::Season;
@@ -28,8 +28,8 @@ pub const MAX_LISTED_SUNS: usize = 5;
 pub struct SunPlace {
     /// Latitude and longitude, degrees, north and east positive; `None` for those of the reference system.
     pub location: Option<[f64; 2]>,
-    /// Zone of times and days, such as Europe/Amsterdam or +02:00; `None` for that of a given time, else mean solar
-    /// time.
+    /// Zone of times and days, such as Europe/Amsterdam or +02:00, or [`SOLAR`]; `None` for that of a given time, else
+    /// that of the place, else mean solar time.
     pub zone: Option<String>,
     /// Refraction of the sun by the air.
     pub refraction: Refraction,
@@ -37,6 +37,8 @@ pub struct SunPlace {
     pub north: North,
 }
 
+/// Name of mean solar time where a zone is given.
+pub const SOLAR: &str = "solar";
 /// Locations this near, metres, are those of a scene: the sun stands 0.1° elsewhere.
 const NEAR: f64 = 10e3;
 
@@ -192,12 +194,8 @@ pub(super) fn remark_on_clock(zone: &Zone, site: &Site) -> Option<Remark> {
 }
 
 /// A warning of hours of the day that nobody's clocks show, between which something `happens`.
-pub(super) fn remark_on_solar_hours(
-    happens: &str,
-    hours: Option<[f64; 2]>,
-    (zone, site): (&Zone, &Site),
-) -> Option<Remark> {
-    let [from, to] = hours.filter(|_| zone.name() == Zone::mean_solar(site).name())?;
+pub(super) fn remark_on_solar_hours(happens: &str, hours: Option<[f64; 2]>, zone: &Zone) -> Option<Remark> {
+    let [from, to] = hours.filter(|_| zone.is_mean_solar())?;
     let text = format!(
         "{happens} from {from} to {to} hours of mean solar time, which clocks are up to two hours ahead of; give the \
          zone of the clocks, such as Europe/Amsterdam"
@@ -218,7 +216,7 @@ impl SunPlace {
         let [latitude, longitude] = self.location.map_or([0.0; 2], |given| given.map(f64::to_radians));
         let anywhere = Site { latitude, longitude, height: 0.0, convergence: 0.0 }.validate()?;
         sun_position_with(&anywhere, 0.0, self.refraction)?;
-        self.given_zone()?;
+        self.given_zone(&anywhere)?;
         Ok(anywhere)
     }
 
@@ -288,30 +286,69 @@ impl SunPlace {
         }));
         context.add(North::True.of(whereabouts.convergence_at(whereabouts.middle())).remark());
         context.report.location = Some(LocationSection::of(&found));
-        context.add(self.given_zone()?.and_then(|zone| remark_on_clock(&zone, &found.0)));
+        context.add(self.given_zone(&found.0)?.and_then(|zone| remark_on_clock(&zone, &found.0)));
         Ok(found.0)
     }
 
-    fn given_zone(&self) -> Result<Option<Zone>> {
-        self.zone.as_deref().map(Zone::parse).transpose()
+    fn given_zone(&self, site: &Site) -> Result<Option<Zone>> {
+        let parsed = |text: &str| match text.trim().eq_ignore_ascii_case(SOLAR) {
+            true => Ok(Zone::mean_solar(site)),
+            false => Zone::parse(text),
+        };
+        self.zone.as_deref().map(parsed).transpose()
     }
 
-    /// Returns the time zone of a site: as given, else that of the first of the `times` that has one, else mean solar
-    /// time.
+    /// Returns the time zone that is given, or else that of the first of the `times` that has one.
+    fn typed_zone<'a>(&self, site: &Site, times: impl IntoIterator<Item = &'a String>) -> Result<Option<Zone>> {
+        Ok(self.given_zone(site)?.or_else(|| times.into_iter().find_map(|time| zone_of_instant(time))))
+    }
+
+    /// Returns the time zone of a site: as given, else that of the first of the `times` that has one, else that of the
+    /// place, else mean solar time.
     ///
     /// # Errors
     /// Those of [`Zone::parse`].
     pub fn zone_at<'a>(&self, site: &Site, times: impl IntoIterator<Item = &'a String>) -> Result<Zone> {
-        let of_times = || times.into_iter().find_map(|time| zone_of_instant(time));
-        Ok(self.given_zone()?.or_else(of_times).unwrap_or_else(|| Zone::mean_solar(site)))
+        let of_place = || ZoneOfPlace::of(site).map_or_else(|| Zone::mean_solar(site), |found| found.zone);
+        Ok(self.typed_zone(site, times)?.unwrap_or_else(of_place))
     }
 
-    /// An instant, seconds of UTC since 1970.
+    /// Returns a zone for checks before the place is known.
+    pub(super) fn any_zone<'a>(&self, anywhere: &Site, times: impl IntoIterator<Item = &'a String>) -> Result<Zone> {
+        Ok(self.typed_zone(anywhere, times)?.unwrap_or_else(Zone::utc))
+    }
+
+    /// Returns a warning of another zone near the site whose clocks differ, where no zone is given.
+    ///
+    /// # Errors
+    /// Those of [`Zone::parse`].
+    pub fn remark_on_border<'a>(
+        &self,
+        site: &Site,
+        times: impl IntoIterator<Item = &'a String>,
+    ) -> Result<Option<Remark>> {
+        if self.typed_zone(site, times)?.is_some() {
+            return Ok(None);
+        }
+        let Some(ZoneOfPlace { zone, others }) = ZoneOfPlace::of(site).filter(|found| !found.others.is_empty()) else {
+            return Ok(None);
+        };
+        let others = others.iter().map(Zone::name).collect::<Vec<_>>().join(" or ");
+        let text = format!(
+            "times are on the clocks of {}, and places nearby have those of {others}: give the zone of the place",
+            zone.name()
+        );
+        Ok(Some(Remark::warning("zone-near-border", text)))
+    }
+
+    /// An instant, seconds of UTC since 1970. A time without an offset is on the clocks of `zone`; mean solar time must
+    /// be given for that.
     ///
     /// # Errors
     /// Those of [`parse_instant`].
-    pub fn instant(&self, text: &str) -> Result<f64> {
-        parse_instant(text, self.given_zone()?.as_ref())
+    pub fn instant(&self, text: &str, zone: &Zone) -> Result<f64> {
+        let is_known = self.zone.is_some() || !zone.is_mean_solar();
+        parse_instant(text, is_known.then_some(zone))
     }
 }
 
@@ -347,7 +384,7 @@ impl Days {
             return refused(Parameter::TimeStep, format!("{minutes} minutes"), "1/6 to 60 minutes");
         }
         self.params(place).validate()?;
-        let zone = place.zone_at(&anywhere, self.times())?;
+        let zone = place.any_zone(&anywhere, self.times())?;
         self.period(place, &anywhere, &zone).map(|_| ())
     }
 
@@ -373,7 +410,7 @@ impl Days {
                     return refused(Parameter::LastDay, last.to_string(), "the first day or a later one");
                 }
                 (Ok(first), Ok(last)) => Period::Days(first.to(last).collect()),
-                (Err(_), Err(_)) => Period::Between([place.instant(from)?, place.instant(to)?]),
+                (Err(_), Err(_)) => Period::Between([place.instant(from, zone)?, place.instant(to, zone)?]),
                 _ => return refused(Parameter::Period, format!("{from} to {to}"), "two days, or two times"),
             }));
         }
@@ -454,12 +491,15 @@ impl Suns {
     /// # Errors
     /// [`Error::InvalidParameter`] for directions, times and days that cannot be, and without any.
     pub fn check(&self, place: &SunPlace) -> Result<()> {
-        place.check()?;
+        let anywhere = place.check()?;
         match self {
             Self::Directions(directions) => {
                 directions.iter().try_for_each(|&sun| check_sun(sun, SunRange::AnyElevation))
             }
-            Self::Times(times) => times.iter().try_for_each(|time| place.instant(time).map(|_| ())),
+            Self::Times(times) => {
+                let zone = place.any_zone(&anywhere, times)?;
+                times.iter().try_for_each(|time| place.instant(time, &zone).map(|_| ()))
+            }
             Self::Days(days) => days.check(place),
         }
     }
@@ -504,10 +544,11 @@ impl Suns {
         let zone = place.zone_at(&site, self.times())?;
         if place.zone.is_none() {
             context.add(remark_on_clock(&zone, &site));
+            context.add(place.remark_on_border(&site, self.times())?);
         }
         let instants = match self {
             Self::Days(days) => days.instants(place, &site, &zone)?,
-            _ => self.times().map(|time| place.instant(time)).collect::<Result<_>>()?,
+            _ => self.times().map(|time| place.instant(time, &zone)).collect::<Result<_>>()?,
         };
         let far = whereabouts.far_in_words();
         let mut suns = Vec::with_capacity(instants.len());

@@ -80,11 +80,12 @@ impl SunCalendarQuestion {
         let days = self.stepped();
         let site = self.place.site(scene, context, None)?;
         let zone = self.place.zone_at(&site, days.times())?;
+        context.add(self.place.remark_on_border(&site, days.times())?);
         let params = days.params(&self.place);
         let rule = self.rule.as_deref().map(SunRule::parse).transpose()?;
         let (of_days, params) = match (&rule, days.period(&self.place, &site, &zone)?) {
             (Some(rule), _) => {
-                context.add(remark_on_hours_of_rules([rule], (&zone, &site)));
+                context.add(remark_on_hours_of_rules([rule], &zone));
                 days_of_rule(rule, &days, (&site, &zone), params)?
             }
             (None, Some(period)) => (sun_days_above(&site, &zone, &period, &params)?, params),

@@ -141,11 +141,11 @@ pub(super) fn days_of_rule(
 /// A warning of the first of `rules` that counts hours of a clock that is that of the sun.
 pub(super) fn remark_on_hours_of_rules<'a>(
     rules: impl IntoIterator<Item = &'a SunRule>,
-    at: (&Zone, &Site),
+    zone: &Zone,
 ) -> Option<Remark> {
     let by_clock = |rule: &SunRule| rule.window.filter(|window| window.clock == WindowClock::Zone);
     let hours = rules.into_iter().find_map(by_clock).map(|window| window.hours);
-    remark_on_solar_hours("the rule counts sun", hours, at)
+    remark_on_solar_hours("the rule counts sun", hours, zone)
 }
 
 impl Ask for SunHoursQuestion {
@@ -172,8 +172,9 @@ impl Ask for SunHoursQuestion {
         let has_interval = self.interval || is_single && !self.trees.is_light() && knows_intervals(scene, control)?;
         let site = self.place.site(scene, context, None)?;
         let (plan, zone) = self.plan(&site)?;
+        context.add(self.place.remark_on_border(&site, self.days.times())?);
         let rules = plan.rules().iter().map(|planned| &planned.rule);
-        context.add(remark_on_hours_of_rules(rules, (&zone, &site)));
+        context.add(remark_on_hours_of_rules(rules, &zone));
         context.report.period = Some(section(&plan, &zone, &self.days.params(&self.place)));
         let trees = (&self.trees, Some(site.latitude), UnprovenAs::Visible);
         let light = Light::resolve(places, plan.directions(), trees, scene, context, control)?;

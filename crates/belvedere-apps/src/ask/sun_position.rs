@@ -33,8 +33,8 @@ impl Ask for SunPositionQuestion {
     type Found = Vec<SunStands>;
 
     fn check(&self) -> Result<()> {
-        self.place.check()?;
-        self.times.iter().try_for_each(|time| self.place.instant(time).map(|_| ()))
+        let zone = self.place.any_zone(&self.place.check()?, &self.times)?;
+        self.times.iter().try_for_each(|time| self.place.instant(time, &zone).map(|_| ()))
     }
 
     fn answer(
@@ -46,8 +46,9 @@ impl Ask for SunPositionQuestion {
     ) -> Result<Answers<Vec<SunStands>>> {
         let site = self.place.site(scene, context, None)?;
         let zone = self.place.zone_at(&site, &self.times)?;
+        context.add(self.place.remark_on_border(&site, &self.times)?);
         let stands = |time: &String| {
-            let instant = self.place.instant(time)?;
+            let instant = self.place.instant(time, &zone)?;
             let position = sun_position_with(&site, instant, self.place.refraction)?;
             let [azimuth_deg, elevation_deg] = [position.azimuth, position.elevation].map(f64::to_degrees);
             Ok(SunStands { time: zone.display(instant), azimuth_deg, elevation_deg })

@@ -9,6 +9,7 @@ mod position;
 mod schedule;
 mod site;
 mod time;
+mod zones;
 
 pub use days::{DayParams, Period, SunDay, SunStep, sun_day, sun_days};
 pub use position::{
@@ -17,3 +18,4 @@ pub use position::{
 pub use schedule::{Binning, DayOfLight, LightStep, SunSchedule};
 pub use site::{Site, SiteFrom};
 pub use time::{Date, Zone, parse_hour, parse_instant, zone_of_instant};
+pub use zones::ZoneOfPlace;

@@ -13,6 +13,8 @@ use std::ops::Range;
 /// Years of dates and times.
 const YEARS: Range<i16> = 1000..3000;
 
+const MEAN_SOLAR: &str = "mean solar time";
+
 /// Time zone of a place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Zone {
@@ -45,7 +47,7 @@ impl Zone {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::TimeZone,
                 value: shortened(text),
-                expected: "a name such as Europe/Amsterdam, or an offset such as +02:00",
+                expected: "a name such as Europe/Amsterdam, an offset such as +02:00, or solar",
             });
         };
         let name = zone.iana_name().unwrap_or(text).to_owned();
@@ -58,7 +60,13 @@ impl Zone {
         #[expect(clippy::cast_possible_truncation, reason = "a saturated cast of at most a day of seconds")]
         let seconds = (site.longitude.to_degrees() * 240.0).round() as i32;
         let offset = Offset::from_seconds(seconds).unwrap_or(Offset::UTC);
-        Self { zone: TimeZone::fixed(offset), name: "mean solar time".to_owned() }
+        Self { zone: TimeZone::fixed(offset), name: MEAN_SOLAR.to_owned() }
+    }
+
+    /// Returns true for mean solar time, which no clock shows.
+    #[must_use]
+    pub fn is_mean_solar(&self) -> bool {
+        self.name == MEAN_SOLAR
     }
 
     /// Returns its name: that of the zone database, an offset, or "mean solar time".

@@ -54,7 +54,7 @@ pub(crate) struct CityPlan {
     /// See --grid-north.
     #[arg(long = "sun", value_name = "AZ,EL", allow_hyphen_values = true, help_heading = "Questions")]
     pub(crate) suns: Vec<Numbers<2>>,
-    /// An instant for a shadow map: 2026-06-21T15:00+02:00, or without the offset with --zone; repeatable
+    /// An instant for a shadow map: 2026-06-21T15:00, or 2026-06-21T15:00+02:00; repeatable
     #[arg(long = "time", value_name = "TIME", help_heading = "Questions")]
     pub(crate) times: Vec<String>,
     /// Map the hours of sun a day, for --date, or --from and --to

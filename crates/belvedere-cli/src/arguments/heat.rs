@@ -25,7 +25,7 @@ pub(crate) struct HeatArguments {
     /// Hours of each day that count, on the clocks of --zone, both included [default: all]
     #[arg(long, value_name = "HH:MM,HH:MM", help_heading = "Weather")]
     pub(crate) between: Option<Hours>,
-    /// Time zone of days and hours, such as Europe/Amsterdam or +02:00 [default: mean solar time]
+    /// Time zone of days and hours: Europe/Amsterdam, +02:00, or solar [default: that of the place]
     #[arg(long, value_name = "ZONE", allow_hyphen_values = true, help_heading = "Weather")]
     pub(crate) zone: Option<String>,
     /// Latitude and longitude in degrees, north and east positive

@@ -14,8 +14,8 @@ pub(crate) struct SunPlaceArguments {
     /// Latitude and longitude of the scene in degrees, north and east positive [default: from its reference system]
     #[arg(long, value_name = "LAT,LON", value_parser = location, allow_hyphen_values = true)]
     pub(crate) location: Option<Numbers<2>>,
-    /// Time zone of times and days, such as Europe/Amsterdam or +02:00
-    /// [default: that of a given time, else mean solar time]
+    /// Time zone of times and days: Europe/Amsterdam, +02:00, or solar
+    /// [default: that of a given time, else of the place]
     #[arg(long, value_name = "ZONE", allow_hyphen_values = true)]
     pub(crate) zone: Option<String>,
     /// Elevation of the sun: apparent (with refraction of the air) or geometric
@@ -31,7 +31,7 @@ pub(crate) struct SunPlaceArguments {
 
 #[derive(Args)]
 pub(crate) struct SunPositionArguments {
-    /// Time in ISO 8601, with an offset unless --zone is given: 2026-06-21T15:00+02:00; repeatable
+    /// Time on the clocks of the place, 2026-06-21T15:00, or with an offset, 2026-06-21T15:00+02:00; repeatable
     #[arg(long = "time", value_name = "TIME", required = true, help_heading = "Sun")]
     pub(crate) times: Vec<String>,
     #[command(flatten)]

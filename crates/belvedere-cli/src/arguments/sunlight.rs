@@ -84,7 +84,7 @@ pub(crate) struct ReportArguments {
     pub(crate) area_rule: Option<String>,
     /// Shadow study of a city: its days and hours count for the shade that the plan adds to areas
     ///
-    /// Needs --area, a plan (--add or --clear), and --zone for the clock of the place. The report has its tables.
+    /// Needs --area and a plan (--add or --clear). The report has its tables.
     #[arg(long, value_enum, value_name = "CITY", requires = "area", help_heading = "Rules and days")]
     pub(crate) study: Option<StudyChoice>,
     /// A day in detail: 2026-06-21, equinox, shortest-day or longest-day; repeatable [default: these three, or

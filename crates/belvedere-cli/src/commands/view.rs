@@ -11,7 +11,7 @@ use crate::summary::{Summary, note};
 use crate::written_files::check_input;
 use anyhow::{Context, Result, anyhow};
 use belvedere::apps::ask;
-use belvedere::apps::sun::{Date, Site, Zone};
+use belvedere::apps::sun::{Date, Site, Zone, ZoneOfPlace};
 use belvedere::io::{Source, atomic, has_point_results, is_ball_file, is_mesh};
 use belvedere::model::SceneModel;
 use belvedere::results::file_name;
@@ -174,7 +174,9 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
                     }
                     other => other.into(),
                 })?;
-                Some((date, zone.clone().unwrap_or_else(|| Zone::mean_solar(&site.0))))
+                let of_place =
+                    || ZoneOfPlace::of(&site.0).map_or_else(|| Zone::mean_solar(&site.0), |found| found.zone);
+                Some((date, zone.clone().unwrap_or_else(of_place)))
             }
         })
     };

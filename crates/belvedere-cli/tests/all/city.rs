@@ -216,7 +216,6 @@ fn wrong_plans_are_refused_with_advice() {
     place.refusal(2, &format!("{plan} --sky-view --probability"), &["--probability", "--sun", "--observer"]);
     place.refusal(2, &format!("{plan} --sun 150,20 --interval"), &["--interval", "--sky-view"]);
     place.refusal(2, &format!("{plan} --time 2026-03-20T02:00+01:00"), &["--time", "horizon"]);
-    place.refusal(2, &format!("{plan} --time 2026-03-20T10:00"), &["--time", "zone"]);
     place.refusal(2, &format!("{plan} --sun 150,20 --sun 150,20"), &["shadow_150_20 twice"]);
     place.refusal(2, &format!("{plan} --sky-view --clear class:2"), &["--clear", "stands on the ground"]);
     place.refusal(2, &format!("{plan} --sky-view --clear 0,0,9,9"), &["--clear", "on the cloud"]);

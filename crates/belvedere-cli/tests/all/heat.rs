@@ -67,12 +67,12 @@ fn hours_and_days_are_those_of_clocks() {
     let hours = ["utci_20090721_1100", "utci_20090721_1200"].map(|name| column(&place, "h.csv", name)[0]);
     assert_eq!(column(&place, "h.csv", "utci_max")[0], hours[0].max(hours[1]));
     assert!((column(&place, "h.csv", "utci_mean")[0] - f64::midpoint(hours[0], hours[1])).abs() < 0.11);
-    // several days are one mean, and a day without a zone warns
+    // several days are one mean, and hours of the sun's own clock warn
     let two = "--date 07-20 --date 07-21 --between 11:00,13:00 --pet";
     let days = place.summary(&format!("{HEAT} {two} --targets places.csv -o d.csv"));
     assert_eq!((&days["heat"]["days"], &days["heat"]["hours"]), (&2.into(), &6.0.into()));
     assert!(column(&place, "d.csv", "pet_max")[0] > column(&place, "d.csv", "pet_max")[1]);
-    let solar = HEAT.replace(" --zone UTC", "");
+    let solar = HEAT.replace(" --zone UTC", " --zone solar");
     let found = place.summary(&format!("{solar} --date 07-21 --between 11:00,13:00 --targets places.csv -o s.csv"));
     assert!(remarks(&found).iter().any(|remark| remark.contains("mean solar time")), "{:?}", remarks(&found));
     // wind beyond what the index is known for

@@ -163,6 +163,10 @@ fn a_time_is_the_same_however_it_is_written_and_nothing_is_lit_at_night() {
         "--time 2026-12-21T12:00 --zone Europe/Amsterdam",
         "--time 2026-12-21T12:00[Europe/Amsterdam]",
         "--time 2026-12-21T12:00 --zone +01:00",
+        // the clocks of the place
+        "--time 2026-12-21T12:00",
+        // mean solar time of 4.366 E is 17 minutes and 28 seconds ahead of UTC
+        "--time 2026-12-21T11:17:28 --zone solar",
     ] {
         let (same, other) = lit(flags);
         let other = other["sun"].as_object().unwrap().values().find(|value| value.is_object()).unwrap().clone();

@@ -124,9 +124,6 @@ fn shadow_studies_count_the_days_and_hours_of_their_city() {
     assert!((added / possible * 100.0 - share).abs() < 0.02 && (20.0..100.0).contains(&share), "{cells:?}");
 
     place.refusal_with(2, &format!("report {HOUSE} --study ceqr -o s.html"), &["--area", &garden], &["--add"]);
-    // hours of the clock need one
-    let without = command.replace(" --zone +01:00", "");
-    place.refusal_with(2, &format!("{without} --study toronto -o s.html"), &["--area", &garden], &["--zone", "clock"]);
 }
 
 #[test]

@@ -177,7 +177,6 @@ fn what_cannot_be_is_refused_with_advice() {
         ("--from 2026-06-21", "--to"),
         ("--from 2026-06-22 --to 2026-06-21", "--to"),
         ("--from 2026-06-21 --to 2026-06-21T12:00Z", "two days"),
-        ("--from 2026-06-21T12:00 --to 2026-06-21T13:00", "--zone"),
         ("--from 2026-03-29T02:30 --to 2026-03-29T13:00 --zone Europe/Amsterdam", "skip"),
         ("--from 1000-01-01 --to 2900-01-01", "3700"),
         ("--rule sunny", "nl-light"),
@@ -195,9 +194,13 @@ fn what_cannot_be_is_refused_with_advice() {
     let words = ["--location", "latitude", "reference system"];
     place.refusal(2, &format!("sun-hours {lost} --date 2026-06-21 -o no.csv"), &words);
     let run = place.summary(&format!("sun-hours {lost} --date 2026-06-21 --location -33.9,151.2 -o south.csv"));
-    // the shortest day of Sydney, by the sun's own clock
+    // the shortest day of Sydney, on its clocks
     assert!((run["period"]["possible_hours_per_day"].as_f64().unwrap() - 9.85).abs() < 0.1, "{run}");
-    assert_eq!(run["period"]["time_zone"], "mean solar time");
+    assert_eq!(run["period"]["time_zone"], "Australia/Sydney");
+    // the open sea has no zone
+    let sea = format!("sun-hours {lost} --location -33.9,-20 -o sea.csv");
+    assert_eq!(place.summary(&format!("{sea} --date 2026-06-21"))["period"]["time_zone"], "mean solar time");
+    place.refusal(2, &format!("{sea} --from 2026-06-21T12:00 --to 2026-06-21T13:00"), &["--zone"]);
     // polar night: no hours, and no share
     let run = place.summary(&format!("sun-hours {lost} --date shortest-day --location 80,15 -o night.csv"));
     assert_eq!(run["period"]["suns"], 0);

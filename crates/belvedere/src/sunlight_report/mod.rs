@@ -239,13 +239,6 @@ pub fn sunlight_report(
             expected: "given with areas and a plan: it counts the shade that the plan adds to them",
         });
     }
-    if params.study == Some(ShadowStudy::Toronto) && params.place.zone.is_none() {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::TimeZone,
-            value: "missing".to_owned(),
-            expected: "given with this study, whose hours are those of the clock, such as America/Toronto",
-        });
-    }
     let mut remarks = Vec::new();
     let box_of_maps = maps::extent(present, planned, params);
     let before = State::of(present, params, box_of_maps, &mut remarks, control)?;
