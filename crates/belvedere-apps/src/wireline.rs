@@ -4,7 +4,7 @@
 //! Scottish Natural Heritage 2017, Visual Representation of Wind Farms: planar frames of 53.5° x 18.2°.
 
 use crate::towers::Tower;
-use belvedere_core::query::{EarthParams, MedialScene, VerticalLine, VisibleTerrain};
+use belvedere_core::query::{Answer, EarthParams, MedialScene, VerticalLine, VisibleTerrain};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
@@ -60,6 +60,8 @@ pub struct TowerOutline {
     pub visible: Vec<[f64; 2]>,
     /// Their length together, metres.
     pub visible_metres: f64,
+    /// True if the middle of the longest visible part is unproven; `None` if nothing is visible, or without pulses.
+    pub is_unproven: Option<bool>,
     /// The swept disc, seen from the front; `None` without a hub.
     pub rotor: Option<RotorOutline>,
 }
@@ -189,12 +191,14 @@ impl TowerOutline {
         let VerticalLine { foot, height } = tower.line;
         let azimuth = (foot[0] - eye[0]).atan2(foot[1] - eye[1]).rem_euclid(TAU);
         let distance = (foot[0] - eye[0]).hypot(foot[1] - eye[1]);
-        let (visible, visible_metres) = seen(scene, tower.line, eye, earth);
+        let (visible, visible_metres, longest) = seen(scene, tower.line, eye, earth);
         let at = |above: f64| earth.apparent_elevation(eye, [foot[0], foot[1], foot[2] + above]);
         let rotor = tower.hub.filter(|hub| height > *hub).map(|hub| {
             let center = [foot[0], foot[1], foot[2] + hub];
             RotorOutline::new(scene, (center, height - hub), (azimuth, distance), eye, earth)
         });
+        let longest = longest.or(rotor.as_ref().and_then(|(_, longest)| *longest)).filter(|_| scene.proof().is_some());
+        let is_unproven = |middle| scene.far_sight_answer(eye, middle, earth) == Answer::Unproven;
         Self {
             number,
             azimuth,
@@ -203,7 +207,8 @@ impl TowerOutline {
             hub: tower.hub.map(at),
             visible,
             visible_metres,
-            rotor,
+            is_unproven: longest.map(is_unproven),
+            rotor: rotor.map(|(rotor, _)| rotor),
         }
     }
 }
@@ -216,32 +221,44 @@ impl RotorOutline {
         (azimuth, distance): (f64, f64),
         eye: [f64; 3],
         earth: &EarthParams,
-    ) -> Self {
+    ) -> (Self, Option<[f64; 3]>) {
         let columns = 2.0 * radius / distance * WirelineFrame::plane_distance();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most their maximum")]
         let count = (columns.ceil().clamp(9.0, MAX_ROTOR_LINES as f64) as usize) | 1;
         let across = [azimuth.cos(), -azimuth.sin()];
-        let (mut whole, mut open) = (0.0, 0.0);
+        let (mut whole, mut open, mut longest) = (0.0, 0.0, (0.0, None));
         let line = |i: usize| {
             let aside = radius * (2.0 * (i as f64 + 0.5) / count as f64 - 1.0);
             let half = (radius * radius - aside * aside).sqrt();
             let foot = [center[0] + aside * across[0], center[1] + aside * across[1], center[2] - half];
-            let (visible, metres) = seen(scene, VerticalLine { foot, height: 2.0 * half }, eye, earth);
+            let (visible, metres, middle) = seen(scene, VerticalLine { foot, height: 2.0 * half }, eye, earth);
+            if metres > longest.0 {
+                longest = (metres, middle);
+            }
             whole += 2.0 * half;
             open += metres;
             ((foot[0] - eye[0]).atan2(foot[1] - eye[1]).rem_euclid(TAU), visible)
         };
         let lines = (0..count).map(line).collect();
-        Self { lines, line_width: 2.0 * radius / count as f64 / distance, visible_share: open / whole }
+        let outline = Self { lines, line_width: 2.0 * radius / count as f64 / distance, visible_share: open / whole };
+        (outline, longest.1)
     }
 }
 
-/// The visible parts of a line as elevations, and their length, metres.
-fn seen(scene: &MedialScene, line: VerticalLine, eye: [f64; 3], earth: &EarthParams) -> (Vec<[f64; 2]>, f64) {
+/// The visible parts of a line as elevations, their length, metres, and the middle of the longest.
+fn seen(
+    scene: &MedialScene,
+    line: VerticalLine,
+    eye: [f64; 3],
+    earth: &EarthParams,
+) -> (Vec<[f64; 2]>, f64, Option<[f64; 3]>) {
     let spans = scene.vertical_sight(line, earth).seen_from(eye);
     let at = |above: f64| earth.apparent_elevation(eye, [line.foot[0], line.foot[1], line.foot[2] + above]);
     let metres = spans.iter().map(|[from, to]| to - from).fold(0.0, |sum, length| sum + length);
-    (spans.iter().map(|span| span.map(at)).collect(), metres)
+    let longest = spans.iter().copied().max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
+    let [x, y, z] = line.foot;
+    let middle = longest.map(|[from, to]| [x, y, z + f64::midpoint(from, to)]);
+    (spans.iter().map(|span| span.map(at)).collect(), metres, middle)
 }
 
 #[cfg(test)]
@@ -257,6 +274,7 @@ mod tests {
             hub: None,
             visible: Vec::new(),
             visible_metres: 0.0,
+            is_unproven: None,
             rotor: None,
         };
         azimuths_deg.iter().enumerate().map(outline).collect()

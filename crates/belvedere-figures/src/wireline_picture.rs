@@ -18,6 +18,9 @@ const SOLID: [u8; 3] = [128, 131, 140];
 const SOLID_EDGE: [u8; 3] = [84, 87, 96];
 const SEEN: [u8; 3] = [190, 20, 30];
 const SWEPT: [u8; 3] = [240, 160, 150];
+/// Visible parts of towers and discs that no pulse proves.
+const SEEN_UNPROVEN: [u8; 3] = [225, 135, 0];
+const SWEPT_UNPROVEN: [u8; 3] = [250, 205, 140];
 const HIDDEN: [u8; 3] = [226, 120, 120];
 const FAINT: [u8; 3] = [130, 132, 138];
 const LEVEL: [u8; 3] = [120, 140, 175];
@@ -61,6 +64,8 @@ pub struct DrawnTower {
     pub disc: Vec<(f64, Vec<[f64; 2]>)>,
     /// Columns of a line through the disc.
     pub disc_line: f64,
+    /// True if no pulse proves that it is visible.
+    pub is_unproven: bool,
 }
 
 /// Planes below each other, with a title above and a legend below.
@@ -200,10 +205,11 @@ fn mixed(from: [u8; 3], to: [u8; 3], share: f64) -> [u8; 3] {
 fn draw_tower(sheet: &mut Sheet, tower: &DrawnTower) {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a width within the picture")]
     let width = (tower.disc_line.ceil() as usize).clamp(1, 64);
+    let [seen, swept] = if tower.is_unproven { [SEEN_UNPROVEN, SWEPT_UNPROVEN] } else { [SEEN, SWEPT] };
     for (column, spans) in &tower.disc {
         let Some(column) = sheet.column(column - tower.disc_line / 2.0) else { continue };
         for &span in spans {
-            sheet.fill(column, span, width, SWEPT);
+            sheet.fill(column, span, width, swept);
         }
     }
     let Some(column) = sheet.column(tower.column - 1.0) else { return };
@@ -214,7 +220,7 @@ fn draw_tower(sheet: &mut Sheet, tower: &DrawnTower) {
         from += 7.0;
     }
     for &span in &tower.visible {
-        sheet.fill(column, span, 3, SEEN);
+        sheet.fill(column, span, 3, seen);
     }
 }
 
@@ -293,6 +299,7 @@ mod tests {
             visible,
             disc: vec![(30.5, vec![[60.0, 100.0]])],
             disc_line: 1.0,
+            is_unproven: false,
         };
         WirelinePlane {
             skyline: vec![[40.0, 100.0]; 201],
@@ -322,6 +329,13 @@ mod tests {
         // the hidden part is dotted
         let rows = |color| (-20..80).filter(|&above| at(101, above) == color).count();
         assert!(rows(SEEN) == 0 && (30..60).contains(&rows(HIDDEN)), "{}", rows(HIDDEN));
+        let mut unproven = plane(vec![[80.0, 120.0]]);
+        unproven.towers[0].is_unproven = true;
+        let picture = draw_plane(&unproven);
+        assert_eq!(
+            [100, 130].map(|column| picture.get(left + column, level - 90).unwrap()),
+            [SEEN_UNPROVEN, SWEPT_UNPROVEN]
+        );
         let whole = wireline_picture(&[plane(Vec::new()), plane(Vec::new())], "title", "legend");
         assert!(whole.width == 600 && whole.height > 2 * picture.height);
     }

@@ -345,5 +345,6 @@ pub(crate) fn geo_keys(place: &Georeference) -> text::GeoKeys {
 
 /// TIFF text is ASCII and ends with a zero byte.
 pub(crate) fn ascii(text: &str) -> String {
-    text.chars().map(|c| if c.is_ascii() && c != '\0' { c } else { '?' }).collect()
+    let plain = text.replace('°', "deg ").replace('²', "2").replace('³', "3");
+    plain.chars().map(|c| if c.is_ascii() && c != '\0' { c } else { '?' }).collect()
 }

@@ -44,8 +44,8 @@ pub fn summarise_parts(
             sky_view::summarise(measures, &places, context);
             sky_view::title(whereabouts)
         }
-        Question::Irradiance(_) => {
-            irradiance::summarise(measures, &places, context);
+        Question::Irradiance(energy) => {
+            irradiance::summarise(measures, &energy.radiation, &places, context);
             irradiance::title(whereabouts)
         }
         Question::Viewshed(about) => {

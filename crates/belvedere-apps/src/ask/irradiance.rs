@@ -443,7 +443,7 @@ impl Ask for IrradianceQuestion {
                 measures = energies.into_measures();
                 measures.iter_mut().for_each(|measure| light.targets.clear_unasked(&mut measure.values));
                 context.report.measures = Some(MeasuresSection::of(&light.targets, &measures));
-                summarise(&measures, &PlacesReport::in_words(&light.targets), context);
+                summarise(&measures, &self.radiation, &PlacesReport::in_words(&light.targets), context);
                 Some(light.titled(title(&scene.whereabouts())))
             }
         };
@@ -466,9 +466,10 @@ pub(super) fn title(whereabouts: &Whereabouts<'_>) -> String {
 }
 
 /// Reports the measures of places.
-pub(super) fn summarise(measures: &[Measure], places: &str, context: &mut Context) {
+pub(super) fn summarise(measures: &[Measure], radiation: &Radiation, places: &str, context: &mut Context) {
     if let Some(first) = measures.first() {
-        context.headline(format!("energy on {places}: {}", spread(&first.values, 0, "kWh/m²")));
+        let under = if radiation.weather().is_none() { ", in a year without clouds" } else { "" };
+        context.headline(format!("energy on {places}{under}: {}", spread(&first.values, 0, "kWh/m²")));
     }
 }
 

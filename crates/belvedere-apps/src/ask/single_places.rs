@@ -286,7 +286,8 @@ fn sentence(place: &PlaceSection, measures: &[Measure], row: usize) -> String {
                 text += &format!(", up to {angle:.2}° high, the nearest {nearest:.0} m away");
             }
         }
-        let unproven = if named(UNPROVEN) == Some(1.0) { ", unproven" } else { "" };
+        let unproven =
+            if named(UNPROVEN) == Some(1.0) { "; no pulse proves that the largest part is visible" } else { "" };
         return format!("at {x:.1}, {y:.1} (height {z:.1}{on}): {text}{unproven}");
     }
     let found = match (named("sun_hours"), named("hours_low"), named("hours_high")) {
@@ -307,9 +308,16 @@ fn sentence(place: &PlaceSection, measures: &[Measure], row: usize) -> String {
             text
         }
         _ => {
-            let has_several_suns = measures.iter().filter(|measure| measure.description == LIT).count() > 1;
-            let words = |measure: &Measure| Some(figure(measure, value(measure)?, has_several_suns));
-            let figures = measures.iter().filter_map(words).filter(|text| !text.is_empty());
+            let of_suns: Vec<(&Measure, f64)> = measures
+                .iter()
+                .filter(|measure| measure.description == LIT)
+                .filter_map(|measure| Some((measure, value(measure)?)))
+                .collect();
+            let has_several_suns = of_suns.len() > 1;
+            let others = measures.iter().filter(|measure| !has_several_suns || measure.description != LIT);
+            let words = others.filter_map(|measure| Some(figure(measure, value(measure)?)));
+            let light = has_several_suns.then(|| light_of_suns(&of_suns));
+            let figures = light.into_iter().chain(words).filter(|text| !text.is_empty());
             let figures: Vec<String> = figures.take(MAX_FIGURES).collect();
             if figures.is_empty() { "no answer".to_owned() } else { figures.join(", ") }
         }
@@ -317,8 +325,44 @@ fn sentence(place: &PlaceSection, measures: &[Measure], row: usize) -> String {
     format!("at {x:.1}, {y:.1} (height {z:.1}{on}): {found}")
 }
 
+/// Light of several suns in their order: equal ones together, from the first to the last time.
+fn light_of_suns(suns: &[(&Measure, f64)]) -> String {
+    let mut stretches: Vec<(String, [String; 2])> = Vec::new();
+    let mut date = String::new();
+    for (measure, value) in suns {
+        let time =
+            measure.tags.iter().find(|(name, _)| name == "TIME").and_then(|(_, time)| time.get(..16)?.split_once('T'));
+        let label = match time {
+            Some((day, clock)) if day == date => clock.to_owned(),
+            Some((day, clock)) => {
+                day.clone_into(&mut date);
+                format!("{day} {clock}")
+            }
+            None => measure.name.clone(),
+        };
+        let words = light_in_words(*value);
+        match stretches.last_mut() {
+            Some((same, [_, last])) if *same == words => *last = label,
+            _ => stretches.push((words, [label.clone(), label])),
+        }
+    }
+    let in_words = |(words, [first, last]): &(String, [String; 2])| match first == last {
+        true => format!("{first} {words}"),
+        false => format!("{first} to {last} {words}"),
+    };
+    stretches.iter().map(in_words).collect::<Vec<_>>().join(", ")
+}
+
+fn light_in_words(share: f64) -> String {
+    match share {
+        0.0 => "in shadow".to_owned(),
+        1.0 => "lit".to_owned(),
+        share => format!("{:.0} % of the sun", 100.0 * share),
+    }
+}
+
 /// A measure in words; empty where it adds nothing.
-fn figure(measure: &Measure, value: f64, has_several_suns: bool) -> String {
+fn figure(measure: &Measure, value: f64) -> String {
     if measure.name == UNPROVEN {
         return if value > 0.0 { "unproven".to_owned() } else { String::new() };
     }
@@ -328,12 +372,7 @@ fn figure(measure: &Measure, value: f64, has_several_suns: bool) -> String {
         return if number == 0 { String::new() } else { format!("shaded by: {}", caster_name(number, &[])) };
     }
     if measure.description == LIT {
-        let found = match value {
-            0.0 => "in shadow".to_owned(),
-            1.0 => "lit".to_owned(),
-            share => format!("{:.0} % of the sun", 100.0 * share),
-        };
-        return if has_several_suns { format!("{} {found}", measure.name) } else { found };
+        return light_in_words(value);
     }
     let name = if measure.description.is_empty() { &measure.name } else { measure.description };
     format!("{name} {value:.*}", measure.decimals.min(3))
@@ -397,6 +436,15 @@ mod tests {
             [
                 "at 1.0, 2.0 (height 3.2, on the ground): 4.9 h of sun a day, with 90 % 4.3 to 5.4 h, first 09:40, last 15:10"
             ]
+        );
+        let sun = |clock: &str, lit: f32| {
+            let tags = [("TIME".to_owned(), format!("2026-03-21T{clock}:00+01:00"))];
+            Measure::new("lit", vec![lit]).with_description(LIT).with_tags(&tags)
+        };
+        let day = [sun("07:00", 0.0), sun("08:00", 1.0), sun("09:00", 1.0), sun("10:00", 0.25), sun("11:00", 0.0)];
+        assert!(
+            sentences(&[place], &day)[0]
+                .ends_with(": 2026-03-21 07:00 in shadow, 08:00 to 09:00 lit, 10:00 25 % of the sun, 11:00 in shadow")
         );
         let nothing = [Measure::new("sky", vec![f32::NAN])];
         assert!(sentences(&[place], &nothing)[0].ends_with("no answer"));

@@ -4,7 +4,7 @@ use super::places::test_edge;
 use super::scene::Scene;
 use super::sections::LinesSection;
 use super::trees::ThroughTrees;
-use super::{Context, Places};
+use super::{Context, Places, Remark};
 use crate::rows::Obstacles;
 use crate::targets::Targets;
 use crate::tree_light::{CrownLight, TreeLight};
@@ -32,6 +32,21 @@ pub struct OnTargets {
     pub title: String,
 }
 
+/// A warning of single places inside an obstacle, which get no light whatever stands around.
+fn remark_on_enclosed(targets: &Targets, blockers: &MedialScene) -> Option<Remark> {
+    let places = targets.positions.iter().filter(|place| place[2].is_finite()).map(|place| place.map(f64::from));
+    let depths: Vec<f64> = places
+        .filter(|place| blockers.is_inside_obstacle(*place))
+        .map(|place| blockers.enclosure(place).depth)
+        .collect();
+    let deepest = depths.iter().copied().fold(0.0, f64::max);
+    let so = format!(
+        "are inside an obstacle, up to {deepest:.2} m deep, and get no light there: check x, y and the height, or give \
+         a place outside"
+    );
+    Remark::of_share("places-inside-obstacle", depths.len(), targets.target_count(), "places", &so)
+}
+
 impl Light {
     /// Resolves targets and obstacles for light from `directions`, through trees at a latitude, radians, if a question
     /// has one. Pulses are loaded unless unproven answers count as visible.
@@ -46,6 +61,9 @@ impl Light {
         let targets = places.targets(scene, context, control)?;
         let near_edge = test_edge(scene, &targets, directions, context, control)?;
         let blockers = scene.blockers(unproven, control)?;
+        if matches!(places, Places::At(..)) {
+            context.add(remark_on_enclosed(&targets, &blockers));
+        }
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, Some(directions.len())));
         let trees = trees.of((scene, latitude), context, control)?;
         Ok(Self { targets, near_edge, blockers, trees })

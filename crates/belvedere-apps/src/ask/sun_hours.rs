@@ -213,13 +213,18 @@ pub(super) fn summarise(plan: &SunPlan, title: &str, measures: &[Measure], place
 /// The days of a schedule in a few words.
 pub(super) fn days_in_words(schedule: &SunSchedule, zone: &Zone) -> String {
     let [first, last] = ends(schedule);
-    let days = if first == last { first } else { format!("{first} to {last}, mean of days") };
+    let days = match &schedule.days[..] {
+        [_] | [] => first,
+        [_, _] => format!("mean of {first} and {last}"),
+        days => format!("mean of {} days, {first} to {last}", days.len()),
+    };
     format!("{days} ({})", zone.name())
 }
 
-/// First and last day.
+/// Earliest and latest day.
 fn ends(schedule: &SunSchedule) -> [String; 2] {
-    [schedule.days.first(), schedule.days.last()].map(|day| day.map(|day| day.date.to_string()).unwrap_or_default())
+    let dates = || schedule.days.iter().map(|day| day.date);
+    [dates().min(), dates().max()].map(|date| date.map(|date| date.to_string()).unwrap_or_default())
 }
 
 fn section(plan: &SunPlan, zone: &Zone, params: &DayParams) -> PeriodSection {

@@ -180,8 +180,10 @@ pub(crate) fn days_of_heat(
         }
     }
     if found.days.is_empty() {
-        let what = "the weather has no row with temperature and humidity at these days and hours";
-        return Err(Error::NoPoints { what: what.to_owned() });
+        let zone = rows.zone.name();
+        let what =
+            format!("the weather has no row with temperature and humidity at these days and hours (clock: {zone})");
+        return Err(Error::NoPoints { what });
     }
     Ok(found)
 }

@@ -6,9 +6,10 @@ use super::{
     SunPlaceArguments, ThroughTreesArguments, above_zero, at_least_one, height, known_crs,
 };
 use belvedere::weather::CalendarDay;
-use belvedere_tiles::Topic;
+use belvedere_tiles::{Plan, Topic};
 use clap::{Args, Subcommand};
-use std::path::PathBuf;
+use std::convert::Infallible;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 #[derive(Args)]
@@ -54,7 +55,7 @@ pub(crate) struct CityPlan {
     /// See --grid-north.
     #[arg(long = "sun", value_name = "AZ,EL", allow_hyphen_values = true, help_heading = "Questions")]
     pub(crate) suns: Vec<Numbers<2>>,
-    /// An instant for a shadow map: 2026-06-21T15:00, or 2026-06-21T15:00+02:00; repeatable
+    /// An instant for a shadow map: 2026-06-21T15:00 on the clocks of the place; repeatable
     #[arg(long = "time", value_name = "TIME", help_heading = "Questions")]
     pub(crate) times: Vec<String>,
     /// Map the hours of sun a day, for --date, or --from and --to
@@ -168,10 +169,18 @@ pub(crate) struct CityPlan {
     pub(crate) output: PathBuf,
 }
 
+/// Returns the folder of a plan, which may be given by its file.
+#[expect(clippy::unnecessary_wraps, reason = "a parser of values")]
+fn folder_of_plan(text: &str) -> Result<PathBuf, Infallible> {
+    let path = Path::new(text);
+    let of_file = path.parent().filter(|folder| Plan::path(folder) == path && path.is_file());
+    Ok(of_file.unwrap_or(path).to_owned())
+}
+
 #[derive(Args)]
 pub(crate) struct CityRun {
     /// Folder of the plan
-    #[arg(value_name = "DIR")]
+    #[arg(value_name = "DIR", value_parser = folder_of_plan)]
     pub(crate) run: PathBuf,
     /// Compute only a share of the tiles, such as 3/64, for the jobs of a cluster
     #[arg(long, value_name = "I/N")]
@@ -184,14 +193,14 @@ pub(crate) struct CityRun {
 #[derive(Args)]
 pub(crate) struct CityStatus {
     /// Folder of the plan
-    #[arg(value_name = "DIR")]
+    #[arg(value_name = "DIR", value_parser = folder_of_plan)]
     pub(crate) run: PathBuf,
 }
 
 #[derive(Args)]
 pub(crate) struct CityMerge {
     /// Folder of the plan
-    #[arg(value_name = "DIR")]
+    #[arg(value_name = "DIR", value_parser = folder_of_plan)]
     pub(crate) run: PathBuf,
     /// Result to merge: the name of its folder [default: the only one]
     #[arg(long, value_name = "NAME")]

@@ -277,7 +277,7 @@ pub(crate) struct ViewshedArguments {
 #[group(required = true, multiple = false)]
 pub(crate) struct Who {
     /// An observer in file coordinates or as LAT,LON; without Z --observer-height above the ground; repeatable
-    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
+    #[arg(long, visible_alias = "at", value_name = "X,Y[,Z]", allow_hyphen_values = true)]
     pub(crate) observer: Vec<MapPosition>,
     /// Observers from a table with columns x and y (.csv), or points and lines (.geojson .gpkg .shp)
     ///

@@ -59,7 +59,7 @@ pub(crate) struct ShadowArguments {
 #[derive(Args)]
 #[command(next_help_heading = "Period")]
 pub(crate) struct SunsArguments {
-    /// An instant on the clocks of the place, 2026-06-21T15:00, or with an offset, 2026-06-21T15:00+02:00; repeatable
+    /// An instant: 2026-06-21T15:00 on the clocks of the place, or 2026-06-21T15:00Z; repeatable
     ///
     /// 2026-06-21T15:00[Europe/Amsterdam] works as well. For several instants in equal steps use --date, or --from and
     /// --to.

@@ -15,7 +15,7 @@ pub(crate) struct SkyPlaces {
     /// Side of a cell in metres [default: 0.5, doubled until there are at most 4 million cells]
     #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Targets")]
     pub(crate) cell: Option<f64>,
-    /// Height of cells above the ground or above --surface, in metres [default: 0.1]
+    /// Height of cells and of places without Z above what is below, in metres [default: 0.1]
     ///
     /// Use 1.5 for the head of a person.
     #[arg(long = "target-height", value_name = "M", allow_negative_numbers = true, value_parser = length, help_heading = "Targets")]
@@ -80,6 +80,9 @@ pub(crate) struct SkyPlacesChoice {
     #[arg(long = "self")]
     pub(crate) own: bool,
     /// Query points of a file, or a mesh (.obj .json .ply with faces), in the coordinates of the scene
+    ///
+    /// Points of a table without z, and of .geojson .gpkg .shp, are --target-height above the ground, or above what
+    /// covers it, unless a column height says how far.
     #[arg(long, value_name = "FILE")]
     pub(crate) targets: Option<PathBuf>,
     /// Query a single place: X,Y[,Z] in file coordinates, or LATITUDE,LONGITUDE in degrees; repeatable

@@ -77,7 +77,7 @@ pub(crate) struct ReportArguments {
     #[command(flatten, next_help_heading = "Windows and areas")]
     pub(crate) north: NorthArguments,
     /// Daylight rule of the windows, as in `belvedere sun-hours`, such as nl-light or 2@03-21 [default: no verdict]
-    #[arg(long, value_name = "RULE", requires = "windows", help_heading = "Rules and days")]
+    #[arg(long, value_name = "RULE", help_heading = "Rules and days")]
     pub(crate) rule: Option<String>,
     /// Daylight rule of the areas [default: bre-equinox, 2 h on 21 March]
     #[arg(long = "area-rule", value_name = "RULE", requires = "area", help_heading = "Rules and days")]

@@ -131,7 +131,13 @@ pub(crate) struct What {
 #[command(next_help_heading = "Observers")]
 pub(crate) struct EyesArguments {
     /// An observer in file coordinates or as LAT,LON; without Z --observer-height above the ground; repeatable
-    #[arg(long = "observer", value_name = "X,Y[,Z]", allow_hyphen_values = true, required_unless_present = "eyes")]
+    #[arg(
+        long = "observer",
+        visible_alias = "at",
+        value_name = "X,Y[,Z]",
+        allow_hyphen_values = true,
+        required_unless_present = "eyes"
+    )]
     pub(crate) eye: Vec<MapPosition>,
     /// Observers from a table with columns x and y (.csv) or from points (.geojson .gpkg .shp)
     ///

@@ -91,7 +91,8 @@ fn add_headlines(summary: &mut Summary, cloud: &PointCloud, statistics: &CloudSu
         let [width, depth] = [0, 1].map(|axis| high[axis] - low[axis]);
         let unit = if cloud.frame.crs.metres_per_unit == 1.0 { "m" } else { "units" };
         let heights = format!("heights {:.1} to {:.1}", low[2], high[2]);
-        summary.answer(&format!("{width:.0} x {depth:.0} {unit} on the map, {heights}"));
+        let [x, y] = [0, 1].map(|axis| format!("{:.0} to {:.0}", low[axis], high[axis]));
+        summary.answer(&format!("{width:.0} x {depth:.0} {unit} on the map: x {x}, y {y}; {heights}"));
     }
     summary.headline("reference system: <reading.reference_system>");
     summary.headline(

@@ -17,6 +17,9 @@ use std::path::Path;
 
 pub(crate) fn run(arguments: &ReportArguments, global: &Global) -> Result<Summary> {
     check_output("-o", &arguments.output, &["html"])?;
+    if arguments.rule.is_some() && arguments.windows.is_none() {
+        return Err(Usage("--rule is for --windows; the rule of areas is --area-rule".to_owned()).into());
+    }
     arguments.windows.as_deref().map_or(Ok(()), refuse_mesh)?;
     let plan = &arguments.scene.plan;
     if arguments.study.is_some() && plan.add.is_empty() && plan.clear.is_empty() {

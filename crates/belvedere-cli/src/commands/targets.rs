@@ -1,6 +1,7 @@
 //! Targets of the sun and the sky: from flags and files to places, and from measures to files.
 
 use super::query::{points_of_file, text_rows_for};
+use super::surroundings::{ObserverUse, observer_rows, rows_as_given};
 use super::typed_places::on_map;
 use super::{check_output, extension};
 use crate::arguments::{CloudInput, FacingChoice, GroundChoice, MapPosition, SkyOutputs, SkyPlaces, Usage};
@@ -9,19 +10,26 @@ use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{
-    GridCells, OnTargets, Places, Reach, Remark, Scene, Turned, position_on_map, standing_on_map,
+    GridCells, OnTargets, Places, Reach, Remark, Scene, Standing, Turned, position_on_map, standing_on_map,
 };
 use belvedere::apps::targets::{CellLevel, Facing, Measure, MeshParams};
 use belvedere::figures::{Picture, write_png};
 use belvedere::ground::GroundPoints;
-use belvedere::io::{Georeference, MetadataTag, ReadOptions, atomic, is_mesh, write_tif_u8};
+use belvedere::io::{
+    FEATURE_EXTENSIONS, Georeference, MetadataTag, ObserverRow, ReadOptions, RowsAre, atomic, is_mesh, write_tif_u8,
+};
 use belvedere::raster::Raster;
 use belvedere::results::{
     ResultKind, TakenFrom, georeference, measure_map, relief_of_cells, write_measures, write_raster,
 };
 use belvedere::{Mesh, PointCloud};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// Bytes of the header of a table that are looked at.
+const LONGEST_HEADER: u64 = 1 << 16;
 
 /// Source of targets.
 pub(crate) enum TargetSource {
@@ -32,6 +40,8 @@ pub(crate) enum TargetSource {
     Own,
     /// Points with their attributes, and the file they were read from.
     File(Arc<PointCloud>, PathBuf),
+    /// Places without heights, and the file they were read from.
+    Places(PathBuf),
     Mesh(Arc<Mesh>),
 }
 
@@ -65,6 +75,7 @@ impl SkyPlaces {
     pub(crate) fn check(&self, outputs: &SkyOutputs) -> Result<()> {
         let mesh = self.places.targets.as_deref().is_some_and(is_mesh);
         let points = self.places.own || self.places.targets.is_some() && !mesh || !self.places.at.is_empty();
+        let on_ground = !self.places.at.is_empty() || self.places.targets.as_deref().is_some_and(lacks_heights);
         MapPosition::refuse_twice("--at", &self.places.at)?;
         let known: &[&str] = match (mesh, points) {
             (true, _) => &["csv", "ply"],
@@ -81,7 +92,12 @@ impl SkyPlaces {
             ("--measures", outputs.measures.is_some(), mesh || points, "a grid"),
             ("--edge-mask", self.edge_mask.is_some(), mesh || points, "a grid"),
             ("--cell", self.cell.is_some(), mesh || points, "a grid"),
-            ("--target-height", self.height.is_some(), mesh || points && self.places.at.is_empty(), "a grid"),
+            (
+                "--target-height",
+                self.height.is_some(),
+                mesh || points && !on_ground,
+                "a grid, and places without heights",
+            ),
             ("--spacing", self.spacing.is_some(), !mesh, "a mesh"),
         ];
         if let Some((flag, .., what)) = refused.into_iter().find(|(_, given, wrong, _)| *given && *wrong) {
@@ -102,7 +118,7 @@ impl SkyPlaces {
 
     /// Returns true if the points of the scene are needed.
     pub(crate) fn needs_points(&self) -> bool {
-        self.places.targets.is_none()
+        self.places.targets.as_deref().is_none_or(lacks_heights)
     }
 
     /// The cells that were typed.
@@ -157,6 +173,10 @@ impl SkyPlaces {
             let params = self.spacing.map_or(usual, |spacing| usual.with_spacing(spacing));
             return Ok((Places::Mesh(Arc::clone(&mesh), params), TargetSource::Mesh(mesh)));
         }
+        if lacks_heights(path) {
+            let places = self.places_of_file(path, scene, run)?;
+            return Ok((Places::At(places, self.ground.points()), TargetSource::Places(path.clone())));
+        }
         let cloud = Arc::new(points_of_file(path, &ReadOptions::new(), scene.frame(), run)?);
         let normals = match (self.facing, &cloud.attributes.normals) {
             (Some(FacingChoice::Normals), None) => {
@@ -168,6 +188,34 @@ impl SkyPlaces {
         };
         Ok((Places::Cloud(Arc::clone(&cloud), normals), TargetSource::File(cloud, path.clone())))
     }
+
+    /// The places of a file without heights, `--target-height` or their own height above the ground.
+    fn places_of_file(&self, path: &Path, scene: &Scene, run: &mut CommandContext) -> Result<Vec<Standing>> {
+        let frame = scene.frame();
+        let rows = observer_rows(path, frame, RowsAre::Places, ObserverUse::Places, run)?;
+        let standing = |row: &ObserverRow| match row.corners[..] {
+            [place] => Ok(Standing {
+                place: [0, 1, 2].map(|axis| place[axis] - frame.origin[axis]),
+                height: row.height.or(self.height.map(f64::from)),
+            }),
+            _ => Err(Usage(format!("{}: targets are points; it has lines or polygons", path.display())).into()),
+        };
+        rows.iter().map(standing).collect()
+    }
+}
+
+/// Returns true for places of a map, and for a table whose header has x and y, but no z: they stand on the ground.
+fn lacks_heights(path: &Path) -> bool {
+    match extension(path).as_str() {
+        "csv" | "txt" => {}
+        other => return FEATURE_EXTENSIONS.contains(&other),
+    }
+    let mut header = String::new();
+    let read = File::open(path).and_then(|file| BufReader::new(file.take(LONGEST_HEADER)).read_line(&mut header));
+    let names: Vec<String> =
+        header.split([',', ';', '\t', ' ']).map(|name| name.trim().trim_matches('"').to_ascii_lowercase()).collect();
+    let has = |wanted: &str| names.iter().any(|name| name == wanted);
+    read.is_ok() && has("x") && has("y") && !has("z")
 }
 
 impl<'a> TargetOutput<'a> {
@@ -252,11 +300,15 @@ impl<'a> TargetOutput<'a> {
         }
         let rows = match &self.source {
             TargetSource::File(_, file) => text_rows_for(file, output)?,
+            TargetSource::Places(file) if extension(output) == "csv" => {
+                Some(rows_as_given(Some(file))?).filter(|rows| rows.row_count() > 0)
+            }
             _ => None,
         };
         let from = match &self.source {
             TargetSource::Cells | TargetSource::Single => TakenFrom::Nothing,
             TargetSource::Own => TakenFrom::Cloud(self.scene.cloud()),
+            TargetSource::Places(_) => rows.as_ref().map_or(TakenFrom::Nothing, TakenFrom::Rows),
             TargetSource::File(cloud, _) => rows.as_ref().map_or(TakenFrom::Cloud(cloud), TakenFrom::Rows),
             TargetSource::Mesh(mesh) => TakenFrom::Mesh(mesh),
         };

@@ -267,7 +267,6 @@ fn what_cannot_be_is_refused_with_advice() {
     for (flags, words) in [
         ("-o no.csv", "--time"),
         ("--time noon -o no.csv", "--time"),
-        ("--time 2026-06-21T15:00 -o no.csv", "--zone"),
         ("--time 2026-03-29T02:30 --zone Europe/Amsterdam -o no.csv", "skip"),
         ("--time 2026-06-21T15:00Z --date 2026-06-21 -o no.csv", "--date"),
         ("--sun 180,91 -o no.csv", "elevation"),

@@ -198,7 +198,7 @@ fn what_cannot_be_is_refused_with_advice() {
     assert!((run["period"]["possible_hours_per_day"].as_f64().unwrap() - 9.85).abs() < 0.1, "{run}");
     assert_eq!(run["period"]["time_zone"], "Australia/Sydney");
     // the open sea has no zone
-    let sea = format!("sun-hours {lost} --location -33.9,-20 -o sea.csv");
+    let sea = format!("sun-hours {lost} --location 0,-30 -o sea.csv");
     assert_eq!(place.summary(&format!("{sea} --date 2026-06-21"))["period"]["time_zone"], "mean solar time");
     place.refusal(2, &format!("{sea} --from 2026-06-21T12:00 --to 2026-06-21T13:00"), &["--zone"]);
     // polar night: no hours, and no share
@@ -229,8 +229,47 @@ fn a_single_place_has_a_sentence_with_the_hours_of_the_table() {
     let [x, y, ground] = at(0.0, 0.0, 0.0);
     let roof = &place.summary(&format!("{question} --at {x},{y}"))["at"][0];
     assert!(roof["position"][2].as_f64().unwrap() > ground + 2.0 && roof["height_from"] == "cover", "{roof}");
+    // half a metre deep in the west wall nothing is lit, and it is said why
+    let [west, y, z] = at(-4.6, 0.25, 2.25);
+    let inside = place.run(&format!("{question} --at {west},{y},{z}"));
+    assert!(inside.stderr.contains("1 of 1 places (100 %) are inside an obstacle"), "{inside:?}");
     // a wrong place is refused before balls are made
     let wrong = place.run(&format!("--progress json {question} --at {},{y}", x + 9000.0));
     assert!(wrong.status != 0 && wrong.stderr.contains("the points reach from"), "{wrong:?}");
     assert!(!wrong.stderr.contains("balls"), "{wrong:?}");
+}
+
+#[test]
+fn places_of_a_file_without_heights_stand_on_the_ground() {
+    let place = place();
+    let question = format!("sun-hours {HOUSE} --date 2026-03-21");
+    // behind the house, where the shade of its roof ends higher up
+    let places = [[0.0, 10.7], [0.0, -9.0]].map(|[x, y]| at(x, y, 0.0));
+    let rows: Vec<String> = places.iter().map(|[x, y, _]| format!("{x},{y}")).collect();
+    place.write("flat.csv", format!("id,x,y\nbench,{}\ndoor,{}\n", rows[0], rows[1]));
+    let point = |[x, y, _]: [f64; 3]| {
+        format!(
+            r#"{{"type":"Feature","properties":{{"height":1.5}},"geometry":{{"type":"Point","coordinates":[{x},{y}]}}}}"#
+        )
+    };
+    let crs = r#""crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::28992"}}"#;
+    place.write(
+        "places.geojson",
+        format!(r#"{{"type":"FeatureCollection",{crs},"features":[{},{}]}}"#, point(places[0]), point(places[1])),
+    );
+    let hours = |flags: &str| {
+        place.summary(&format!("{question} {flags} -o found.csv"));
+        column(&place, "found.csv", "sun_hours")
+    };
+    let single = format!("--at {} --at {}", rows[0], rows[1]);
+    let low = hours(&single);
+    assert_eq!(hours("--targets flat.csv"), low);
+    // columns of the table stay
+    assert!(place.text("found.csv").lines().nth(2).unwrap().starts_with("door,"), "{}", place.text("found.csv"));
+    let high = hours(&format!("{single} --target-height 1.5"));
+    assert!(high != low);
+    assert_eq!(hours("--targets flat.csv --target-height 1.5"), high);
+    assert_eq!(hours("--targets places.geojson"), high);
+    let refused = format!("{question} --targets places.csv --target-height 1.5 -o no.csv");
+    place.refusal(2, &refused, &["--target-height", "places without heights"]);
 }

@@ -277,8 +277,14 @@ impl ClearedArea {
             };
             let (own_low, own_high) = (bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY));
             if (0..2).any(|axis| own_low[axis] > last[axis] || own_high[axis] < first[axis]) {
-                let [x, y] = [0, 1].map(|axis| own_low[axis] + origin[axis]);
-                return invalid(format!("from x {x:.1}, y {y:.1} m on"), "on the cloud, in its coordinates");
+                let [[x, y], [west, south], [east, north]] =
+                    [own_low, first, last].map(|corner| [0, 1].map(|axis| corner[axis] + origin[axis]));
+                return invalid(
+                    format!(
+                        "from x {x:.1}, y {y:.1} m on (the points reach from {west:.0}, {south:.0} to {east:.0}, {north:.0})"
+                    ),
+                    "on the cloud, in its coordinates",
+                );
             }
             low = [0, 1].map(|axis| low[axis].min(own_low[axis]));
             high = [0, 1].map(|axis| high[axis].max(own_high[axis]));

@@ -13,7 +13,7 @@ const EDGE_DEG: f64 = 9.1;
 /// Degrees between azimuths and between elevations with a number.
 const AZIMUTH_STEP_DEG: i32 = 5;
 const ELEVATION_STEP_DEG: i32 = 2;
-const LEGEND: &str = "Red: visible parts of towers, and of the areas that blades sweep. Dotted: hidden. Grey: buildings, trees and ground \
+const LEGEND: &str = "Red: visible parts of towers, and of the areas that blades sweep. Orange: visible, but no pulse proves it. Dotted: hidden. Grey: buildings, trees and ground \
      of the cloud. Green to blue: terrain beyond it, near to far. From a distance equal to the width of the picture, \
      angles are as in nature.";
 
@@ -112,6 +112,7 @@ fn drawn(tower: &TowerOutline, frame: &WirelineFrame, found: &TowerWirelines) ->
         visible: spans(tower.azimuth, &tower.visible),
         disc: disc.collect(),
         disc_line: disc_line / (along * along),
+        is_unproven: tower.is_unproven == Some(true),
     })
 }
 
@@ -136,6 +137,7 @@ fn write_rows(path: &Path, found: &TowerWirelines) -> Result<()> {
     let tips = real(&|tower| tower.elevations[1].to_degrees());
     let metres = real(&|tower| tower.visible_metres);
     let shares = real(&|tower| optional(tower.rotor.as_ref().map(|rotor| rotor.visible_share)));
+    let unproven: Vec<Option<u64>> = rows.iter().map(|(_, tower)| tower.is_unproven.map(u64::from)).collect();
     write_table(
         path,
         &[
@@ -148,6 +150,7 @@ fn write_rows(path: &Path, found: &TowerWirelines) -> Result<()> {
             ("tip_deg", TableCells::Real(&tips, 3)),
             ("visible_m", TableCells::Real(&metres, 1)),
             ("disc_visible_share", TableCells::Real(&shares, 3)),
+            ("unproven", TableCells::Whole(&unproven)),
         ],
     )
 }
