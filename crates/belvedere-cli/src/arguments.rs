@@ -52,7 +52,9 @@ pub(crate) use scene::{
     SceneConfig, SceneInput, UpChoice,
 };
 pub(crate) use shadow::ShadowArguments;
-pub(crate) use sky::{FacingChoice, FarTerrainArguments, PatchesChoice, SkyOutputs, SkyPlaces, SkyViewArguments};
+pub(crate) use sky::{
+    AreaOutputs, FacingChoice, FarTerrainArguments, PatchesChoice, SkyOutputs, SkyPlaces, SkyViewArguments,
+};
 pub(crate) use sun::{ElevationChoice, SunHoursArguments, SunPeriod, SunPlaceArguments, SunPositionArguments};
 pub(crate) use sunlight::{ReportArguments, SunCalendarArguments};
 pub(crate) use surroundings::{

@@ -64,6 +64,8 @@ const GROUPS: [(&str, &[&str]); 7] = [
 
 /// Flags that `-h` leaves out, so that it fits a screen; `--help` has all.
 const RARE: &[&str] = &[
+    "areas",
+    "by-area",
     "air",
     "albedo",
     "back-faces",

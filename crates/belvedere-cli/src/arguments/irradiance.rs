@@ -1,8 +1,8 @@
 //! Flags of irradiance and of photovoltaic loss.
 
 use super::{
-    IntervalArgument, MemoryArgument, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTreesArguments,
-    above_zero, at_least_one, location,
+    AreaOutputs, IntervalArgument, MemoryArgument, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces,
+    ThroughTreesArguments, above_zero, at_least_one, location,
 };
 use belvedere::apps::ask::PvChoice;
 use belvedere::apps::irradiance::{SkyModel, Surroundings};
@@ -170,17 +170,19 @@ pub(crate) struct IrradianceOutputs {
     /// On a grid: .tif has all measures as bands, the total first, with nodata -9999, and .png is a map of the total
     /// with a legend. Cells and points: all measures as columns. A mesh: a table with a row for each object and each
     /// face (.csv), or the mesh coloured by the total (.ply).
-    #[arg(short, long, value_name = "OUT", required_unless_present_any = ["planes", "at"], help_heading = "Result")]
+    #[arg(short, long, value_name = "OUT", required_unless_present_any = ["planes", "at", "by_area"], help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     /// Also write a raster of each measure of a grid into this folder; created if it does not exist
     #[arg(long, value_name = "DIR", help_heading = "Result")]
     pub(crate) measures: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) by_area: AreaOutputs,
 }
 
 impl IrradianceOutputs {
     /// The same as other commands have it.
     pub(crate) fn of_places(&self) -> SkyOutputs {
-        SkyOutputs { output: self.output.clone(), measures: self.measures.clone() }
+        SkyOutputs { output: self.output.clone(), measures: self.measures.clone(), by_area: self.by_area.clone() }
     }
 }
 

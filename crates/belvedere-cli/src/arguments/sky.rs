@@ -108,11 +108,27 @@ pub(crate) struct SkyOutputs {
     /// On a grid: .tif has all measures as bands with their names (nodata: 255 of yes or no, -9999 of numbers), and
     /// .png is a map of the first with a legend. Cells and points: all measures as columns. A mesh: a table with a row
     /// for each object and each face (.csv), or the mesh coloured by the first measure (.ply).
-    #[arg(short, long, value_name = "OUT", required_unless_present = "at", help_heading = "Result")]
+    #[arg(short, long, value_name = "OUT", required_unless_present_any = ["at", "by_area"], help_heading = "Result")]
     pub(crate) output: Vec<PathBuf>,
     /// Also write a raster of each measure of a grid into this folder; created if it does not exist
     #[arg(long, value_name = "DIR", help_heading = "Result")]
     pub(crate) measures: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) by_area: AreaOutputs,
+}
+
+/// Results of cells, summed up over areas.
+#[derive(Args, Clone)]
+pub(crate) struct AreaOutputs {
+    /// Areas such as parcels to sum up the cells of a grid over: polygons (.geojson .gpkg .shp)
+    #[arg(long, value_name = "FILE", requires = "by_area", help_heading = "Targets")]
+    pub(crate) areas: Option<PathBuf>,
+    /// With --areas: each area with its attributes and the mean of each measure (.csv .geojson .gpkg)
+    ///
+    /// A cell belongs to the area that holds its middle; cells without a value do not count, and the column cells says
+    /// how many did. The first measure has its least and greatest value too. The mean of answers, 0 or 1, is a share.
+    #[arg(long = "by-area", value_name = "OUT", requires = "areas", help_heading = "Result")]
+    pub(crate) by_area: Option<PathBuf>,
 }
 
 #[derive(Args)]

@@ -63,6 +63,7 @@ impl<'a> TypedCells<'a> {
             ("--at", !places.places.at.is_empty()),
             ("--edge-mask", places.edge_mask.is_some()),
             ("--measures", outputs.measures.is_some()),
+            ("--by-area", outputs.by_area.by_area.is_some()),
         ];
         Self {
             scene,

@@ -1,10 +1,13 @@
 //! Targets of the sun and the sky: from flags and files to places, and from measures to files.
 
+use super::outputs::warn_of_geojson;
 use super::query::{points_of_file, text_rows_for};
 use super::surroundings::{ObserverUse, observer_rows, rows_as_given};
 use super::typed_places::on_map;
 use super::{check_output, extension};
-use crate::arguments::{CloudInput, FacingChoice, GroundChoice, MapPosition, SkyOutputs, SkyPlaces, Usage};
+use crate::arguments::{
+    AreaOutputs, CloudInput, FacingChoice, GroundChoice, MapPosition, SkyOutputs, SkyPlaces, Usage,
+};
 use crate::pipeline::mesh_in;
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -16,11 +19,13 @@ use belvedere::apps::targets::{CellLevel, Facing, Measure, MeshParams};
 use belvedere::figures::{Picture, write_png};
 use belvedere::ground::GroundPoints;
 use belvedere::io::{
-    FEATURE_EXTENSIONS, Georeference, MetadataTag, ObserverRow, ReadOptions, RowsAre, atomic, is_mesh, write_tif_u8,
+    FEATURE_EXTENSIONS, Georeference, MetadataTag, ObserverRow, ReadOptions, RowsAre, atomic, is_mesh, read_features,
+    write_tif_u8,
 };
 use belvedere::raster::Raster;
 use belvedere::results::{
-    ResultKind, TakenFrom, georeference, measure_map, relief_of_cells, write_measures, write_raster,
+    ResultKind, TakenFrom, georeference, measure_map, relief_of_cells, values_by_area, write_area_values,
+    write_measures, write_raster,
 };
 use belvedere::{Mesh, PointCloud};
 use std::fs::File;
@@ -85,12 +90,16 @@ impl SkyPlaces {
         for output in &outputs.output {
             check_output("-o", output, known)?;
         }
+        if let Some(output) = &outputs.by_area.by_area {
+            check_output("--by-area", output, &["csv", "geojson", "gpkg"])?;
+        }
         if let Some(mask) = &self.edge_mask {
             check_output("--edge-mask", mask, &["tif", "tiff"])?;
         }
         let refused = [
             ("--measures", outputs.measures.is_some(), mesh || points, "a grid"),
             ("--edge-mask", self.edge_mask.is_some(), mesh || points, "a grid"),
+            ("--by-area", outputs.by_area.by_area.is_some(), mesh || points, "a grid"),
             ("--cell", self.cell.is_some(), mesh || points, "a grid"),
             (
                 "--target-height",
@@ -280,11 +289,36 @@ impl<'a> TargetOutput<'a> {
                 written.push(path.display().to_string());
             }
         }
+        if let AreaOutputs { areas: Some(areas), by_area: Some(output) } = &outputs.by_area {
+            self.write_by_area((areas, output), measures, run)?;
+            written.push(output.display().to_string());
+        }
         if matches!(self.source, TargetSource::Mesh(_)) {
             let meshes = outputs.output.iter().filter(|output| extension(output) == "ply");
             meshes.for_each(|output| run.summary.remarks(remark_on_first(output, measures)));
         }
         run.summary.add("written", written);
+        Ok(())
+    }
+
+    /// Writes the measures of cells, summed up over the areas of a file.
+    fn write_by_area(
+        &self,
+        (areas, output): (&Path, &Path),
+        measures: &[Measure],
+        run: &mut CommandContext,
+    ) -> Result<()> {
+        let frame = &self.on.targets.frame;
+        let features = read_features(areas, &frame.crs)?;
+        let found = values_by_area(&features, &self.on.targets, measures)?;
+        if found.is_empty() {
+            return Err(Usage(format!("--areas: {} has no polygons", areas.display())).into());
+        }
+        warn_of_geojson(std::slice::from_ref(&output.to_owned()), &frame.crs, &mut run.summary);
+        let empty = found.iter().filter(|area| area.cells == 0).count();
+        let so = "hold no cell with a value: they lie outside the scene, under roofs, or are smaller than cells";
+        run.summary.remarks(Remark::of_share("areas-without-cells", empty, found.len(), "areas", so));
+        run.stage("writing", 0, |_| write_area_values(output, &found, frame))?;
         Ok(())
     }
 

@@ -331,3 +331,65 @@ fn a_raster_has_a_band_for_each_sun_named_by_its_time() {
     // a picture has room for one
     assert!(remarks(&run).iter().any(|remark| remark.contains("day.png") && remark.contains("first of")), "{run}");
 }
+
+#[test]
+fn areas_have_the_means_of_their_cells() {
+    let place = place();
+    // behind the house, before it with a second part beside it, and far away
+    let ring = |[west, south, east, north]: [f64; 4]| {
+        let corner = |x: f64, y: f64| format!("[{},{}]", at(x, y, 0.0)[0], at(x, y, 0.0)[1]);
+        let corners = [corner(west, south), corner(east, south), corner(east, north), corner(west, north)];
+        format!("[[{},{}]]", corners.join(","), corners[0])
+    };
+    let parcels = [
+        vec![[-4.0, 5.0, 4.0, 14.5]],
+        vec![[-4.0, -12.0, 4.0, -5.0], [8.0, -3.0, 12.0, 3.0]],
+        vec![[5e3, 0.0, 6e3, 9.0]],
+    ];
+    let feature = |(number, boxes): (usize, &Vec<[f64; 4]>)| {
+        let rings: Vec<String> = boxes.iter().map(|one| ring(*one)).collect();
+        let geometry = format!(r#"{{"type":"MultiPolygon","coordinates":[{}]}}"#, rings.join(","));
+        format!(r#"{{"type":"Feature","properties":{{"parcel":"P{number}"}},"geometry":{geometry}}}"#)
+    };
+    let features: Vec<String> = parcels.iter().enumerate().map(feature).collect();
+    let crs = r#""crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::28992"}}"#;
+    place.write(
+        "parcels.geojson",
+        format!(r#"{{"type":"FeatureCollection",{crs},"features":[{}]}}"#, features.join(",")),
+    );
+    let shadow = format!("shadow {HOUSE} --sun 180,35 --cell 0.5 --areas parcels.geojson");
+    let run = place.run(&format!("{shadow} -o cells.csv --by-area parcels.csv"));
+    assert!(run.status == 0 && run.stderr.contains("1 of 3 areas (33.33 %) hold no cell"), "{run:?}");
+    let [x, y, lit] = ["x", "y", "lit"].map(|name| column(&place, "cells.csv", name));
+    let [cells, means, lows, highs] =
+        ["cells", "lit", "lit_min", "lit_max"].map(|name| column(&place, "parcels.csv", name));
+    for (number, boxes) in parcels.iter().enumerate() {
+        let is_inside = |row: &usize| {
+            let [west, south, _] = at(0.0, 0.0, 0.0);
+            let (x, y) = (x[*row] - west, y[*row] - south);
+            boxes.iter().any(|[w, s, e, n]| x > *w && x < *e && y > *s && y < *n)
+        };
+        let values: Vec<f64> = (0..lit.len()).filter(is_inside).map(|row| lit[row]).collect();
+        assert_eq!(cells[number], values.len() as f64);
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        assert!(values.is_empty() && means[number].is_nan() || (means[number] - mean).abs() < 1e-4, "{number}: {mean}");
+    }
+    // the house shades a part of the first area; its second has sun alone
+    assert!(means[0] > 0.0 && means[0] < 1.0 && [lows[0], highs[0]] == [0.0, 1.0], "{means:?}");
+    assert_eq!([means[1], lows[1]], [1.0, 1.0]);
+    assert!(place.text("parcels.csv").lines().nth(1).unwrap().starts_with("P0,"), "{}", place.text("parcels.csv"));
+    let again = place.run(&format!("{shadow} --by-area parcels.gpkg"));
+    assert!(again.status == 0 && again.stdout.contains("written: parcels.gpkg"), "{again:?}");
+    let nested = format!("shadow {HOUSE} --sun 180,35 --cell 0.5 --areas parcels.gpkg --by-area twice.csv");
+    place.summary(&nested);
+    assert_eq!(column(&place, "twice.csv", "lit")[..2], means[..2]);
+    place.write("line.geojson", r#"{"type":"LineString","coordinates":[[85000,446000],[85001,446000]]}"#);
+    for (flags, words) in [
+        ("--areas parcels.geojson -o no.tif", "--by-area"),
+        ("--areas parcels.geojson --by-area no.tif", "csv"),
+        ("--areas parcels.geojson --by-area no.csv --targets places.csv", "grid"),
+    ] {
+        let run = place.run(&format!("shadow {HOUSE} --sun 180,35 {flags}"));
+        assert!(run.status == 2 && run.stderr.contains(words), "{flags}: {run:?}");
+    }
+}

@@ -41,6 +41,8 @@ pub struct MapFeature {
     pub shape: FeatureShape,
     /// Its properties.
     pub properties: Map<String, Value>,
+    /// Number in the file, from 0: parts of a shape of several share it.
+    pub number: usize,
 }
 
 /// Extensions of files of points, lines and polygons.
@@ -101,8 +103,8 @@ fn of_geopackage(source: Source<'_>) -> Result<RawFeatures> {
     let name = source.name().to_owned();
     let layer = super::geopackage::read(source)?;
     let mut features = Vec::new();
-    for (geometry, properties) in layer.features {
-        of_geometry(geometry, &properties, &name, &mut features)?;
+    for (number, (geometry, properties)) in layer.features.into_iter().enumerate() {
+        of_geometry(geometry, (number, &properties), &name, &mut features)?;
     }
     let system = layer.system.as_deref().map(|text| system_of_text(text, &name)).transpose()?;
     Ok(RawFeatures { features, system, advice: OTHER_ADVICE })
@@ -156,20 +158,21 @@ fn of_geojson(source: Source<'_>) -> Result<RawFeatures> {
     let mut raw = Vec::new();
     let members = match file {
         GeoJson::FeatureCollection(collection) => {
-            for feature in collection.features {
+            for (number, feature) in collection.features.into_iter().enumerate() {
                 let properties = feature.properties.unwrap_or_default();
-                feature.geometry.map_or(Ok(()), |geometry| of_geometry(geometry, &properties, path, &mut raw))?;
+                let of = (number, &properties);
+                feature.geometry.map_or(Ok(()), |geometry| of_geometry(geometry, of, path, &mut raw))?;
             }
             collection.foreign_members
         }
         GeoJson::Feature(feature) => {
             let properties = feature.properties.unwrap_or_default();
-            feature.geometry.map_or(Ok(()), |geometry| of_geometry(geometry, &properties, path, &mut raw))?;
+            feature.geometry.map_or(Ok(()), |geometry| of_geometry(geometry, (0, &properties), path, &mut raw))?;
             feature.foreign_members
         }
         GeoJson::Geometry(mut geometry) => {
             let members = geometry.foreign_members.take();
-            of_geometry(geometry, &Map::new(), path, &mut raw)?;
+            of_geometry(geometry, (0, &Map::new()), path, &mut raw)?;
             members
         }
     };
@@ -230,11 +233,11 @@ fn place_all(corners: &mut [[f64; 3]], placing: &Placing, path: &Path) -> Result
 
 fn of_geometry(
     geometry: Geometry,
-    properties: &Map<String, Value>,
+    (number, properties): (usize, &Map<String, Value>),
     path: &Path,
     found: &mut Vec<MapFeature>,
 ) -> Result<()> {
-    let mut push = |shape| found.push(MapFeature { shape, properties: properties.clone() });
+    let mut push = |shape| found.push(MapFeature { shape, properties: properties.clone(), number });
     match geometry.value {
         GeometryValue::Point { coordinates } => push(FeatureShape::Point(position(&coordinates, path)?)),
         GeometryValue::MultiPoint { coordinates } => {
@@ -252,7 +255,7 @@ fn of_geometry(
         }
         GeometryValue::GeometryCollection { geometries } => {
             for member in geometries {
-                of_geometry(member, properties, path, found)?;
+                of_geometry(member, (number, properties), path, found)?;
             }
         }
     }

@@ -4,10 +4,16 @@ use crate::map_features::{FeatureShape, MapFeature};
 use crate::source::{Source, SystemBeside};
 use belvedere_data::{Error, Result};
 use serde_json::{Map, Value};
-use shapefile::dbase::{FieldValue, Reader as TableReader, Record};
+use shapefile::dbase::{CodePageMark, FieldValue, ReaderBuilder, Record};
 use shapefile::record::polygon::{GenericPolygon, PolygonRing};
 use shapefile::{NO_DATA, Shape, ShapeReader};
+use std::fs::{self, File};
+use std::io::Read;
 use std::path::Path;
+
+/// Bytes of the header of a table, and which of them names its code page.
+const HEADER_LENGTH: usize = 32;
+const MARK_IN_HEADER: usize = 29;
 
 /// Reads the shapes of a file, of any coordinates, and the well-known text of their system from the file `.prj`.
 ///
@@ -41,10 +47,10 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Vec<MapFeature>, Option<Syste
     }
     let mut records = records.unwrap_or_default().into_iter();
     let mut features = Vec::new();
-    for shape in shapes {
+    for (number, shape) in shapes.into_iter().enumerate() {
         let properties = records.next().unwrap_or_default();
         for shape in shapes_of(shape, path)? {
-            features.push(MapFeature { shape, properties: properties.clone() });
+            features.push(MapFeature { shape, properties: properties.clone(), number });
         }
     }
     Ok((features, source.system_beside()))
@@ -55,9 +61,47 @@ fn records_beside(path: &Path) -> Result<Option<Vec<Map<String, Value>>>> {
     let beside = ["dbf", "DBF"].map(|extension| path.with_extension(extension));
     let Some(table) = beside.iter().find(|table| table.is_file()) else { return Ok(None) };
     let wrong = |error: shapefile::dbase::Error| Error::malformed(table, format!("is no table of dBASE: {error}"));
-    let mut reader = TableReader::from_path(table).map_err(wrong)?;
+    let mut opened = ReaderBuilder::new();
+    if let Some(encoding) = code_page(table)?.and_then(CodePageMark::to_encoding) {
+        opened = opened.with_encoding(encoding);
+    }
+    let mut reader = opened.open(table).map_err(wrong)?;
     let rows = reader.iter_records().map(|record| Ok(properties_of(record.map_err(wrong)?)));
     rows.collect::<Result<Vec<_>>>().map(Some)
+}
+
+/// Returns the code page of the text of a table: by the file `.cpg`, or Western European where its header has none, as
+/// GDAL does; `None` for that of the header.
+fn code_page(table: &Path) -> Result<Option<CodePageMark>> {
+    let beside = ["cpg", "CPG"].map(|extension| table.with_extension(extension));
+    let Some(beside) = beside.iter().find(|file| file.is_file()) else {
+        let mut header = [0; HEADER_LENGTH];
+        let read = File::open(table).and_then(|mut file| file.read_exact(&mut header));
+        return Ok((read.is_ok() && header[MARK_IN_HEADER] == 0).then_some(CodePageMark::CP1252));
+    };
+    let text = fs::read_to_string(beside).map_err(Error::io(beside))?;
+    let name = text.trim().to_ascii_uppercase();
+    let digits: String = name.chars().filter(char::is_ascii_digit).collect();
+    Ok(Some(match digits.as_str() {
+        _ if name.starts_with("UTF") => CodePageMark::Utf8,
+        "65001" => CodePageMark::Utf8,
+        _ if name.starts_with("LATIN1") => CodePageMark::CP1252,
+        "1252" | "88591" => CodePageMark::CP1252,
+        "1250" => CodePageMark::CP1250,
+        "1251" => CodePageMark::CP1251,
+        "1253" => CodePageMark::CP1253,
+        "1254" => CodePageMark::CP1254,
+        "1255" => CodePageMark::CP1255,
+        "1256" => CodePageMark::CP1256,
+        "437" => CodePageMark::CP437,
+        "850" => CodePageMark::CP850,
+        "852" => CodePageMark::CP852,
+        "866" => CodePageMark::CP866,
+        _ => {
+            let what = format!("names an encoding that is not known, {}; save the table as UTF-8", text.trim());
+            return Err(Error::malformed(beside, what));
+        }
+    }))
 }
 
 fn properties_of(record: Record) -> Map<String, Value> {

@@ -6,6 +6,7 @@
 //! | points | | the points with their attributes, all measures as columns; `.csv` of a table: its rows |
 //! | faces of a mesh | | `.csv`: a row for each object and face; `.ply`: the mesh coloured by the first measure |
 
+mod by_area;
 mod calendar;
 #[cfg(feature = "figures")]
 mod difference;
@@ -17,6 +18,7 @@ mod raster;
 #[cfg(feature = "figures")]
 mod wirelines;
 
+pub use by_area::{AreaValues, values_by_area, write_area_values};
 pub use calendar::write_calendar;
 #[cfg(feature = "figures")]
 pub use difference::{difference_map, relief_of};
