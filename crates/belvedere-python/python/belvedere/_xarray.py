@@ -25,8 +25,7 @@ _SUN = {"SUN_AZIMUTH_DEG": "azimuth of the sun from north", "SUN_ELEVATION_DEG":
 def array_of(raster: Raster) -> xarray.DataArray:
     """A raster as an array of y and x, with its time where it has one."""
     coordinates: dict[str, Any] = {} if "TIME" not in raster.tags else {"time": _times([raster])[0]}
-    made = _array(raster, raster.values, (), coordinates, raster.tags)
-    return made
+    return _array(raster, raster.values, (), coordinates, raster.tags)
 
 
 def stack_of(rasters: Sequence[Raster]) -> xarray.DataArray:
@@ -77,7 +76,8 @@ def _array(
         name=raster.name or None,
         attrs=attributes,
     )
-    made.encoding["grid_mapping"] = _SYSTEM
+    # as an attribute, so that a file has one variable of data for those who open it without `decode_coords="all"`
+    made.attrs["grid_mapping"] = _SYSTEM
     return made
 
 
