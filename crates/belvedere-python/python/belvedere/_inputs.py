@@ -141,9 +141,9 @@ def pairs_of(
     observers = map_places(observer, "observer", advice, 0, crs)
     targets = map_places(target, "target", advice, 0, crs)
     if len(observers) == 1 and len(targets) > 1:
-        observers = np.repeat(observers, len(targets), axis=0)
+        observers = np.broadcast_to(observers, targets.shape)
     elif len(targets) == 1 and len(observers) > 1:
-        targets = np.repeat(targets, len(observers), axis=0)
+        targets = np.broadcast_to(targets, observers.shape)
     return observers, targets
 
 

@@ -236,7 +236,9 @@ class Sights:
         if "block_surface" in columns:
             columns["block_surface"] = np.asarray(columns["block_surface"])
         if not is_one:
-            table = Table(columns, places=np.where(np.isnan(targets), standing, targets), crs=self._core.crs.text)
+            # heights that were given, to their last digit
+            np.copyto(standing, targets, where=~np.isnan(targets))
+            table = Table(columns, places=standing, crs=self._core.crs.text)
             table.remarks = remarks
             return table
         nan = float("nan")
