@@ -60,6 +60,8 @@ def results(scene: belvedere.Scene, cloud: belvedere.Cloud, mesh: belvedere.Mesh
     assert_type((lit > 0.5) & ~(lit < 1), belvedere.Raster)
     assert_type(lit[lit == 1], npt.NDArray[Any])
     assert_type(lit.mean(), np.floating[Any])
+    assert_type(lit.sum(), np.number[Any])
+    print(f"{lit.max():.1f}", 1 - lit.min() <= 1, int(lit.sum()))
     assert_type(lit.mean(axis=0), npt.NDArray[np.floating[Any]])
     assert_type(lit.unproven, belvedere.Raster | None)
     assert_type(scene.sky_view()["sky_view_factor"], belvedere.Raster)
@@ -94,6 +96,7 @@ def refused(scene: belvedere.Scene, cloud: belvedere.Cloud, xyz: npt.NDArray[np.
     belvedere.Scene(cloud, without="houses")  # type: ignore[arg-type]
     belvedere.simulate("city")  # type: ignore[arg-type]
     belvedere.read("tile.laz", up="x")  # type: ignore[arg-type]
+    belvedere.city.answer("sun", "tiles", "sun.tif")  # type: ignore[arg-type]
     # ---- names and places of arguments
     scene.shadow("2026-06-21T15:00Z")  # type: ignore[call-overload]
     scene.shadow(time=TIME, resolution=1)  # type: ignore[call-overload]

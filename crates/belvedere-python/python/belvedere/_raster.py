@@ -300,7 +300,7 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
 
     if TYPE_CHECKING:
         # the operators of NDArrayOperatorsMixin, whose types are not known
-        def _operated(self, other: Operand, /) -> Raster: ...
+        def _operated(self, other: Operand) -> Raster: ...
         def _changed(self) -> Raster: ...
 
         __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = _operated
@@ -355,6 +355,10 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         """
         return self._reduced("mean", {"axis": axis, **keywords})
 
+    @overload
+    def sum(self, axis: None = None, **keywords: Any) -> np.number[Any]: ...
+    @overload
+    def sum(self, axis: int, **keywords: Any) -> npt.NDArray[np.number[Any]]: ...
     def sum(self, axis: int | None = None, **keywords: Any) -> Any:
         """Sum of the cells that have a value; also `numpy.sum`.
 
@@ -366,6 +370,10 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         """
         return self._reduced("sum", {"axis": axis, **keywords})
 
+    @overload
+    def min(self, axis: None = None, **keywords: Any) -> np.number[Any]: ...
+    @overload
+    def min(self, axis: int, **keywords: Any) -> npt.NDArray[np.number[Any]]: ...
     def min(self, axis: int | None = None, **keywords: Any) -> Any:
         """Least of the cells that have a value; also `numpy.min`.
 
@@ -376,6 +384,10 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         """
         return self._reduced("min", {"axis": axis, **keywords})
 
+    @overload
+    def max(self, axis: None = None, **keywords: Any) -> np.number[Any]: ...
+    @overload
+    def max(self, axis: int, **keywords: Any) -> npt.NDArray[np.number[Any]]: ...
     def max(self, axis: int | None = None, **keywords: Any) -> Any:
         """Greatest of the cells that have a value; also `numpy.max`.
 
