@@ -32,7 +32,7 @@ def is_single(value: Any) -> bool:
         return False
     if hasattr(value, "geom_type"):
         return bool(value.geom_type == "Point")
-    return _shapes(value, None) is None and np.ndim(value) == 1
+    return _shapes(value, None) is None and np.ndim(value) <= 1
 
 
 def is_table(value: object) -> bool:
