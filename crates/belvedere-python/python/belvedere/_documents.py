@@ -49,7 +49,7 @@ class Documents:
 
         Parameters
         ----------
-        windows : mapping of str to array_like, optional
+        windows : mapping of str to array_like, or DataFrame, optional
             Columns ``x, y, z`` and ``azimuth`` (degrees), and if known ``tilt`` (degrees, 90 upright). Their middles
             count.
         targets : array_like, shape (N, 3), (N, 2) or (2,), optional
@@ -145,7 +145,7 @@ class Documents:
         ----------
         path : path
             Where it is written (``.html``).
-        windows : mapping of str to array_like, optional
+        windows : mapping of str to array_like, or DataFrame, optional
             Columns ``x, y, z`` and ``azimuth`` (degrees), and if known ``tilt``, ``name`` and ``room``. Their middles
             count; for a rule, the sun of the windows of one room adds up.
         areas : mapping of str to array_like of shape (N, 2), optional

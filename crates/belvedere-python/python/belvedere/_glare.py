@@ -46,9 +46,9 @@ class Glare:
 
         Parameters
         ----------
-        reflectors : mapping of str to array_like
+        reflectors : mapping of str to array_like, or DataFrame
             Columns ``x, y, z`` of the middles of rectangles, ``azimuth`` that they face (degrees), ``width`` and
-            ``height`` (metres), and if known ``tilt`` (degrees, 90 upright) and ``name``; a DataFrame will do.
+            ``height`` (metres), and if known ``tilt`` (degrees, 90 upright) and ``name``.
         observers : array_like, shape (2,), (3,), (N, 2) or (N, 3)
             Places in the coordinates of the file. Without z, eyes are `observer_height` above the ground.
         date, period, min_sun_elevation_deg, zone : optional

@@ -98,7 +98,7 @@ class Planning:
             The landmark as a mesh: ``.obj``, ``.ply`` or CityJSON.
         target_class : int, optional
             The points of this ASPRS class, in place of a mesh.
-        target_polygon : array_like, shape (N, 2), optional
+        target_polygon : array_like, shape (N, 2), or polygon of shapely or geopandas, optional
             The points above this polygon that are not ground, in place of a mesh.
         objects : str or list of str, optional
             Objects of the mesh; all if not given.
@@ -259,7 +259,7 @@ class Planning:
 
         Parameters
         ----------
-        windows : mapping of str to array_like, path or Mesh
+        windows : mapping of str to array_like, DataFrame, path or Mesh
             Columns ``x, y, z`` and ``azimuth`` (degrees), and if known ``tilt`` (degrees, 90 upright), ``width`` and
             ``height`` (metres). Or a mesh, whose faces are windows; roofs and floors have no view.
         objects : str or list of str, optional
@@ -358,9 +358,9 @@ class Planning:
 
         Parameters
         ----------
-        route : array_like, shape (N, 2) or (N, 3), optional
+        route : array_like, shape (N, 2) or (N, 3), or line of shapely or geopandas, optional
             Corners of a walk in the coordinates of the file; without z it runs on the ground.
-        windows : mapping of str to array_like, optional
+        windows : mapping of str to array_like, or DataFrame, optional
             Columns ``x, y, z`` and ``azimuth`` (degrees), and if known ``tilt`` (degrees, 90 upright), ``width`` and
             ``height`` (metres), in place of a walk.
         date, period, year, time_step_min, zone : optional
@@ -447,7 +447,7 @@ class Planning:
 
         Parameters
         ----------
-        parcel : array_like, shape (N, 2)
+        parcel : array_like, shape (N, 2), or polygon of shapely or geopandas
             Corners in the coordinates of the file.
         protect : array_like, shape (N, 2) or (N, 3), or a list of these
             Lines that keep their sun; one corner is a point. Without z they run on the ground.

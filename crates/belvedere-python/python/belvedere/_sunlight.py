@@ -216,7 +216,7 @@ class Sunlight:
             Light that passes through crowns; none if not given.
         leaves : {'auto', 'on', 'off'}, optional
             Whether trees have leaves; by the date if not given, and as they were measured without one.
-        location : array_like, shape (2,), optional
+        location : array_like, shape (2,), or Location of pvlib, optional
             Latitude and longitude, degrees, where the reference system does not say where the scene lies.
         grid_north : bool, optional
             Whether azimuths are counted from grid north.
@@ -558,7 +558,7 @@ class Sunlight:
         ----------
         time : datetime, pandas Timestamp, ISO text, or several
             With a time zone.
-        location : array_like, shape (2,), optional
+        location : array_like, shape (2,), or Location of pvlib, optional
             Latitude and longitude, degrees, where the reference system does not say where the scene lies.
 
         Returns

@@ -64,7 +64,7 @@ class Towers:
 
         Parameters
         ----------
-        towers : mapping of str to array_like
+        towers : mapping of str to array_like, or DataFrame
             Columns ``x``, ``y`` and ``tip``, and if known ``base``, ``hub``, ``name`` and ``scheme``; a DataFrame will
             do. ``tip`` and ``hub`` are metres above the base, a height of the file. Without it a tower stands on the
             ground of the cloud, or on the terrain of the scene. ``x`` and ``y`` may be latitude and longitude.
