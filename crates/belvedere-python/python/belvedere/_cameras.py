@@ -12,10 +12,10 @@ from . import _core
 from ._errors import wrong
 from ._inputs import check_finite, map_places, pairs_of, reporter
 from ._mesh import Mesh
+from ._questions import _place, _suns
 from ._raster import Raster
 from ._remarks import Remark, warned
 from ._shapes import in_system, is_single
-from ._sunlight import _place, _suns
 from ._table import Table
 from ._targets import Targets, coordinates, raster, wanted
 from ._types import Candidates, Curvature, Density, Ground, Numbers, Places, Progress, Unproven

@@ -13,9 +13,9 @@ from . import _core
 from ._errors import wrong
 from ._inputs import as_list, check_finite, reporter
 from ._planning import _windows
+from ._questions import _cells, _days, _place
 from ._remarks import warned
 from ._shapes import columns_of, in_system, rings_of
-from ._sunlight import _cells, _days, _place
 from ._table import Table
 from ._targets import Targets, coordinates, wanted
 from ._types import Columns, Day, Language, Location, Period, Polygon, Progress, Study, Zone

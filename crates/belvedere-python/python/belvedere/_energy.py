@@ -11,10 +11,10 @@ from . import _core
 from ._errors import wrong
 from ._inputs import check_finite, check_whole, check_words, location_pair, native_source, reporter
 from ._keywords import Irradiance
+from ._questions import _cells
 from ._raster import Rasters
 from ._remarks import warned
 from ._shapes import in_system
-from ._sunlight import _cells
 from ._table import Table
 from ._targets import Rows, Targets, measures, wanted
 from ._types import (

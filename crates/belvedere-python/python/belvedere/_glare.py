@@ -10,8 +10,8 @@ import numpy as np
 from . import _core
 from ._inputs import check_finite, map_places, reporter, table_columns
 from ._outlook import _OBSERVERS
+from ._questions import _days, _place
 from ._remarks import warned
-from ._sunlight import _days, _place
 from ._table import Table
 from ._types import Columns, Day, Ground, Location, Period, Places, Progress, Zone
 

@@ -9,9 +9,9 @@ from . import _core
 from ._energy import native_weather
 from ._inputs import check_finite, location_pair, number_pair, reporter
 from ._keywords import Heat as HeatKeywords
+from ._questions import _cells, _days, _place
 from ._raster import Rasters
 from ._shapes import in_system
-from ._sunlight import _cells, _days, _place
 from ._table import Table
 from ._targets import Rows, Targets, measures, wanted
 from ._types import (

@@ -12,10 +12,10 @@ import numpy.typing as npt
 from . import _core
 from ._errors import BelvedereWarning, wrong
 from ._inputs import check_finite, check_whole, check_words, map_places, number_pair, place, reporter
+from ._questions import _place
 from ._raster import Raster
 from ._remarks import warned
 from ._shapes import is_single
-from ._sunlight import _place
 from ._table import Table
 from ._targets import raster
 from ._types import Curvature, Ground, Numbers, Places, Progress, Unproven

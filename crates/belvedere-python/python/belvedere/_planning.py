@@ -14,10 +14,10 @@ from ._inputs import as_list, check_finite, check_whole, map_places, number_pair
 from ._keywords import Landmark as LandmarkKeywords
 from ._mesh import Mesh, native_mesh
 from ._outlook import _OBSERVERS, _looking
+from ._questions import _DIRECTION, _days, _place
 from ._raster import Raster, Rasters
 from ._remarks import warned
 from ._shapes import is_single, rings_of
-from ._sunlight import _DIRECTION, _days, _place
 from ._table import Table
 from ._targets import measures, raster
 from ._types import (

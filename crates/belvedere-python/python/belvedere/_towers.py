@@ -12,9 +12,9 @@ from ._errors import wrong
 from ._inputs import check_finite, reporter, table_columns
 from ._keywords import Towers as TowersKeywords
 from ._outlook import _looking
+from ._questions import _cells
 from ._raster import Rasters
 from ._shapes import in_system
-from ._sunlight import _cells
 from ._table import Table
 from ._targets import Rows, Targets, measures, wanted
 from ._types import Columns, Curvature, Ground, Progress
