@@ -21,7 +21,7 @@ MODULES = [
 ]
 EXAMPLES = [test for module in MODULES for test in doctest.DocTestFinder().find(module) if test.examples]
 #: Members whose one line says all.
-PLAIN = {"crs", "shape", "x", "y"}
+PLAIN = {"crs", "dtype", "ndim", "shape", "size", "x", "y"}
 
 
 # so small a tile is near its edge almost everywhere

@@ -145,3 +145,91 @@ def test_areas_in_a_package_are_read_by_geopandas(run_program, folder):
     same = json.to_crs(28992).geometry.area
     np.testing.assert_allclose(same, package.geometry.area, rtol=0.01)
     assert geopandas.list_layers(folder / "shade.gpkg")["name"].tolist() == ["shade"]
+
+
+# at night all is in shadow
+@pytest.mark.filterwarnings("ignore:.*horizon:belvedere.BelvedereWarning")
+def test_a_day_is_a_file_that_xarray_and_gdal_open_at_its_times_and_place(scene, tmp_path):
+    pandas, xarray = pytest.importorskip("pandas"), pytest.importorskip("xarray")
+    rasterio = pytest.importorskip("rasterio")
+    pytest.importorskip("rioxarray")
+    # the clocks of Amsterdam run two hours before UTC in June
+    hours = pandas.date_range("2026-06-21", periods=24, freq="h", tz="Europe/Amsterdam")
+    day = scene.shadow(time=hours, cell=4)
+    day.to_xarray().to_netcdf(tmp_path / "day.nc")
+    with xarray.open_dataarray(tmp_path / "day.nc") as again:
+        assert again.dims == ("time", "y", "x") and again.attrs["units"] == "1"
+        local = again["time"].to_index().tz_localize("UTC").tz_convert("Europe/Amsterdam")
+        assert (local == hours).all()
+        lit = again.sel(time="2026-06-21T13:00")
+        np.testing.assert_array_equal(lit, scene.shadow(time="2026-06-21T15:00+02:00", cell=4))
+        # the sun is highest an hour and forty minutes after noon
+        assert int(again["sun_elevation_deg"].argmax("time")) == 14
+    with xarray.open_dataarray(tmp_path / "day.nc", decode_coords="all") as again:
+        assert again.rio.crs.to_epsg(20) in (7415, 28992) and again.rio.transform()[:6] == day[0].transform
+    with rasterio.open(f"netcdf:{tmp_path / 'day.nc'}:lit") as file:
+        assert file.count == 24 and file.transform[:6] == day[0].transform and tuple(file.bounds) == day[0].bounds
+        assert file.crs.linear_units == "metre" and np.isnan(file.nodata) and file.units[0] == "1"
+        np.testing.assert_array_equal(file.read(16), day[15])
+    seen = scene.viewshed((154985, 462975), cell=4)
+    seen.to_xarray().to_netcdf(tmp_path / "seen.nc")
+    with rasterio.open(f"netcdf:{tmp_path / 'seen.nc'}:{seen.name}") as file:
+        assert file.nodata == 255 and tuple(file.bounds) == seen.bounds
+        np.testing.assert_array_equal(file.read(1), seen.values)
+
+
+def test_a_day_is_a_store_of_zarr(scene, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    pytest.importorskip("zarr")
+    day = scene.shadow(time=["2026-06-21T10:00Z", "2026-06-21T11:00Z"], cell=8).to_xarray()
+    day.to_zarr(tmp_path / "day.zarr")
+    with xarray.open_dataarray(tmp_path / "day.zarr", engine="zarr") as again:
+        xarray.testing.assert_identical(again.load().drop_attrs(), day.drop_attrs())
+
+
+def test_suns_without_times_are_counted(scene):
+    pytest.importorskip("xarray")
+    both = scene.shadow(sun=[(180, 30), (90, 20)], cell=8).to_xarray()
+    assert both.dims == ("sun", "y", "x") and both["sun_azimuth_deg"].values.tolist() == [180, 90]
+
+
+def test_tables_are_places_by_the_names_of_their_columns(scene, places):
+    pandas = pytest.importorskip("pandas")
+    hours = scene.sun_hours(date="2026-03-21", targets=places)["sun_hours"]
+    (x0, y0), (x1, y1) = places
+    columns = {"name": ["a", "b"], "y": [y0, y1], "x": [x0, x1]}
+    for given in (columns, pandas.DataFrame(columns), pandas.DataFrame(columns)[["y", "x"]]):
+        np.testing.assert_array_equal(scene.sun_hours(date="2026-03-21", targets=given)["sun_hours"], hours)
+    # a table that knows its places
+    seen = scene.isovist(places)
+    np.testing.assert_array_equal(scene.viewshed(seen, cell=4), scene.viewshed(seen.places, cell=4))
+
+
+def test_shapes_in_any_system_are_where_they_are(scene, places):
+    geopandas = pytest.importorskip("geopandas")
+    shapely = pytest.importorskip("shapely")
+    x, y = places[0]
+    parcel = shapely.box(x, y, x + 8, y + 8)
+    front = shapely.LineString([(x, y + 12), (x + 8, y + 12)])
+
+    def degrees(shape):
+        return geopandas.GeoSeries([shape], crs=28992).to_crs(4326)
+
+    def corners(shape):
+        return np.asarray(shape.exterior.coords)[:-1]
+
+    keywords = {"sun": (180, 30), "max_height": 20, "cell": 1}
+    expected = scene.envelope(corners(parcel), protect=np.asarray(front.coords), **keywords)
+    for given, line in ((parcel, front), (degrees(parcel), degrees(front)), (degrees(parcel), [degrees(front)])):
+        height = scene.envelope(given, protect=line, **keywords)
+        assert height.mean() == pytest.approx(expected.mean(), rel=0.02)
+    # a hole stays as it is
+    garden = parcel.difference(shapely.box(x + 2, y + 2, x + 4, y + 4))
+    cleared = [scene.without(one).report["cleared"]["points_cleared"] for one in (parcel, degrees(parcel), garden)]
+    assert cleared[0] == scene.without(corners(parcel)).report["cleared"]["points_cleared"] >= cleared[2]
+    assert abs(cleared[0] - cleared[1]) <= 0.02 * cleared[0] + 2
+    station = degrees(shapely.Point(x, y))
+    plan = scene.survey_plan(station, (154980, 462970), (154960, 462990), count=1)
+    assert np.hypot(*(plan.places[0, :2] - (x, y))) < 0.5
+    with pytest.raises(belvedere.BelvedereError, match="one polygon"):
+        scene.without(shapely.MultiPolygon([parcel, shapely.box(0, 0, 1, 1)]))

@@ -43,7 +43,7 @@ def test_the_page_on_python_runs_from_top_to_bottom(tmp_path):
 
 @pytest.mark.parametrize("path", sorted((DOCS / "notebooks").glob("*.ipynb")), ids=lambda path: path.stem)
 def test_notebook_runs(path, tmp_path):
-    for package in ("laspy", "matplotlib", "pandas", "pvlib"):
+    for package in ("geopandas", "laspy", "matplotlib", "pandas", "pvlib", "xarray"):
         pytest.importorskip(package)
     cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
     code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]

@@ -143,6 +143,34 @@ WRONG = {
         lambda s, c, f: s.envelope([(1, 2), (3, 4)], protect=[(1, 2)], sun=(180, 30)), "parcel", "3 at least"),
     "protected sun below the horizon": (
         lambda s, c, f: s.envelope([(1, 2), (3, 4), (5, 0)], protect=[(1, 2)], sun=(180, -3)), "sun", "above 0"),
+    "a clock as time": (lambda s, c, f: s.shadow(time="15:00"), "time", "+02:00"),
+    "a day as time": (lambda s, c, f: s.shadow(time="2026-06-21"), "time", "+02:00"),
+    "zone as number": (lambda s, c, f: s.sun_hours(date="2026-06-21", zone=2), "zone", "Europe/Amsterdam"),
+    "year as text": (lambda s, c, f: s.hourly_sun("2026"), "year", "whole number"),
+    "directions as fraction": (lambda s, c, f: s.sky_view(directions=5.5), "directions", "whole number"),
+    "true as word": (lambda s, c, f: s.viewshed((1, 2), curvature=True), "curvature", "word"),
+    "true as clear sky": (lambda s, c, f: s.irradiance(clear_sky=True), "clear_sky", "word"),
+    "targets as file": (lambda s, c, f: s.shadow(sun=(180, 30), targets="a.shp"), "targets", "read the file"),
+    "targets of other columns": (
+        lambda s, c, f: s.shadow(sun=(180, 30), targets={"lat": [52], "lon": [5]}), "targets", "columns x and y"),
+    "targets of words": (
+        lambda s, c, f: s.shadow(sun=(180, 30), targets={"x": ["a"], "y": ["b"]}), "targets", "number"),
+    "windows as rows": (lambda s, c, f: s.window_views([(1, 2, 3, 180)]), "windows", "by name"),
+    "towers as rows": (lambda s, c, f: s.towers([(1, 2, 100)]), "towers", "by name"),
+    "windows of words": (
+        lambda s, c, f: s.window_views({"x": [1], "y": [1], "z": [1], "azimuth": ["south"]}), "windows", "azimuth"),
+    "class as polygon": (lambda s, c, f: s.without(6), "polygon", "class_=6"),
+    "file as polygon": (lambda s, c, f: s.without("house.geojson"), "polygon", "corners"),
+    "point as polygon": (lambda s, c, f: s.without((1, 2)), "polygon", "corners"),
+    "class by its name": (lambda s, c, f: s.landmark(target_class="building"), "target_class", "whole number"),
+    "raster as terrain": (lambda s, c, f: s.with_terrain(PLACES), "path", "path of a file"),
+    "table as horizon": (lambda s, c, f: s.with_horizon([(0, 10)]), "path", "path of a file"),
+    "one side of a picture": (lambda s, c, f: s.depth_map(eye=(1, 2, 3), size=512), "size", "(640, 480)"),
+    "picture as GeoTIFF": (lambda s, c, f: s.shadow(sun=(180, 30), cell=8).to_geotiff(f / "x.png"), "path", ".tif"),
+    "plan as file": (
+        lambda s, c, f: s.sunlight_report(f / "r.html", areas={"a": WALL}, planned="a.obj"), "planned", "with_added"),
+    "system as name": (lambda s, c, f: belvedere.Cloud(PLACES, crs=True), "crs", "EPSG:28992"),
+    "box of three numbers": (lambda s, c, f: belvedere.read(f / "tile.laz", bounds=(1, 2, 3)), "bounds", "west"),
 }  # fmt: skip
 
 
@@ -194,3 +222,25 @@ def test_points_left_out_and_observers_skipped_are_warned_of(scene, standing):
     assert np.isfinite(lit[0]) and np.isnan(lit[1])
     with pytest.warns(belvedere.BelvedereWarning, match="observer 2 at .* is skipped"):
         scene.viewshed([(x, y), (0.0, 0.0)], cell=2)
+
+
+def test_no_time_of_pandas_says_so(scene):
+    pandas = pytest.importorskip("pandas")
+    with pytest.raises(belvedere.BelvedereError, match="leave it out"):
+        scene.shadow(time=[pandas.Timestamp("2026-06-21T15:00Z"), pandas.NaT])
+
+
+def test_names_that_results_lack_are_answered_with_those_they_have(scene):
+    hours = scene.sun_hours(date="2026-06-21", time_step_min=60, cell=8)
+    table = scene.network([(154985, 462975, 30), (154990, 462975, 30)])
+    for wrong, error, said in [
+        (lambda: hours["sunhours"], KeyError, "sun_hours"),
+        (lambda: hours.sun_hours, AttributeError, r"\['sun_hours'\]"),
+        (lambda: hours.plot(), AttributeError, "by name"),
+        (lambda: table["anser"], KeyError, "answer"),
+        (lambda: table.answer, AttributeError, r"\['answer'\]"),
+        (lambda: table[:5], TypeError, "to_pandas"),
+        (lambda: table[["a", "b"]], TypeError, "to_pandas"),
+    ]:
+        with pytest.raises(error, match=said):
+            wrong()

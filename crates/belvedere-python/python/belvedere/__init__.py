@@ -16,7 +16,7 @@ from ._devices import Device, devices
 from ._errors import BelvedereError, BelvedereWarning
 from ._fetch import fetch, open_surveys
 from ._mesh import Mesh
-from ._raster import Raster, Rasters
+from ._raster import Raster, Rasters, RasterSeries
 from ._remarks import Remark
 from ._scene import Scene
 from ._sights import Sight
@@ -32,6 +32,7 @@ __all__ = [
     "Mesh",
     "Placement",
     "Raster",
+    "RasterSeries",
     "Rasters",
     "Remark",
     "Scene",

@@ -10,14 +10,15 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import wrong
-from ._inputs import Places, Progress, check_finite, map_places, pairs_of, reporter
+from ._inputs import check_finite, map_places, pairs_of, reporter
 from ._mesh import Mesh
+from ._questions import _place, _suns
 from ._raster import Raster
 from ._remarks import Remark, warned
-from ._shapes import in_system
-from ._sunlight import _place, _suns
+from ._shapes import in_system, is_single
 from ._table import Table
 from ._targets import Targets, coordinates, raster, wanted
+from ._types import Candidates, Curvature, Density, Ground, Numbers, Places, Progress, Unproven
 
 _PLACES = "give x and y, or x, y and z: shape (N, 2) or (N, 3)"
 
@@ -80,33 +81,33 @@ class Cameras:
 
     def cameras(
         self,
-        candidates: str | npt.ArrayLike,
+        candidates: Candidates,
         *,
         count: int | None = None,
         coverage_percent: float | None = None,
         targets: Targets = None,
-        weights: npt.ArrayLike | None = None,
-        existing: npt.ArrayLike | Table | None = None,
-        private: npt.ArrayLike | None = None,
+        weights: Numbers | None = None,
+        existing: Places | Table | None = None,
+        private: Places | None = None,
         spacing: float = 5.0,
         camera_height: float | None = None,
         target_height: float | None = None,
         cell: float | None = None,
-        ground: str | None = None,
+        ground: Ground | None = None,
         fov_deg: float | None = None,
         vertical_fov_deg: float | None = None,
         pixels: float | None = None,
-        density: str | float | None = None,
+        density: Density | None = None,
         headings: int | None = None,
-        tilts_deg: npt.ArrayLike | None = None,
+        tilts_deg: Numbers | None = None,
         turning: bool = False,
         min_distance: float | None = None,
         max_distance: float | None = None,
         per_target: int = 1,
         search_limit: int | None = None,
-        unproven: str = "report",
+        unproven: Unproven = "report",
         certain: float | None = None,
-        curvature: str | None = None,
+        curvature: Curvature | None = None,
         refraction: float | None = None,
         frequency_ghz: float | None = None,
         fresnel_percent: float | None = None,
@@ -225,7 +226,7 @@ class Cameras:
             "on_roofs": isinstance(candidates, str) and candidates == "roofs",
             "spacing": float(spacing),
             "camera_height": camera_height,
-            "existing": _existing(existing).tolist(),
+            "existing": _existing(existing, self._core.crs.text).tolist(),
             "private": []
             if private is None
             else map_places(private, "private", _PLACES, crs=self._core.crs.text).tolist(),
@@ -268,11 +269,11 @@ class Cameras:
 
     def survey_plan(
         self,
-        candidates: str | npt.ArrayLike | list[npt.ArrayLike],
+        candidates: Candidates | list[Places],
         observer: Places | None = None,
         target: Places | None = None,
         *,
-        sun: npt.ArrayLike | None = None,
+        sun: Numbers | None = None,
         cell: float | None = None,
         count: int = 1,
         spacing: float = 5.0,
@@ -281,7 +282,7 @@ class Cameras:
         angle_step_deg: float | None = None,
         observer_height: float | None = None,
         target_height: float | None = None,
-        ground: str | None = None,
+        ground: Ground | None = None,
         progress: Progress = None,
     ) -> Table:
         """Where to put a scanner next, so that unproven lines of sight become proven.
@@ -343,7 +344,7 @@ class Cameras:
         """
         if isinstance(candidates, str) and candidates not in ("ground", "roofs"):
             raise wrong("candidates", repr(candidates), "give places, 'ground' or 'roofs'")
-        given, lines = _stations(candidates)
+        given, lines = _stations(candidates, self._core.crs.text)
         if (sun is None) == (observer is None and target is None):
             raise wrong("observer and target", "missing" if sun is None else "given", "give both of them, or only sun")
         suns = [] if sun is None else [list(direction) for direction in _suns(sun, None)[0]]
@@ -376,18 +377,18 @@ class Cameras:
         return table
 
 
-def _stations(candidates: Any) -> tuple[npt.NDArray[np.float64] | None, list[int] | None]:
+def _stations(candidates: Any, crs: str | None) -> tuple[npt.NDArray[np.float64] | None, list[int] | None]:
     """Places for the scanner, and the number of the line of each where lines are candidates."""
     if isinstance(candidates, str):
         return None, None
-    if isinstance(candidates, (list, tuple)) and candidates and all(np.ndim(line) == 2 for line in candidates):
-        places = [map_places(line, "candidates", _PLACES) for line in candidates]
+    if isinstance(candidates, (list, tuple)) and candidates and not any(map(is_single, candidates)):
+        places = [map_places(line, "candidates", _PLACES, crs=crs) for line in candidates]
         lines = [number for number, line in enumerate(places) for _ in line]
         return np.concatenate(places), lines
-    return map_places(candidates, "candidates", _PLACES), None
+    return map_places(candidates, "candidates", _PLACES, crs=crs), None
 
 
-def _existing(given: npt.ArrayLike | Table | None) -> npt.NDArray[np.float64]:
+def _existing(given: Places | Table | None, crs: str | None) -> npt.NDArray[np.float64]:
     """Rows of x, y, z, heading and tilt, NaN where they are not given."""
     if given is None:
         return np.empty((0, 5))
@@ -396,14 +397,18 @@ def _existing(given: npt.ArrayLike | Table | None) -> npt.NDArray[np.float64]:
             raise wrong("existing", "a table without places", "give the cameras of an earlier choice")
         return np.column_stack([given.places, given["heading_deg"], given["tilt_deg"]]).astype(np.float64)
     advice = "give x, y, z, heading and tilt, or x and y, or x, y and z: shape (N, 5), (N, 2) or (N, 3)"
-    array = np.atleast_2d(np.asarray(given, np.float64))
+    given = in_system(given, "existing", crs)
+    try:
+        array = np.atleast_2d(np.asarray(given, np.float64))
+    except (TypeError, ValueError):
+        raise wrong("existing", repr(given), advice) from None
     if array.ndim == 2 and array.shape[1] == 5:
         return array
     places = map_places(array, "existing", advice)
     return np.column_stack([places, np.full((len(places), 2), np.nan)])
 
 
-def _weights(weights: npt.ArrayLike, targets: Targets) -> npt.NDArray[np.float64]:
+def _weights(weights: Numbers, targets: Targets) -> npt.NDArray[np.float64]:
     array = np.asarray(weights, np.float64)
     places = coordinates(targets)
     rows = 0 if places is None else len(places)

@@ -14,8 +14,9 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import BelvedereWarning, wrong
-from ._inputs import Places, Progress, Source, class_numbers, map_box, native_source, places, reporter
+from ._inputs import class_numbers, map_box, native_source, places, reporter, system_text
 from ._remarks import warned
+from ._types import Numbers, Places, Progress, Source, System, Up
 
 #: Attributes of points: their types, and their columns where there are several.
 ATTRIBUTES: Mapping[str, tuple[Any, int]] = {
@@ -40,9 +41,9 @@ class Cloud:
     ----------
     xyz : array_like, shape (N, 3)
         Coordinates in the unit of `crs`: east, north, up. 32 or 64 bit, with any strides; other numbers are converted.
-    crs : str, optional
-        Coordinate reference system: ``"EPSG:28992"``, well-known text, or a PROJ string. Without one, coordinates are
-        metres.
+    crs : str, int or object of pyproj, optional
+        Coordinate reference system: ``"EPSG:28992"``, its number, well-known text, or a PROJ string. Without one,
+        coordinates are metres.
     classification : array_like, shape (N,), uint8, optional
         ASPRS classes: 2 ground, 3 to 5 vegetation, 6 building, 7 and 18 noise.
     gps_time : array_like, shape (N,), float64, optional
@@ -82,19 +83,19 @@ class Cloud:
         self,
         xyz: Places,
         *,
-        crs: str | None = None,
-        classification: npt.ArrayLike | None = None,
-        gps_time: npt.ArrayLike | None = None,
+        crs: System | None = None,
+        classification: Numbers | None = None,
+        gps_time: Numbers | None = None,
         adjusted_gps_time: bool = False,
-        return_number: npt.ArrayLike | None = None,
-        return_count: npt.ArrayLike | None = None,
-        scan_angle: npt.ArrayLike | None = None,
-        point_source_id: npt.ArrayLike | None = None,
-        scanner_channel: npt.ArrayLike | None = None,
-        flags: npt.ArrayLike | None = None,
-        intensity: npt.ArrayLike | None = None,
-        color: npt.ArrayLike | None = None,
-        normals: npt.ArrayLike | None = None,
+        return_number: Numbers | None = None,
+        return_count: Numbers | None = None,
+        scan_angle: Numbers | None = None,
+        point_source_id: Numbers | None = None,
+        scanner_channel: Numbers | None = None,
+        flags: Numbers | None = None,
+        intensity: Numbers | None = None,
+        color: Numbers | None = None,
+        normals: Numbers | None = None,
     ) -> None:
         rows = places(xyz, "xyz")
         given = {
@@ -111,7 +112,7 @@ class Cloud:
             "normals": normals,
         }
         columns = {name: _column(name, values, len(rows)) for name, values in given.items() if values is not None}
-        system = None if crs is None else _core.Crs(crs)
+        system = None if crs is None else _core.Crs(system_text(crs))
         self._core = _core.Cloud(rows, columns, adjusted_gps_time, system)
         #: What reading the cloud found; empty for a cloud from arrays.
         self.report: dict[str, Any] = {}
@@ -217,12 +218,12 @@ class Cloud:
 def read(
     source: Source | list[Source],
     *,
-    crs: str | None = None,
+    crs: System | None = None,
     crs_override: bool = False,
-    up: str = "z",
+    up: Up = "z",
     skip_distant: bool = False,
     name: str | None = None,
-    bounds: npt.ArrayLike | None = None,
+    bounds: Numbers | None = None,
     classes: Iterable[int] | None = None,
     flown: datetime.date | str | None = None,
     progress: Progress = None,
@@ -234,7 +235,7 @@ def read(
     source : path, bytes, binary file, laspy object, or a list of these
         ``.las .laz .copc.laz .ply .xyz .txt .csv .pts .asc .pcd .e57 .ptx .npy ept.json``, or a folder of them.
         Several become one cloud.
-    crs : str, optional
+    crs : str, int or object of pyproj, optional
         Coordinate reference system of files that name none, such as ``"EPSG:28992"``. One that contradicts a file, or
         whose area of use is more than 300 km away, is refused.
     crs_override : bool
@@ -245,8 +246,9 @@ def read(
         Leave out files whose points all lie more than 1000 km from those of the others, which is an error otherwise.
     name : str, optional
         Name of bytes or of a file without a name, such as ``"tile.laz"``; its extension selects the format.
-    bounds : array_like, (2, 2) or (2, 3), optional
-        Lowest and highest corner of a box in the coordinates and unit of the file. Only points in it are read, and only
+    bounds : array_like, (4,), (2, 2) or (2, 3), optional
+        West, south, east and north of a box in the coordinates and unit of the file, as shapely, geopandas and rasters
+        have them, or its lowest and highest corner. Only points in it are read, and only
         the files that meet it; of a COPC file only the parts that do, also where it is an address (``https://…``) or an
         open file on a server (``fsspec``).
     classes : iterable of int, optional
@@ -288,7 +290,7 @@ def read(
     box = None if bounds is None else map_box(bounds, "bounds")
     wanted = None if classes is None else class_numbers(classes)
     inputs = [native_source(one, name, in_parts=box is not None) for one in sources]
-    options = (crs, bool(crs_override), up, bool(skip_distant))
+    options = (None if crs is None else system_text(crs), bool(crs_override), up, bool(skip_distant))
     day = None if flown is None else str(flown)[:10]
     core, text = _core.read(inputs, *options, box, wanted, day, reporter(progress))
     return cloud_of(core, json.loads(text))
@@ -316,7 +318,7 @@ def _warn(text: str) -> None:
     warnings.warn(text, BelvedereWarning)
 
 
-def _column(name: str, values: npt.ArrayLike, count: int) -> npt.NDArray[Any]:
+def _column(name: str, values: Numbers, count: int) -> npt.NDArray[Any]:
     kind, columns = ATTRIBUTES[name]
     shape = (count, columns) if columns else (count,)
     try:

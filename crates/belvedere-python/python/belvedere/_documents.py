@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import datetime
 import os
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core
 from ._errors import wrong
-from ._inputs import Day, Progress, Time, as_list, check_finite, reporter
+from ._inputs import as_list, check_finite, reporter
 from ._planning import _windows
+from ._questions import _cells, _days, _place
 from ._remarks import warned
-from ._shapes import in_system
-from ._sunlight import _cells, _days, _place
+from ._shapes import columns_of, in_system, rings_of
 from ._table import Table
 from ._targets import Targets, coordinates, wanted
+from ._types import Columns, Day, Language, Location, Period, Polygon, Progress, Study, Zone
+
+if TYPE_CHECKING:
+    from ._scene import Scene
 
 
 class Documents:
@@ -29,16 +32,16 @@ class Documents:
     def sun_calendar(
         self,
         *,
-        windows: Mapping[str, npt.ArrayLike] | None = None,
+        windows: Columns | None = None,
         targets: Targets = None,
         date: Day | Iterable[Day] | None = None,
-        period: tuple[Day | Time, Day | Time] | None = None,
+        period: Period | None = None,
         rule: str | None = None,
         year: int | None = None,
         time_step_min: float | None = None,
         min_sun_elevation_deg: float | None = None,
-        location: npt.ArrayLike | None = None,
-        zone: str | datetime.tzinfo | None = None,
+        location: Location | None = None,
+        zone: Zone | None = None,
         grid_north: bool = False,
         progress: Progress = None,
     ) -> Table:
@@ -46,7 +49,7 @@ class Documents:
 
         Parameters
         ----------
-        windows : mapping of str to array_like, optional
+        windows : mapping of str to array_like, or DataFrame, optional
             Columns ``x, y, z`` and ``azimuth`` (degrees), and if known ``tilt`` (degrees, 90 upright). Their middles
             count.
         targets : array_like, shape (N, 3), (N, 2) or (2,), optional
@@ -108,7 +111,7 @@ class Documents:
             columns[name] = days + np.round(columns[name] * 3600).astype("timedelta64[s]")
         for name in ("state", "object"):
             columns[name] = np.array(columns[name], object)
-        where = np.column_stack([np.asarray(windows[axis], float) for axis in "xyz"]) if windows is not None else None
+        where = None if windows is None else np.array(_windows(windows))[:, :3]
         at = coordinates(places) if where is None else where
         of_rows = None if at is None or at.ndim != 2 or at.shape[1] != 3 else at[columns["place"]]
         table = Table(columns, places=of_rows, crs=self._core.crs.text)
@@ -119,20 +122,20 @@ class Documents:
         self,
         path: str | os.PathLike[str],
         *,
-        windows: Mapping[str, npt.ArrayLike] | None = None,
-        areas: Mapping[str, Sequence[tuple[float, float]]] | None = None,
-        planned: Any = None,
+        windows: Columns | None = None,
+        areas: Mapping[str, Polygon] | None = None,
+        planned: Scene | None = None,
         rule: str | None = None,
         area_rule: str | None = None,
-        study: str | None = None,
+        study: Study | None = None,
         date: Day | Iterable[Day] | None = None,
         year: int | None = None,
         time_step_min: float | None = None,
         title: str = "",
         notes: str | list[str] = [],
-        language: str = "en",
-        location: npt.ArrayLike | None = None,
-        zone: str | datetime.tzinfo | None = None,
+        language: Language = "en",
+        location: Location | None = None,
+        zone: Zone | None = None,
         grid_north: bool = False,
         progress: Progress = None,
     ) -> list[str]:
@@ -142,7 +145,7 @@ class Documents:
         ----------
         path : path
             Where it is written (``.html``).
-        windows : mapping of str to array_like, optional
+        windows : mapping of str to array_like, or DataFrame, optional
             Columns ``x, y, z`` and ``azimuth`` (degrees), and if known ``tilt``, ``name`` and ``room``. Their middles
             count; for a rule, the sun of the windows of one room adds up.
         areas : mapping of str to array_like of shape (N, 2), optional
@@ -201,11 +204,16 @@ class Documents:
         if not path.lower().endswith(".html"):
             raise wrong("path", repr(path), "a report is a file .html")
         check_finite(time_step_min=time_step_min)
-        columns = dict(windows or {})
+        columns: dict[str, Any] = {} if windows is None else dict(columns_of(windows))
         names, rooms = ([str(text) for text in np.asarray(columns.pop(name, []), object)] for name in ("name", "room"))
-        rings = [(str(name), np.asarray(ring, float).tolist()) for name, ring in (areas or {}).items()]
-        if any(np.ndim(ring) != 2 or len(ring) < 3 or len(ring[0]) != 2 for _, ring in rings):
-            raise wrong("areas", "not polygons", "give corners of shape (N, 2), three or more for each")
+        rings = []
+        for name, area in (areas or {}).items():
+            outline, *holes = rings_of(area, "areas", self._core.crs.text)
+            if holes:
+                raise wrong("areas", f"{name} with a hole", "give polygons without holes")
+            rings.append((str(name), outline))
+        if planned is not None and not isinstance(planned, Documents):
+            raise wrong("planned", f"a {type(planned).__name__}", "give a Scene, such as scene.with_added('plan.obj')")
         said, given = self._core.sunlight_report(
             path,
             {

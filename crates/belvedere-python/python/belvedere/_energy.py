@@ -2,22 +2,37 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
 from ._errors import wrong
-from ._inputs import Progress, Source, check_finite, location_pair, native_source, reporter
+from ._inputs import check_finite, check_whole, check_words, location_pair, native_source, reporter
+from ._keywords import Irradiance
+from ._questions import _cells
+from ._raster import Rasters
 from ._remarks import warned
 from ._shapes import in_system
-from ._sunlight import _cells
 from ._table import Table
-from ._targets import RastersOrTable, Targets, measures, wanted
+from ._targets import Rows, Targets, measures, wanted
+from ._types import (
+    ClearSky,
+    Ground,
+    Leaves,
+    Location,
+    Numbers,
+    Progress,
+    SkyModel,
+    Source,
+    Surroundings,
+    ThroughTrees,
+)
 
 if TYPE_CHECKING:
     import pandas
+    from typing_extensions import Unpack
 
 
 class Energy:
@@ -25,32 +40,46 @@ class Energy:
 
     _core: _core.Scene
 
+    @overload
+    def irradiance(
+        self,
+        *,
+        targets: None = None,
+        **more: Unpack[Irradiance],
+    ) -> Rasters: ...
+    @overload
+    def irradiance(
+        self,
+        *,
+        targets: Rows,
+        **more: Unpack[Irradiance],
+    ) -> Table: ...
     def irradiance(
         self,
         *,
         weather: Source | pandas.DataFrame | None = None,
-        clear_sky: str | None = None,
+        clear_sky: ClearSky | None = None,
         linke: float | None = None,
         year: int | None = None,
         months: bool = False,
-        sky_model: str | None = None,
+        sky_model: SkyModel | None = None,
         patch_division: int | None = None,
         parts_per_row: int | None = None,
         albedo: float | None = None,
-        surroundings: str | None = None,
+        surroundings: Surroundings | None = None,
         sun_cell_deg: float | None = None,
         targets: Targets = None,
-        normals: npt.ArrayLike | None = None,
+        normals: Numbers | None = None,
         cell: float | None = None,
         target_height: float | None = None,
         surface: bool = False,
-        ground: str | None = None,
-        through_trees: str | float | None = None,
-        leaves: str | None = None,
-        location: npt.ArrayLike | None = None,
+        ground: Ground | None = None,
+        through_trees: ThroughTrees | None = None,
+        leaves: Leaves | None = None,
+        location: Location | None = None,
         interval: bool = False,
         progress: Progress = None,
-    ) -> RastersOrTable:
+    ) -> Rasters | Table:
         """The energy that sun and sky send to places in a year, or in the period of a weather file.
 
         Parameters
@@ -140,15 +169,15 @@ class Energy:
         self,
         *,
         weather: Source | pandas.DataFrame | None = None,
-        clear_sky: str | None = None,
+        clear_sky: ClearSky | None = None,
         linke: float | None = None,
         year: int | None = None,
         months: bool = False,
-        sky_model: str | None = None,
+        sky_model: SkyModel | None = None,
         patch_division: int | None = None,
         parts_per_row: int | None = None,
         albedo: float | None = None,
-        surroundings: str | None = None,
+        surroundings: Surroundings | None = None,
         sun_cell_deg: float | None = None,
         min_area: float | None = None,
         panel: float | None = None,
@@ -160,10 +189,10 @@ class Energy:
         inverter_efficiency: float | None = None,
         dc_ac_ratio: float | None = None,
         hourly: bool = False,
-        ground: str | None = None,
-        through_trees: str | float | None = None,
-        leaves: str | None = None,
-        location: npt.ArrayLike | None = None,
+        ground: Ground | None = None,
+        through_trees: ThroughTrees | None = None,
+        leaves: Leaves | None = None,
+        location: Location | None = None,
         interval: bool = False,
         progress: Progress = None,
     ) -> Table:
@@ -280,6 +309,8 @@ def native_weather(weather: Any, location: tuple[float, float] | None) -> Any:
 def _radiation(**given: Any) -> dict[str, Any]:
     """Where radiation comes from, as the native part takes it."""
     check_finite(linke=given["linke"], albedo=given["albedo"], sun_cell_deg=given["sun_cell"])
+    check_words(**{name: given[name] for name in ("clear_sky", "sky_model", "surroundings")})
+    check_whole(year=given["year"], patch_division=given["patch_division"], parts_per_row=given["parts"])
     location = location_pair(given["location"])
     weather = given["weather"]
     if weather is not None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 
 class BelvedereError(ValueError):
     """An argument, a file or a cloud that Belvedere cannot use.
@@ -61,6 +63,13 @@ class BelvedereWarning(UserWarning):
 def wrong(what: str, value: object, advice: str) -> BelvedereError:
     """The error of an argument."""
     return BelvedereError(f"{what} is {value}: {advice}", what, str(value), advice)
+
+
+def no_attribute(thing: object, name: str, names: Iterable[str]) -> AttributeError:
+    """The error of an attribute that a collection of columns or rasters lacks."""
+    known = list(names)
+    advice = f"take one by name: [{name if name in known else next(iter(known), '')!r}]"
+    return AttributeError(f"a {type(thing).__name__} has no attribute {name!r}; {advice}", name=name, obj=thing)
 
 
 def missing(package: str, needed_for: str) -> BelvedereError:

@@ -11,7 +11,8 @@ from typing import Any
 from . import _core
 from ._cloud import Cloud, cloud_of
 from ._errors import BelvedereWarning, wrong
-from ._inputs import Progress, check_finite, reporter
+from ._inputs import check_finite, reporter
+from ._types import Progress
 
 
 def open_surveys(
@@ -107,7 +108,7 @@ def fetch(
     Examples
     --------
     >>> cloud = belvedere.fetch((52.0116, 4.3571), radius=150)  # doctest: +SKIP
-    >>> belvedere.Scene(cloud).sun_hours("2026-03-21")  # doctest: +SKIP
+    >>> belvedere.Scene(cloud).sun_hours(date="2026-03-21")  # doctest: +SKIP
     """
     core, text, chosen, given = _core.fetch(_area(at, radius, survey, surveys), reporter(progress))
     for warning in given:

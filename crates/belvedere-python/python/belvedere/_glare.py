@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import datetime
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core
-from ._inputs import Day, Progress, Time, check_finite, map_places, reporter, table_columns
+from ._inputs import check_finite, map_places, reporter, table_columns
 from ._outlook import _OBSERVERS
+from ._questions import _days, _place
 from ._remarks import warned
-from ._sunlight import _days, _place
 from ._table import Table
+from ._types import Columns, Day, Ground, Location, Period, Places, Progress, Zone
 
 _NUMBERS = ("x", "y", "z", "azimuth", "tilt", "width", "height")
 
@@ -26,20 +25,20 @@ class Glare:
 
     def glare(
         self,
-        reflectors: Mapping[str, npt.ArrayLike],
-        observers: npt.ArrayLike,
+        reflectors: Columns,
+        observers: Places,
         *,
         date: Day | Iterable[Day] | None = None,
-        period: tuple[Day | Time, Day | Time] | None = None,
+        period: Period | None = None,
         year: int | None = None,
         time_step_min: float | None = None,
         min_sun_elevation_deg: float | None = None,
         scatter_deg: float | None = None,
         from_sun_deg: float | None = None,
         observer_height: float | None = None,
-        ground: str | None = None,
-        location: npt.ArrayLike | None = None,
-        zone: str | datetime.tzinfo | None = None,
+        ground: Ground | None = None,
+        location: Location | None = None,
+        zone: Zone | None = None,
         grid_north: bool = False,
         progress: Progress = None,
     ) -> Table:
@@ -47,9 +46,9 @@ class Glare:
 
         Parameters
         ----------
-        reflectors : mapping of str to array_like
+        reflectors : mapping of str to array_like, or DataFrame
             Columns ``x, y, z`` of the middles of rectangles, ``azimuth`` that they face (degrees), ``width`` and
-            ``height`` (metres), and if known ``tilt`` (degrees, 90 upright) and ``name``; a DataFrame will do.
+            ``height`` (metres), and if known ``tilt`` (degrees, 90 upright) and ``name``.
         observers : array_like, shape (2,), (3,), (N, 2) or (N, 3)
             Places in the coordinates of the file. Without z, eyes are `observer_height` above the ground.
         date, period, min_sun_elevation_deg, zone : optional
@@ -108,11 +107,11 @@ class Glare:
             observer_height=observer_height,
         )
         columns = table_columns(
-            reflectors, "reflectors", (*_NUMBERS, "name"), ("x", "y", "z", "azimuth", "width", "height")
+            reflectors, "reflectors", (*_NUMBERS, "name"), ("x", "y", "z", "azimuth", "width", "height"), ("name",)
         )
         names = [str(name) for name in columns.pop("name", ())]
         columns.setdefault("tilt", np.full(len(columns["x"]), 90.0))
-        rows = np.column_stack([np.asarray(columns[name], np.float64) for name in _NUMBERS])
+        rows = np.column_stack([columns[name] for name in _NUMBERS])
         keywords: dict[str, Any] = {
             "reflectors": rows.tolist(),
             "names": names,

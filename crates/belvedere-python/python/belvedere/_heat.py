@@ -2,21 +2,36 @@
 
 from __future__ import annotations
 
-import datetime
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
-
-import numpy.typing as npt
+from typing import TYPE_CHECKING, overload
 
 from . import _core
 from ._energy import native_weather
-from ._inputs import Day, Progress, Source, Time, check_finite, location_pair, number_pair, reporter
+from ._inputs import check_finite, location_pair, number_pair, reporter
+from ._keywords import Heat as HeatKeywords
+from ._questions import _cells, _days, _place
+from ._raster import Rasters
 from ._shapes import in_system
-from ._sunlight import _cells, _days, _place
-from ._targets import RastersOrTable, Targets, measures, wanted
+from ._table import Table
+from ._targets import Rows, Targets, measures, wanted
+from ._types import (
+    Body,
+    Day,
+    Ground,
+    GroundCover,
+    Leaves,
+    Location,
+    Numbers,
+    Period,
+    Progress,
+    Source,
+    ThroughTrees,
+    Zone,
+)
 
 if TYPE_CHECKING:
     import pandas
+    from typing_extensions import Unpack
 
 
 class Heat:
@@ -24,17 +39,33 @@ class Heat:
 
     _core: _core.Scene
 
+    @overload
+    def heat(
+        self,
+        *,
+        weather: Source | pandas.DataFrame,
+        targets: None = None,
+        **more: Unpack[HeatKeywords],
+    ) -> Rasters: ...
+    @overload
+    def heat(
+        self,
+        *,
+        weather: Source | pandas.DataFrame,
+        targets: Rows,
+        **more: Unpack[HeatKeywords],
+    ) -> Table: ...
     def heat(
         self,
         *,
         weather: Source | pandas.DataFrame,
         date: Day | Iterable[Day] | None = None,
-        period: tuple[Day | Time, Day | Time] | None = None,
-        between: npt.ArrayLike | None = None,
+        period: Period | None = None,
+        between: Numbers | None = None,
         by_hour: bool = False,
         pet: bool = False,
-        body: str = "standing",
-        ground_cover: str = "paved",
+        body: Body = "standing",
+        ground_cover: GroundCover = "paved",
         ground_warming: float | None = None,
         wind_factor: float | None = None,
         parts_per_row: int | None = None,
@@ -42,13 +73,13 @@ class Heat:
         cell: float | None = None,
         target_height: float | None = None,
         surface: bool = False,
-        ground: str | None = None,
-        through_trees: str | float | None = None,
-        leaves: str | None = None,
-        location: npt.ArrayLike | None = None,
-        zone: str | datetime.tzinfo | None = None,
+        ground: Ground | None = None,
+        through_trees: ThroughTrees | None = None,
+        leaves: Leaves | None = None,
+        location: Location | None = None,
+        zone: Zone | None = None,
         progress: Progress = None,
-    ) -> RastersOrTable:
+    ) -> Rasters | Table:
         """UTCI and mean radiant temperature of people, over hours of days of weather.
 
         Parameters

@@ -5,27 +5,18 @@ from __future__ import annotations
 import datetime
 import operator
 import os
+import re
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from numbers import Real
-from typing import Any, BinaryIO, Union
+from collections.abc import Callable, Iterable, Sequence
+from numbers import Integral, Real
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ._errors import wrong
-from ._shapes import in_system
-
-#: A path, bytes, a file that is open for reading in binary mode, or an object of laspy.
-Source = Union[str, "os.PathLike[str]", bytes, BinaryIO, Any]
-#: An instant: a `datetime` or a pandas `Timestamp` with a time zone, or ISO 8601 text with an offset.
-Time = Union[datetime.datetime, str]
-#: A day: a `date`, a midnight of pandas, a day of NumPy, or ISO 8601 text.
-Day = Union[datetime.date, np.datetime64, str]
-#: Called with the name of the stage, the items that are done, and their number (0 where it is not known).
-Progress = Union[bool, Callable[[str, int, int], object], None]
-#: Places, (N, 3), in the coordinates of the cloud's file; or points of shapely or geopandas.
-Places = Union[npt.ArrayLike, Any]
+from ._shapes import columns_of, in_system, is_table
+from ._types import Columns, Day, Location, Places, Progress, Source, System, Time, Zone
 
 
 def native_source(source: Source, name: str | None, *, in_parts: bool = False) -> object:
@@ -59,13 +50,18 @@ def native_source(source: Source, name: str | None, *, in_parts: bool = False) -
     raise wrong("source", f"a {type(source).__name__}", "give a path, bytes, a binary file, or an object of laspy")
 
 
-def map_box(value: npt.ArrayLike, what: str) -> list[list[float]]:
+def map_box(value: object, what: str) -> list[list[float]]:
     """Lowest and highest corner of a box, whose heights may be left out."""
-    advice = "give the lowest and the highest corner: [(x, y), (x, y)], or with heights [(x, y, z), (x, y, z)]"
+    advice = (
+        "give west, south, east and north, or the lowest and the highest corner: [(x, y), (x, y)], "
+        "or with heights [(x, y, z), (x, y, z)]"
+    )
     try:
         corners = np.asarray(value, np.float64)
     except (TypeError, ValueError):
         raise wrong(what, repr(value), advice) from None
+    if corners.shape == (4,):
+        corners = corners.reshape(2, 2)
     if corners.shape not in ((2, 2), (2, 3)) or not np.isfinite(corners).all() or (corners[0] > corners[1]).any():
         raise wrong(what, repr(value), advice)
     everywhere = [-np.finfo(np.float64).max, np.finfo(np.float64).max]
@@ -87,9 +83,11 @@ def class_numbers(value: Iterable[int]) -> list[int]:
 def place(value: object, what: str) -> tuple[float, float, float]:
     """Three finite numbers."""
     try:
-        array = np.asarray(value, np.float64)
+        array = np.asarray(in_system(value, what), np.float64)
     except (TypeError, ValueError):
         raise wrong(what, repr(value), "give three numbers: x, y, z") from None
+    if array.shape == (1, 3):
+        array = array[0]
     if array.shape != (3,) or not np.isfinite(array).all():
         raise wrong(what, repr(value), "give three finite numbers: x, y, z")
     return float(array[0]), float(array[1]), float(array[2])
@@ -97,6 +95,8 @@ def place(value: object, what: str) -> tuple[float, float, float]:
 
 def places(value: Places, what: str, crs: str | None = None) -> npt.NDArray[Any]:
     """Rows of three numbers, 32 or 64 bit, without a copy where they are that already."""
+    if isinstance(value, (str, os.PathLike)):
+        raise wrong(what, repr(value), "read the file first, such as with geopandas.read_file or belvedere.Mesh.read")
     value = in_system(value, what, crs)
     try:
         array = np.asarray(value)
@@ -125,7 +125,7 @@ def map_places(
     if array.ndim == 1:
         array = array[np.newaxis]
     if array.ndim != 2 or array.shape[1] not in (2, 3) or len(array) < least:
-        raise wrong(what, f"an array of shape {np.shape(value)}", advice)
+        raise wrong(what, f"an array of shape {array.shape}", advice)
     if not np.isfinite(array).all():
         raise wrong(what, "not finite", "leave z out where it is not known")
     if array.shape[1] == 2:
@@ -141,40 +141,81 @@ def pairs_of(
     observers = map_places(observer, "observer", advice, 0, crs)
     targets = map_places(target, "target", advice, 0, crs)
     if len(observers) == 1 and len(targets) > 1:
-        observers = np.repeat(observers, len(targets), axis=0)
+        observers = np.broadcast_to(observers, targets.shape)
     elif len(targets) == 1 and len(observers) > 1:
-        targets = np.repeat(targets, len(observers), axis=0)
+        targets = np.broadcast_to(targets, observers.shape)
     return observers, targets
 
 
 def table_columns(
-    columns: Mapping[str, npt.ArrayLike], what: str, known: Sequence[str], required: Sequence[str]
+    table: Columns, what: str, known: Sequence[str], required: Sequence[str], words: Sequence[str] = ()
 ) -> dict[str, npt.NDArray[Any]]:
-    """Columns of a table of places, all of one length: those that are known, with those that are required."""
-    unknown = [str(name) for name in columns if name not in known]
+    """Columns of a table of places, all of one length: those that are known, with those that are required. All but
+    `words` are numbers.
+    """
+    needs = f"give {', '.join(required[:-1])} and {required[-1]}"
+    if not is_table(table):
+        raise wrong(what, f"a {type(table).__name__}", f"{needs} by name: a dictionary or a DataFrame")
+    columns = columns_of(table)
+    unknown = [name for name in columns if name not in known]
     if unknown:
-        raise wrong(what, f"a column '{unknown[0]}'", f"use {', '.join(known)}")
+        raise wrong(what, f"a table with a column '{unknown[0]}'", f"use {', '.join(known)}")
     missing = [name for name in required if name not in columns]
     if missing:
-        raise wrong(what, f"without {', '.join(missing)}", f"give {', '.join(required[:-1])} and {required[-1]}")
-    arrays = {name: np.atleast_1d(np.asarray(values)) for name, values in columns.items()}
-    count = len(arrays[required[0]])
-    if {array.shape for array in arrays.values()} != {(count,)} or not count:
+        raise wrong(what, f"without {', '.join(missing)}", needs)
+    count = len(columns[required[0]])
+    if {column.shape for column in columns.values()} != {(count,)} or not count:
         raise wrong(what, "columns of different lengths, or empty", "give a value for each row")
-    return arrays
+    for name, column in columns.items():
+        if name not in words:
+            try:
+                columns[name] = column.astype(np.float64)
+            except (TypeError, ValueError):
+                raise wrong(what, f"{name} of {column[0]!r}", f"give numbers for {name}") from None
+    return columns
 
 
-def location_pair(location: npt.ArrayLike | None) -> tuple[float, float] | None:
+def location_pair(location: Location | None) -> tuple[float, float] | None:
     """Latitude and longitude, degrees."""
     where = "give latitude and longitude in degrees, such as (52.0, 4.4)"
-    return None if location is None else number_pair(location, "location", where)
+    site: Any = location
+    if hasattr(site, "latitude") and hasattr(site, "longitude"):
+        site = (site.latitude, site.longitude)
+    return None if site is None else number_pair(site, "location", where)
+
+
+def system_text(crs: System) -> str:
+    """A coordinate reference system as text."""
+    if isinstance(crs, (int, np.integer)) and not isinstance(crs, bool):
+        return f"EPSG:{crs}"
+    if hasattr(crs, "to_wkt"):
+        return crs.to_wkt()
+    if not isinstance(crs, str):
+        raise wrong("crs", repr(crs), "give a text such as 'EPSG:28992', its number, or an object of pyproj")
+    return crs
+
+
+def path_text(path: object, what: str) -> str:
+    """A path as text."""
+    if not isinstance(path, (str, os.PathLike)):
+        raise wrong(what, f"a {type(path).__name__}", "give the path of a file")
+    return os.fspath(path)
+
+
+#: The end of a time that names an instant: an offset from UTC, or a zone in brackets.
+_OFFSET = re.compile(r"(Z|[+-]\d\d(:?\d\d){0,2}|\])$", re.IGNORECASE)
 
 
 def time_text(time: Time, what: str = "time") -> str:
     """ISO 8601 with an offset."""
     if isinstance(time, str):
+        if "T" not in time.upper().replace(" ", "T") or not _OFFSET.search(time.strip()):
+            advice = "give day, time and offset, such as 2026-06-21T15:00+02:00 or 2026-06-21T15:00[Europe/Amsterdam]"
+            raise wrong(what, repr(time), advice)
         return time
     if isinstance(time, datetime.datetime):
+        if time != time:
+            raise wrong(what, time, "it is no time; leave it out")
         if time.tzinfo is None or time.utcoffset() is None:
             raise wrong(
                 what,
@@ -239,18 +280,32 @@ def moments(value: object) -> list[str]:
     ]
 
 
-def zone_text(zone: str | datetime.tzinfo | None) -> str | None:
+def zone_text(zone: Zone | None) -> str | None:
     """The name of a time zone."""
     if zone is None or isinstance(zone, str):
         return zone
     key = getattr(zone, "key", None) or getattr(zone, "zone", None)
     if isinstance(key, str):
         return key
-    offset = zone.utcoffset(None)
+    offset = zone.utcoffset(None) if isinstance(zone, datetime.tzinfo) else None
     if offset is None:
         raise wrong("zone", repr(zone), "give a name such as 'Europe/Amsterdam'")
     minutes = int(offset.total_seconds() // 60)
     return f"{'-' if minutes < 0 else '+'}{abs(minutes) // 60:02}:{abs(minutes) % 60:02}"
+
+
+def check_words(**values: object) -> None:
+    """Refuses what should be a word and is none."""
+    for name, value in values.items():
+        if value is not None and not isinstance(value, str):
+            raise wrong(name, repr(value), "give a word; help() lists them")
+
+
+def check_whole(**values: object) -> None:
+    """Refuses what should be a whole number and is none."""
+    for name, value in values.items():
+        if value is not None and (isinstance(value, bool) or not isinstance(value, Integral)):
+            raise wrong(name, repr(value), "give a whole number")
 
 
 def number_pair(value: object, what: str, advice: str) -> tuple[float, float]:

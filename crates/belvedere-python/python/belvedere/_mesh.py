@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import wrong
-from ._inputs import Places, Source, check_finite, native_source, places
+from ._inputs import check_finite, check_whole, native_source, places, system_text
+from ._types import Facing, Numbers, Places, Source, System
 
 
 class Mesh:
@@ -26,7 +27,7 @@ class Mesh:
     objects : array_like, shape (T,), optional
         Which object a triangle belongs to: a row of `object_names`.
     object_names : list of str, optional
-    crs : str, optional
+    crs : str, int or object of pyproj, optional
         Coordinate reference system; that of the cloud if not given.
 
     Raises
@@ -44,11 +45,11 @@ class Mesh:
     def __init__(
         self,
         vertices: Places,
-        triangles: npt.ArrayLike,
+        triangles: Numbers,
         *,
-        objects: npt.ArrayLike | None = None,
+        objects: Numbers | None = None,
         object_names: Sequence[str] = (),
-        crs: str | None = None,
+        crs: System | None = None,
     ) -> None:
         corners = np.asarray(places(vertices, "vertices"), np.float64)
         faces = _rows(triangles, "triangles")
@@ -57,7 +58,7 @@ class Mesh:
         of = np.empty(0, np.uint32) if objects is None else _rows(objects, "objects")
         if of.ndim != 1:
             raise wrong("objects", f"an array of shape {of.shape}", "give a number for each triangle, shape (T,)")
-        system = None if crs is None else _core.Crs(crs)
+        system = None if crs is None else _core.Crs(system_text(crs))
         self._core = _core.Mesh(corners, faces, of, list(object_names), system)
         self._sampling: tuple[float | None, int, bool] = (None, 1, False)
 
@@ -86,7 +87,7 @@ class Mesh:
         """
         return cls._of(_core.Mesh.read(native_source(source, name)))
 
-    def sampled(self, *, spacing: float | None = None, seed: int = 1, facing: str = "normals") -> Mesh:
+    def sampled(self, *, spacing: float | None = None, seed: int = 1, facing: Facing = "normals") -> Mesh:
         """The same mesh, sampled in another way where its faces are targets.
 
         Parameters
@@ -106,6 +107,7 @@ class Mesh:
         check_finite(spacing=spacing)
         if facing not in ("normals", "level"):
             raise wrong("facing", repr(facing), "use 'normals' or 'level'")
+        check_whole(seed=seed)
         if seed < 0:
             raise wrong("seed", seed, "give a whole number, 0 or more")
         return Mesh._of(self._core, (spacing, int(seed), facing == "level"))
@@ -189,7 +191,7 @@ def native_mesh(mesh: str | os.PathLike[str] | Mesh) -> _core.Mesh:
     return (mesh if isinstance(mesh, Mesh) else Mesh.read(mesh))._core
 
 
-def _rows(values: npt.ArrayLike, what: str) -> npt.NDArray[np.uint32]:
+def _rows(values: Numbers, what: str) -> npt.NDArray[np.uint32]:
     array = np.asarray(values)
     if array.size == 0:
         raise wrong(what, "empty", "give at least one triangle")

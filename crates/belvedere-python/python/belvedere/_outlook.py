@@ -11,13 +11,16 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import BelvedereWarning, wrong
-from ._inputs import Progress, check_finite, map_places, number_pair, place, reporter
+from ._inputs import check_finite, check_whole, check_words, map_places, number_pair, place, reporter
+from ._questions import _place
 from ._raster import Raster
 from ._remarks import warned
-from ._sunlight import _place
+from ._shapes import is_single
 from ._table import Table
 from ._targets import raster
+from ._types import Curvature, Ground, Numbers, Places, Progress, Unproven
 
+_SIZE = "give columns and rows, such as (640, 480)"
 _OBSERVERS = "give x and y, or x, y and z: shape (2,), (3,), (N, 2) or (N, 3)"
 
 
@@ -28,22 +31,22 @@ class Outlook:
 
     def viewshed(
         self,
-        observers: npt.ArrayLike | None = None,
+        observers: Places | None = None,
         *,
-        target: npt.ArrayLike | None = None,
+        target: Places | None = None,
         spread: int | None = None,
         observer_height: float | None = None,
         target_height: float | None = None,
         cell: float | None = None,
-        ground: str | None = None,
-        azimuth_range_deg: npt.ArrayLike | None = None,
-        elevation_range_deg: npt.ArrayLike | None = None,
+        ground: Ground | None = None,
+        azimuth_range_deg: Numbers | None = None,
+        elevation_range_deg: Numbers | None = None,
         min_distance: float | None = None,
         max_distance: float | None = None,
-        unproven: str = "report",
+        unproven: Unproven = "report",
         probability: bool = False,
         certain: float | None = None,
-        curvature: str | None = None,
+        curvature: Curvature | None = None,
         refraction: float | None = None,
         grid_north: bool = False,
         far: bool = False,
@@ -142,6 +145,7 @@ class Outlook:
             raise wrong("observers, target and spread", "given together", "give one of them")
         places: npt.NDArray[np.float64] | int
         if spread is not None:
+            check_whole(spread=spread)
             if not 1 <= spread <= 65534:
                 raise wrong("spread", str(spread), "give a whole number from 1 to 65534")
             places = operator.index(spread)
@@ -175,10 +179,10 @@ class Outlook:
     def depth_map(
         self,
         *,
-        sun: npt.ArrayLike | None = None,
-        direction: npt.ArrayLike | None = None,
-        eye: npt.ArrayLike | None = None,
-        look_at: npt.ArrayLike | None = None,
+        sun: Numbers | None = None,
+        direction: Numbers | None = None,
+        eye: Places | None = None,
+        look_at: Numbers | None = None,
         pixel: float | None = None,
         fov_deg: float | None = None,
         size: tuple[int, int] | None = None,
@@ -232,6 +236,7 @@ class Outlook:
         if len(given) != 1:
             raise wrong("view", " and ".join(given) or "missing", "give one of sun, direction and eye")
         check_finite(pixel=pixel, fov_deg=fov_deg)
+        check_whole(width=width)
         camera = {
             "sun": None if sun is None else number_pair(sun, "sun", "give azimuth and elevation in degrees"),
             "direction": None if direction is None else place(direction, "direction"),
@@ -239,7 +244,7 @@ class Outlook:
             "look_at": None if look_at is None else place(look_at, "look_at"),
             "pixel": pixel,
             "fov": fov_deg,
-            "size": None if size is None else list(size),
+            "size": None if size is None else [int(side) for side in number_pair(size, "size", _SIZE)],
             "width": width,
         }
         depth, _, given_remarks = self._core.depth_map(camera, _place(None, grid_north=grid_north), reporter(progress))
@@ -248,12 +253,12 @@ class Outlook:
 
     def horizon(
         self,
-        observers: npt.ArrayLike,
+        observers: Places,
         *,
         observer_height: float | None = None,
         angle_step_deg: float | None = None,
-        ground: str | None = None,
-        curvature: str | None = None,
+        ground: Ground | None = None,
+        curvature: Curvature | None = None,
         refraction: float | None = None,
         grid_north: bool = False,
         interval: bool = False,
@@ -306,17 +311,17 @@ class Outlook:
         warned(given)
         azimuths = 360.0 * np.arange(count) / count
         elevations = found.reshape((len(places), count, 3) if interval else (len(places), count))
-        return azimuths, elevations[0] if np.ndim(observers) == 1 else elevations
+        return azimuths, elevations[0] if is_single(observers) else elevations
 
     def isovist(
         self,
-        observers: npt.ArrayLike,
+        observers: Places,
         *,
         observer_height: float | None = None,
         max_distance: float | None = None,
         angle_step_deg: float | None = None,
         min_jump: float | None = None,
-        ground: str | None = None,
+        ground: Ground | None = None,
         grid_north: bool = False,
         interval: bool = False,
         progress: Progress = None,
@@ -389,13 +394,14 @@ def _looking(**given: Any) -> dict[str, Any]:
     """How observers look, as the native part takes it."""
     names = ("observer_height", "target_height", "cell", "ground", "azimuth_range", "elevation_range")
     more = ("min_distance", "max_distance", "curvature", "refraction")
+    check_words(ground=given.get("ground"), curvature=given.get("curvature"))
     numbers = ("observer_height", "target_height", "cell", "min_distance", "refraction")
     check_finite(**{name: given.get(name) for name in numbers})
     switches = ("is_reverse", "is_far")
     return {name: given.get(name) for name in names + more} | {name: bool(given.get(name)) for name in switches}
 
 
-def _range(value: npt.ArrayLike | None, what: str) -> tuple[float, float] | None:
+def _range(value: object, what: str) -> tuple[float, float] | None:
     return None if value is None else number_pair(value, what, "give two angles in degrees, such as (300, 60)")
 
 

@@ -2,34 +2,43 @@
 
 from __future__ import annotations
 
-import datetime
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core
 from ._errors import wrong
-from ._inputs import (
-    Day,
-    Progress,
-    Time,
-    as_list,
-    check_finite,
-    map_places,
-    number_pair,
-    reporter,
-    table_columns,
-)
+from ._inputs import as_list, check_finite, check_whole, map_places, number_pair, reporter, table_columns
+from ._keywords import Landmark as LandmarkKeywords
 from ._mesh import Mesh, native_mesh
 from ._outlook import _OBSERVERS, _looking
+from ._questions import _DIRECTION, _days, _place
 from ._raster import Raster, Rasters
 from ._remarks import warned
-from ._sunlight import _DIRECTION, _days, _place
+from ._shapes import is_single, rings_of
 from ._table import Table
-from ._targets import RastersOrTable, measures, raster
+from ._targets import measures, raster
+from ._types import (
+    Columns,
+    Curvature,
+    Day,
+    Ground,
+    Kind,
+    Location,
+    Numbers,
+    Period,
+    Places,
+    Polygon,
+    Progress,
+    Unproven,
+    Zone,
+)
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
 
 _LINE = "give corners of shape (N, 2) or (N, 3)"
 
@@ -39,26 +48,48 @@ class Planning:
 
     _core: _core.Scene
 
+    @overload
     def landmark(
         self,
         mesh: str | os.PathLike[str] | Mesh | None = None,
         *,
         target_class: int | None = None,
-        target_polygon: npt.ArrayLike | None = None,
+        target_polygon: Polygon | None = None,
         objects: str | list[str] = [],
-        observers: npt.ArrayLike | None = None,
+        observers: None = None,
+        **more: Unpack[LandmarkKeywords],
+    ) -> Rasters: ...
+    @overload
+    def landmark(
+        self,
+        mesh: str | os.PathLike[str] | Mesh | None = None,
+        *,
+        target_class: int | None = None,
+        target_polygon: Polygon | None = None,
+        objects: str | list[str] = [],
+        observers: Places,
+        **more: Unpack[LandmarkKeywords],
+    ) -> Table: ...
+    def landmark(
+        self,
+        mesh: str | os.PathLike[str] | Mesh | None = None,
+        *,
+        target_class: int | None = None,
+        target_polygon: Polygon | None = None,
+        objects: str | list[str] = [],
+        observers: Places | None = None,
         observer_height: float | None = None,
         cell: float | None = None,
-        ground: str | None = None,
+        ground: Ground | None = None,
         spacing: float | None = None,
         seed: int = 1,
         max_distance: float | None = None,
-        unproven: str = "report",
-        curvature: str | None = None,
+        unproven: Unproven = "report",
+        curvature: Curvature | None = None,
         refraction: float | None = None,
         probability: bool = False,
         progress: Progress = None,
-    ) -> RastersOrTable:
+    ) -> Rasters | Table:
         """From where a landmark is seen, and how much of it.
 
         Parameters
@@ -67,7 +98,7 @@ class Planning:
             The landmark as a mesh: ``.obj``, ``.ply`` or CityJSON.
         target_class : int, optional
             The points of this ASPRS class, in place of a mesh.
-        target_polygon : array_like, shape (N, 2), optional
+        target_polygon : array_like, shape (N, 2), or polygon of shapely or geopandas, optional
             The points above this polygon that are not ground, in place of a mesh.
         objects : str or list of str, optional
             Objects of the mesh; all if not given.
@@ -112,7 +143,7 @@ class Planning:
         >>> bool(0 <= views["visible_share"][0] <= 1)
         True
         """
-        what = _landmark(mesh, target_class, target_polygon, objects, spacing, seed)
+        what = _landmark(mesh, target_class, target_polygon, objects, spacing, seed, self._core.crs.text)
         looking = _looking(
             observer_height=observer_height,
             cell=cell,
@@ -135,19 +166,19 @@ class Planning:
 
     def protected_view(
         self,
-        observers: npt.ArrayLike,
+        observers: Places,
         mesh: str | os.PathLike[str] | Mesh | None = None,
         *,
         target_class: int | None = None,
-        target_polygon: npt.ArrayLike | None = None,
+        target_polygon: Polygon | None = None,
         objects: str | list[str] = [],
         observer_height: float | None = None,
         cell: float | None = None,
-        ground: str | None = None,
+        ground: Ground | None = None,
         spacing: float | None = None,
         seed: int = 1,
         max_distance: float | None = None,
-        unproven: str = "report",
+        unproven: Unproven = "report",
         progress: Progress = None,
     ) -> Rasters:
         """How high one may build without entering the view of a landmark.
@@ -196,7 +227,7 @@ class Planning:
         >>> bool(np.nanmin(limits["height"].values) >= 0)
         True
         """
-        what = _landmark(mesh, target_class, target_polygon, objects, spacing, seed)
+        what = _landmark(mesh, target_class, target_polygon, objects, spacing, seed, self._core.crs.text)
         looking = _looking(observer_height=observer_height, cell=cell, ground=ground, max_distance=max_distance)
         places = map_places(observers, "observers", _OBSERVERS, crs=self._core.crs.text)
         columns, grid, given = self._core.protected_view(what, places, looking, unproven, reporter(progress))
@@ -213,14 +244,14 @@ class Planning:
 
     def window_views(
         self,
-        windows: Mapping[str, npt.ArrayLike] | str | os.PathLike[str] | Mesh,
+        windows: Columns | str | os.PathLike[str] | Mesh,
         *,
         objects: str | list[str] = [],
         spacing: float | None = None,
         seed: int = 1,
         directions: int | None = None,
-        classes: Mapping[int, str] | None = None,
-        unproven: str = "report",
+        classes: Mapping[int, Kind] | None = None,
+        unproven: Unproven = "report",
         grid_north: bool = False,
         progress: Progress = None,
     ) -> Table:
@@ -228,7 +259,7 @@ class Planning:
 
         Parameters
         ----------
-        windows : mapping of str to array_like, path or Mesh
+        windows : mapping of str to array_like, DataFrame, path or Mesh
             Columns ``x, y, z`` and ``azimuth`` (degrees), and if known ``tilt`` (degrees, 90 upright), ``width`` and
             ``height`` (metres). Or a mesh, whose faces are windows; roofs and floors have no view.
         objects : str or list of str, optional
@@ -278,11 +309,13 @@ class Planning:
         100.0
         """
         check_finite(spacing=spacing)
-        if isinstance(windows, Mapping) and (spacing is not None or as_list(objects)):
+        check_whole(seed=seed, directions=directions)
+        is_mesh = isinstance(windows, (str, os.PathLike, Mesh))
+        if not is_mesh and (spacing is not None or as_list(objects)):
             raise wrong("spacing and objects", "given", "they apply only to a mesh; leave them out")
         facades: dict[str, Any] = {
-            "windows": _windows(windows) if isinstance(windows, Mapping) else [],
-            "mesh": None if isinstance(windows, Mapping) else native_mesh(windows),
+            "windows": [] if isinstance(windows, (str, os.PathLike, Mesh)) else _windows(windows),
+            "mesh": native_mesh(windows) if isinstance(windows, (str, os.PathLike, Mesh)) else None,
             "objects": as_list(objects),
             "spacing": spacing,
             "seed": seed,
@@ -306,18 +339,18 @@ class Planning:
     def comfort(
         self,
         *,
-        route: npt.ArrayLike | None = None,
-        windows: Mapping[str, npt.ArrayLike] | None = None,
+        route: Places | None = None,
+        windows: Columns | None = None,
         date: Day | Iterable[Day] | None = None,
-        period: tuple[Day | Time, Day | Time] | None = None,
+        period: Period | None = None,
         year: int | None = None,
         distance_step_m: float | None = None,
         target_height: float | None = None,
         time_step_min: float | None = None,
         directions: int | None = None,
-        ground: str | None = None,
-        location: npt.ArrayLike | None = None,
-        zone: str | datetime.tzinfo | None = None,
+        ground: Ground | None = None,
+        location: Location | None = None,
+        zone: Zone | None = None,
         grid_north: bool = False,
         progress: Progress = None,
     ) -> Table:
@@ -325,9 +358,9 @@ class Planning:
 
         Parameters
         ----------
-        route : array_like, shape (N, 2) or (N, 3), optional
+        route : array_like, shape (N, 2) or (N, 3), or line of shapely or geopandas, optional
             Corners of a walk in the coordinates of the file; without z it runs on the ground.
-        windows : mapping of str to array_like, optional
+        windows : mapping of str to array_like, or DataFrame, optional
             Columns ``x, y, z`` and ``azimuth`` (degrees), and if known ``tilt`` (degrees, 90 upright), ``width`` and
             ``height`` (metres), in place of a walk.
         date, period, year, time_step_min, zone : optional
@@ -373,7 +406,7 @@ class Planning:
             raise wrong("route and windows", "both given" if route is not None else "missing", "give one of them")
         check_finite(distance_step_m=distance_step_m, target_height=target_height, time_step_min=time_step_min)
         walks: dict[str, Any] = {
-            "routes": [] if route is None else [_line(route, "route", least=2)],
+            "routes": [] if route is None else [_line(route, "route", self._core.crs.text, least=2)],
             "windows": [] if windows is None else _windows(windows),
             "step": distance_step_m,
             "height": target_height,
@@ -390,23 +423,23 @@ class Planning:
 
     def envelope(
         self,
-        parcel: npt.ArrayLike,
+        parcel: Polygon,
         *,
-        protect: npt.ArrayLike | Sequence[npt.ArrayLike],
-        sun: npt.ArrayLike | None = None,
+        protect: Places | Sequence[Places],
+        sun: Numbers | None = None,
         date: Day | Iterable[Day] | None = None,
         period: tuple[Day, Day] | None = None,
         year: int | None = None,
-        between: npt.ArrayLike | None = None,
+        between: Numbers | None = None,
         time_step_min: float | None = None,
         fence_height: float | None = None,
         spacing: float | None = None,
         max_height: float | None = None,
         credit_shade: bool = False,
         cell: float | None = None,
-        ground: str | None = None,
-        location: npt.ArrayLike | None = None,
-        zone: str | datetime.tzinfo | None = None,
+        ground: Ground | None = None,
+        location: Location | None = None,
+        zone: Zone | None = None,
         grid_north: bool = False,
         progress: Progress = None,
     ) -> Raster:
@@ -414,7 +447,7 @@ class Planning:
 
         Parameters
         ----------
-        parcel : array_like, shape (N, 2)
+        parcel : array_like, shape (N, 2), or polygon of shapely or geopandas
             Corners in the coordinates of the file.
         protect : array_like, shape (N, 2) or (N, 3), or a list of these
             Lines that keep their sun; one corner is a point. Without z they run on the ground.
@@ -472,11 +505,13 @@ class Planning:
             if date is not None or period is not None:
                 raise wrong("sun and days", "given together", "give one of them")
             suns = [number_pair(one, "sun", _DIRECTION) for one in np.atleast_2d(np.asarray(sun, np.float64))]
-        is_one = all(np.ndim(corner) == 1 for corner in protect)  # type: ignore[union-attr]
-        lines = [protect] if is_one else list(protect)  # type: ignore[arg-type]
+        crs = self._core.crs.text
+        lines = [protect]
+        if isinstance(protect, (list, tuple)) and not any(map(is_single, protect)):
+            lines = list(protect)
         build: dict[str, Any] = {
-            "parcel": [[(x, y) for x, y, _ in _line(parcel, "parcel", least=3)]],
-            "protect": [_line(line, "protect") for line in lines],
+            "parcel": rings_of(parcel, "parcel", crs),
+            "protect": [_line(line, "protect", crs) for line in lines],
             "suns": suns,
             "between": None if between is None else number_pair(between, "between", "give two hours, such as (9, 15)"),
             "fence_height": fence_height,
@@ -494,35 +529,34 @@ class Planning:
         return height
 
 
-def _line(value: Any, what: str, least: int = 1) -> list[tuple[float, float, float]]:
+def _line(value: Any, what: str, crs: str | None, least: int = 1) -> list[tuple[float, float, float]]:
     """Corners; z is NaN where it follows from the ground."""
-    rows = map_places(value, what, f"{_LINE}, {least} at least", least)
+    rows = map_places(value, what, f"{_LINE}, {least} at least", least, crs)
     return [(float(x), float(y), float(z)) for x, y, z in rows]
 
 
 def _landmark(
     mesh: str | os.PathLike[str] | Mesh | None,
     target_class: int | None,
-    target_polygon: npt.ArrayLike | None,
+    target_polygon: Polygon | None,
     objects: str | list[str],
     spacing: float | None,
     seed: int,
+    crs: str | None,
 ) -> dict[str, Any]:
     """The landmark as the native part takes it."""
     check_finite(spacing=spacing)
     given = sum(what is not None for what in (mesh, target_class, target_polygon))
     if given != 1:
         raise wrong("landmark", f"{given} given", "give one of mesh, target_class and target_polygon")
-    ring = None
-    if target_polygon is not None:
-        ring = [[(x, y) for x, y, _ in _line(target_polygon, "target_polygon")]]
+    check_whole(target_class=target_class, seed=seed)
     return {
         "mesh": None if mesh is None else native_mesh(mesh),
         "objects": as_list(objects),
         "spacing": spacing,
         "seed": seed,
         "class": target_class,
-        "polygon": ring,
+        "polygon": None if target_polygon is None else rings_of(target_polygon, "target_polygon", crs),
     }
 
 
@@ -533,10 +567,10 @@ def _classes(meanings: Mapping[int, str]) -> list[tuple[int, str]]:
     return [(int(class_), name) for class_, name in meanings.items()]
 
 
-def _windows(columns: Mapping[str, npt.ArrayLike]) -> list[list[float]]:
+def _windows(columns: Columns) -> list[list[float]]:
     known = ("x", "y", "z", "azimuth", "tilt", "width", "height")
     given = table_columns(columns, "windows", known, known[:4])
     usual = {"tilt": 90.0}
     full = {name: np.full(len(given["x"]), usual.get(name, float("nan"))) for name in known}
-    full |= {name: np.asarray(values, np.float64) for name, values in given.items()}
+    full |= given
     return [[float(value) for value in row] for row in np.column_stack([full[name] for name in known])]

@@ -4,19 +4,25 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, SupportsIndex, Union, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._errors import missing, wrong
-from ._inputs import Places, map_places
+from ._errors import missing, no_attribute, wrong
+from ._inputs import map_places
 from ._remarks import Remark
+from ._types import Places
+from ._xarray import array_of, stack_of
 
 if TYPE_CHECKING:
     import matplotlib.axes
     import xarray
+
+
+#: What rasters are computed with.
+Operand = Union["Raster", npt.NDArray[Any], np.generic, float]
 
 
 class Raster(np.lib.mixins.NDArrayOperatorsMixin):
@@ -106,6 +112,21 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         return rows, columns
 
     @property
+    def dtype(self) -> np.dtype[Any]:
+        """Type of the values."""
+        return self.values.dtype
+
+    @property
+    def ndim(self) -> int:
+        """Number of dimensions: 2."""
+        return self.values.ndim
+
+    @property
+    def size(self) -> int:
+        """Number of cells."""
+        return self.values.size
+
+    @property
     def bounds(self) -> tuple[float, float, float, float]:
         """West, south, east and north in the coordinates of the file.
 
@@ -140,6 +161,8 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         --------
         >>> scene.shadow(sun=(180, 30)).to_geotiff(folder / "shadow.tif")
         """
+        if not os.fspath(path).lower().endswith((".tif", ".tiff")):
+            raise wrong("path", repr(path), "a GeoTIFF is a file .tif; to_xarray() writes other formats")
         further = [self.unproven, self.probability, self.uncertain, self.caster]
         rasters = [self, *(raster for raster in further if raster is not None)]
         bands = [raster._pixels() for raster in rasters]
@@ -158,33 +181,14 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         return values if values.dtype in (np.float32, np.uint8, np.uint16, np.uint32) else values.astype(np.float32)
 
     def to_xarray(self) -> xarray.DataArray:
-        """An `xarray.DataArray` by the conventions of rioxarray.
+        """An `xarray.DataArray` by the conventions of CF and rioxarray, with its time in UTC where it has one.
 
         Examples
         --------
         >>> scene.shadow(sun=(180, 30)).to_xarray().dims
         ('y', 'x')
         """
-        try:
-            import xarray
-        except ImportError:
-            raise missing("xarray", "to_xarray") from None
-        a, b, c, d, e, f = self.transform
-        grid_mapping = {"GeoTransform": f"{c} {a} {b} {f} {d} {e}"}
-        if self.crs is not None:
-            grid_mapping |= {"crs_wkt": self.crs, "spatial_ref": self.crs}
-        reference = xarray.DataArray(0, attrs=grid_mapping)
-        texts = {"long_name": self.description, "units": self.unit} | {key.lower(): v for key, v in self.tags.items()}
-        attributes: dict[str, Any] = {key: text for key, text in texts.items() if text}
-        if self.nodata is not None and np.isfinite(self.nodata):
-            attributes["_FillValue"] = self.nodata
-        return xarray.DataArray(
-            self.values,
-            dims=("y", "x"),
-            coords={"y": self.y, "x": self.x, "spatial_ref": reference},
-            name=self.name or None,
-            attrs=attributes,
-        )
+        return array_of(self)
 
     def sample(self, places: Places) -> npt.NDArray[np.float32]:
         """The values of the cells that hold places; NaN beside the grid, and where there is no value.
@@ -215,13 +219,17 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         found[is_inside] = self._known()[lines[is_inside], columns[is_inside]]
         return found
 
-    def plot(self, ax: matplotlib.axes.Axes | None = None, **keywords: Any) -> matplotlib.axes.Axes:
+    def plot(
+        self, ax: matplotlib.axes.Axes | None = None, *, add_colorbar: bool = True, **keywords: Any
+    ) -> matplotlib.axes.Axes:
         """Draws the raster on the map with a bar of colours.
 
         Parameters
         ----------
         ax : matplotlib.axes.Axes, optional
             Where to draw; new ones if not given.
+        add_colorbar : bool
+            Whether there is a bar of colours.
         **keywords
             For `matplotlib.axes.Axes.imshow`, such as ``cmap`` and ``vmin``.
 
@@ -243,8 +251,9 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
             ax = plt.figure().add_subplot()
         west, south, east, north = self.bounds
         drawn = ax.imshow(self._known(), extent=(west, east, south, north), **keywords)
-        unit = "" if self.unit in ("", "1") else f" [{self.unit}]"
-        ax.figure.colorbar(drawn, ax=ax, label=f"{self.name}{unit}")
+        if add_colorbar:
+            unit = "" if self.unit in ("", "1") else f" [{self.unit}]"
+            ax.figure.colorbar(drawn, ax=ax, label=f"{self.name}{unit}")
         ax.set_title(self.description)
         ax.ticklabel_format(useOffset=False, style="plain")
         return ax
@@ -289,6 +298,19 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
             return found
         return Raster(found, self.transform, self._crs, nodata=np.nan if found.dtype.kind == "f" else None)
 
+    if TYPE_CHECKING:
+        # the operators of NDArrayOperatorsMixin, whose types are not known
+        def _operated(self, other: Operand) -> Raster: ...
+        def _changed(self) -> Raster: ...
+
+        __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = _operated
+        __truediv__ = __rtruediv__ = __floordiv__ = __rfloordiv__ = __mod__ = __rmod__ = __pow__ = __rpow__ = _operated
+        __and__ = __rand__ = __or__ = __ror__ = __xor__ = __rxor__ = _operated
+        __lshift__ = __rlshift__ = __rshift__ = __rrshift__ = _operated
+        __lt__ = __le__ = __gt__ = __ge__ = _operated
+        __eq__ = __ne__ = _operated
+        __neg__ = __pos__ = __abs__ = __invert__ = _changed
+
     def __bool__(self) -> bool:
         raise ValueError("a Raster is neither true nor false; use `.any()` or `.all()`")
 
@@ -319,6 +341,10 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
             raise TypeError("a Raster is no place for results of NumPy; use its `values`")
         return getattr(np, f"nan{name}")(self._known(), **keywords)
 
+    @overload
+    def mean(self, axis: None = None, **keywords: Any) -> np.floating[Any]: ...
+    @overload
+    def mean(self, axis: int, **keywords: Any) -> npt.NDArray[np.floating[Any]]: ...
     def mean(self, axis: int | None = None, **keywords: Any) -> Any:
         """Mean of the cells that have a value; also `numpy.mean`.
 
@@ -329,6 +355,10 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         """
         return self._reduced("mean", {"axis": axis, **keywords})
 
+    @overload
+    def sum(self, axis: None = None, **keywords: Any) -> np.number[Any]: ...
+    @overload
+    def sum(self, axis: int, **keywords: Any) -> npt.NDArray[np.number[Any]]: ...
     def sum(self, axis: int | None = None, **keywords: Any) -> Any:
         """Sum of the cells that have a value; also `numpy.sum`.
 
@@ -340,6 +370,10 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         """
         return self._reduced("sum", {"axis": axis, **keywords})
 
+    @overload
+    def min(self, axis: None = None, **keywords: Any) -> np.number[Any]: ...
+    @overload
+    def min(self, axis: int, **keywords: Any) -> npt.NDArray[np.number[Any]]: ...
     def min(self, axis: int | None = None, **keywords: Any) -> Any:
         """Least of the cells that have a value; also `numpy.min`.
 
@@ -350,6 +384,10 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         """
         return self._reduced("min", {"axis": axis, **keywords})
 
+    @overload
+    def max(self, axis: None = None, **keywords: Any) -> np.number[Any]: ...
+    @overload
+    def max(self, axis: int, **keywords: Any) -> npt.NDArray[np.number[Any]]: ...
     def max(self, axis: int | None = None, **keywords: Any) -> Any:
         """Greatest of the cells that have a value; also `numpy.max`.
 
@@ -360,6 +398,10 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         """
         return self._reduced("max", {"axis": axis, **keywords})
 
+    @overload
+    def std(self, axis: None = None, **keywords: Any) -> np.floating[Any]: ...
+    @overload
+    def std(self, axis: int, **keywords: Any) -> npt.NDArray[np.floating[Any]]: ...
     def std(self, axis: int | None = None, **keywords: Any) -> Any:
         """Standard deviation of the cells that have a value; also `numpy.std`.
 
@@ -370,6 +412,10 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         """
         return self._reduced("std", {"axis": axis, **keywords})
 
+    @overload
+    def var(self, axis: None = None, **keywords: Any) -> np.floating[Any]: ...
+    @overload
+    def var(self, axis: int, **keywords: Any) -> npt.NDArray[np.floating[Any]]: ...
     def var(self, axis: int | None = None, **keywords: Any) -> Any:
         """Variance of the cells that have a value; also `numpy.var`.
 
@@ -380,6 +426,10 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         """
         return self._reduced("var", {"axis": axis, **keywords})
 
+    @overload
+    def __getitem__(self, cells: Raster) -> npt.NDArray[Any]: ...
+    @overload
+    def __getitem__(self, cells: SupportsIndex | slice | tuple[Any, ...] | list[Any] | npt.NDArray[Any]) -> Any: ...
     def __getitem__(self, cells: Any) -> Any:
         return self.values[cells.values if isinstance(cells, Raster) else cells]
 
@@ -403,6 +453,40 @@ class Raster(np.lib.mixins.NDArrayOperatorsMixin):
         return _unpickled, (*state, *more)
 
 
+class RasterSeries(list[Raster]):
+    """Rasters of several suns or times on one grid: a list in their order.
+
+    Examples
+    --------
+    >>> day = scene.shadow(time=["2026-06-21T10:00+02:00", "2026-06-21T15:00+02:00"], cell=4)
+    >>> [lit.tags["TIME"] for lit in day]
+    ['2026-06-21T10:00:00+02:00', '2026-06-21T15:00:00+02:00']
+    """
+
+    @overload
+    def __getitem__(self, index: SupportsIndex, /) -> Raster: ...
+    @overload
+    def __getitem__(self, index: slice, /) -> RasterSeries: ...
+    def __getitem__(self, index: SupportsIndex | slice, /) -> Raster | RasterSeries:
+        return RasterSeries(super().__getitem__(index)) if isinstance(index, slice) else super().__getitem__(index)
+
+    def to_xarray(self) -> xarray.DataArray:
+        """An `xarray.DataArray` of time, y and x by the conventions of CF; of sun, y and x where suns have no time.
+
+        Times are in UTC, because xarray and netCDF have no time zones. ``sun_azimuth_deg`` and ``sun_elevation_deg``
+        are coordinates. `to_netcdf` of xarray writes a file that xarray, GDAL and QGIS open.
+
+        Examples
+        --------
+        >>> day = scene.shadow(time=["2026-06-21T10:00+02:00", "2026-06-21T15:00+02:00"], cell=4)
+        >>> day.to_xarray()["time"].dt.hour.values.tolist()
+        [8, 13]
+        """
+        if not self:
+            raise wrong("rasters", "empty", "give at least one")
+        return stack_of(self)
+
+
 class Rasters(Mapping[str, Raster]):
     """Several rasters on one grid, by name.
 
@@ -421,7 +505,16 @@ class Rasters(Mapping[str, Raster]):
         self._rasters = dict(rasters)
 
     def __getitem__(self, name: str) -> Raster:
+        if name not in self._rasters:
+            raise KeyError(f"no raster {name!r}; use {', '.join(self._rasters)}")
         return self._rasters[name]
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_"):
+                raise AttributeError(name)
+            raise no_attribute(self, name, self._rasters)
 
     def __eq__(self, other: object) -> bool:
         raise TypeError(f"Rasters are not compared as a whole; take one by name, such as rasters[{next(iter(self))!r}]")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -20,15 +20,17 @@ from ._energy import Energy
 from ._errors import BelvedereWarning, wrong
 from ._glare import Glare
 from ._heat import Heat
-from ._inputs import Progress, Source, as_list, check_finite, native_source, place, reporter
+from ._inputs import as_list, check_finite, check_whole, native_source, path_text, place, reporter
 from ._mesh import Mesh, native_mesh
 from ._outlook import Outlook
 from ._planning import Planning
 from ._raster import escaped
 from ._remarks import warned
+from ._shapes import rings_of
 from ._sights import Sights
 from ._sunlight import Sunlight
 from ._towers import Towers
+from ._types import CarvingRule, Device, Method, Numbers, Orient, Polygon, Progress, Source, Trees
 
 
 class Scene(Sights, Outlook, Towers, Sunlight, Energy, Heat, Glare, Planning, Documents, Cameras):
@@ -106,14 +108,14 @@ class Scene(Sights, Outlook, Towers, Sunlight, Energy, Heat, Glare, Planning, Do
         self,
         cloud: Cloud | Source,
         *,
-        trees: str | None = None,
-        orient: str | None = None,
-        scanner: npt.ArrayLike | None = None,
-        stations: str | os.PathLike[str] | Mapping[int, npt.ArrayLike] | npt.ArrayLike | None = None,
+        trees: Trees | None = None,
+        orient: Orient | None = None,
+        scanner: Numbers | None = None,
+        stations: str | os.PathLike[str] | Mapping[int, Numbers] | Numbers | None = None,
         trajectory: str | os.PathLike[str] | None = None,
         mesh: str | os.PathLike[str] | None = None,
-        method: str | None = None,
-        without: str | list[str] = [],
+        method: Method | None = None,
+        without: CarvingRule | list[CarvingRule] = [],
         keep_noise: bool = False,
         keep_duplicates: bool = False,
         keep_isolated: bool = False,
@@ -257,7 +259,7 @@ class Scene(Sights, Outlook, Towers, Sunlight, Energy, Heat, Glare, Planning, Do
 
     def without(
         self,
-        polygon: Sequence[Sequence[tuple[float, float]]] | Sequence[tuple[float, float]] | None = None,
+        polygon: Polygon | None = None,
         *,
         class_: int | None = None,
     ) -> Scene:
@@ -268,7 +270,7 @@ class Scene(Sights, Outlook, Towers, Sunlight, Energy, Heat, Glare, Planning, Do
 
         Parameters
         ----------
-        polygon : corners, or rings
+        polygon : corners, rings, or polygon of shapely or geopandas
             Corners (x, y) of an outline in the coordinates of the cloud, or the outline and its holes.
         class_ : int
             Instead: the points of this class.
@@ -286,13 +288,11 @@ class Scene(Sights, Outlook, Towers, Sunlight, Energy, Heat, Glare, Planning, Do
         if self.cloud is None:
             raise wrong("cloud of the scene", "missing", "make the scene of a cloud: Scene(read(path))")
         rings = None
+        if isinstance(polygon, int):
+            raise wrong("polygon", polygon, f"leave out the points of a class with class_={polygon}")
         if polygon is not None:
-            first = np.asarray(polygon[0], np.float64)
-            given = [polygon] if first.ndim == 1 else polygon
-            arrays = [np.asarray(ring, np.float64) for ring in given]
-            if any(ring.ndim != 2 or ring.shape[1] != 2 for ring in arrays):
-                raise wrong("polygon", "not made of corners", "give corners as (x, y)")
-            rings = [[(float(x), float(y)) for x, y in ring] for ring in arrays]
+            rings = rings_of(polygon, "polygon", self._core.crs.text)
+        check_whole(class_=class_)
         core, text, remarks = self._core.without(rings, 0 if class_ is None else int(class_))
         warned(remarks)
         return self._plan(core, {**self.report, "cleared": json.loads(text)})
@@ -312,7 +312,7 @@ class Scene(Sights, Outlook, Towers, Sunlight, Energy, Heat, Glare, Planning, Do
         >>> float(np.nanmax(scene.with_horizon(folder / "horizon.csv").shadow(sun=(180, 29)).values))
         0.0
         """
-        return self._plan(self._core.with_horizon(os.fspath(path)), self.report)
+        return self._plan(self._core.with_horizon(path_text(path, "path")), self.report)
 
     def with_terrain(self, path: str | os.PathLike[str]) -> Scene:
         """The same scene before the terrain of an elevation raster: each place has its own horizon.
@@ -330,9 +330,9 @@ class Scene(Sights, Outlook, Towers, Sunlight, Energy, Heat, Glare, Planning, Do
         --------
         >>> lit = scene.with_terrain("dtm.tif").shadow(sun=(180, 20))  # doctest: +SKIP
         """
-        return self._plan(self._core.with_terrain(os.fspath(path)), self.report)
+        return self._plan(self._core.with_terrain(path_text(path, "path")), self.report)
 
-    def with_device(self, device: str | int = "auto") -> Scene:
+    def with_device(self, device: Device = "auto") -> Scene:
         """The same scene, whose lines of sight and depth maps are the work of a graphics processor.
 
         Answers are the same. Depths of depth maps and panoramas differ by at most 0.00001 of themselves, and with

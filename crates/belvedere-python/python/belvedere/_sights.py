@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
 from ._answer import Answer
-from ._inputs import Places, Progress, check_finite, pairs_of, place, reporter
+from ._cloud import Cloud
+from ._inputs import check_finite, pairs_of, place, reporter
+from ._keywords import LineOfSight
 from ._mesh import Mesh
 from ._remarks import Remark, warned
 from ._shapes import in_system, is_single
 from ._table import Table
 from ._targets import Targets, face_table, wanted
+from ._types import Curvature, Ground, Place, PlaceRows, Places, Progress, Unproven
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 class Sight(NamedTuple):
@@ -68,14 +74,22 @@ class Sights:
 
     _core: _core.Scene
 
+    @overload
+    def visible(
+        self, eye: Places, targets: Mesh, *, unproven: Unproven = "report", progress: Progress = None
+    ) -> Table: ...
+    @overload
+    def visible(
+        self, eye: Places, targets: Places | Cloud | None, *, unproven: Unproven = "report", progress: Progress = None
+    ) -> npt.NDArray[np.uint8]: ...
     def visible(
         self,
-        eye: npt.ArrayLike,
+        eye: Places,
         targets: Targets,
         *,
-        unproven: str = "report",
+        unproven: Unproven = "report",
         progress: Progress = None,
-    ) -> Any:
+    ) -> npt.NDArray[np.uint8] | Table:
         """Which targets one eye can see.
 
         Parameters
@@ -122,6 +136,14 @@ class Sights:
         warned(given)
         return answers
 
+    @overload
+    def line_of_sight(self, observer: Place, target: Place, **more: Unpack[LineOfSight]) -> Sight: ...
+    @overload
+    def line_of_sight(self, observer: Place, target: PlaceRows, **more: Unpack[LineOfSight]) -> Table: ...
+    @overload
+    def line_of_sight(self, observer: PlaceRows, target: Place | PlaceRows, **more: Unpack[LineOfSight]) -> Table: ...
+    @overload
+    def line_of_sight(self, observer: Places, target: Places, **more: Unpack[LineOfSight]) -> Any: ...
     def line_of_sight(
         self,
         observer: Places,
@@ -129,11 +151,11 @@ class Sights:
         *,
         observer_height: float | None = None,
         target_height: float | None = None,
-        ground: str | None = None,
-        unproven: str = "report",
+        ground: Ground | None = None,
+        unproven: Unproven = "report",
         probability: bool = False,
         certain: float | None = None,
-        curvature: str | None = None,
+        curvature: Curvature | None = None,
         refraction: float | None = None,
         frequency_ghz: float | None = None,
         progress: Progress = None,
@@ -214,7 +236,9 @@ class Sights:
         if "block_surface" in columns:
             columns["block_surface"] = np.asarray(columns["block_surface"])
         if not is_one:
-            table = Table(columns, places=np.where(np.isnan(targets), standing, targets), crs=self._core.crs.text)
+            # heights that were given, to their last digit
+            np.copyto(standing, targets, where=~np.isnan(targets))
+            table = Table(columns, places=standing, crs=self._core.crs.text)
             table.remarks = remarks
             return table
         nan = float("nan")
@@ -238,11 +262,11 @@ class Sights:
         *,
         max_distance: float | None = None,
         observer_height: float | None = None,
-        ground: str | None = None,
-        unproven: str = "report",
+        ground: Ground | None = None,
+        unproven: Unproven = "report",
         probability: bool = False,
         certain: float | None = None,
-        curvature: str | None = None,
+        curvature: Curvature | None = None,
         refraction: float | None = None,
         frequency_ghz: float | None = None,
         progress: Progress = None,

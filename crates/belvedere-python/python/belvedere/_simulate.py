@@ -7,12 +7,13 @@ import numpy as np
 from . import _core
 from ._cloud import Cloud
 from ._inputs import check_finite
+from ._types import Town
 
 #: The Dutch grid with heights above NAP, in which simulated towns lie.
 _SYSTEM = "EPSG:7415"
 
 
-def simulate(town: str = "town", *, extent: float | None = None, density: float | None = None, seed: int = 1) -> Cloud:
+def simulate(town: Town = "town", *, extent: float | None = None, density: float | None = None, seed: int = 1) -> Cloud:
     """An airborne laser scan of a simulated town: a cloud to try things with.
 
     `belvedere simulate` writes the same scan with its exact mesh, and has more choices.

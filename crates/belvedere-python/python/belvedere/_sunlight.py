@@ -2,35 +2,50 @@
 
 from __future__ import annotations
 
-import datetime
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._cloud import Cloud
 from ._errors import wrong
 from ._inputs import (
-    Day,
-    Progress,
-    Time,
     as_list,
     check_finite,
-    day_texts,
-    location_pair,
-    moments,
-    number_pair,
+    check_whole,
+    check_words,
     reporter,
     times,
-    zone_text,
 )
-from ._raster import Raster, Rasters
+from ._keywords import Shadow, SkyView, SunHours
+from ._mesh import Mesh
+from ._questions import _cells, _days, _place, _suns
+from ._raster import Raster, Rasters, RasterSeries
 from ._remarks import warned
 from ._shapes import in_system
-from ._targets import Cells, RastersOrTable, Results, Targets, measures, raster, wanted
+from ._table import Table
+from ._targets import Results, Rows, Targets, measures, raster, wanted
+from ._types import (
+    Day,
+    Direction,
+    Ground,
+    Leaves,
+    Location,
+    Numbers,
+    Patches,
+    Period,
+    Places,
+    Progress,
+    SunElevation,
+    ThroughTrees,
+    Time,
+    Zone,
+)
 
-_DIRECTION = "give azimuth and elevation in degrees, such as (180, 30)"
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 class Sunlight:
@@ -38,21 +53,128 @@ class Sunlight:
 
     _core: _core.Scene
 
+    @overload
     def shadow(
         self,
         *,
-        sun: npt.ArrayLike | None = None,
+        sun: Direction | None = None,
+        time: Time | None = None,
+        targets: None = None,
+        probability: bool = False,
+        certain: float | None = None,
+        casters: bool = False,
+        **more: Unpack[Shadow],
+    ) -> Raster: ...
+    @overload
+    def shadow(
+        self,
+        *,
+        sun: Direction | None = None,
+        time: Time | None = None,
+        targets: Mesh,
+        probability: bool = False,
+        certain: float | None = None,
+        casters: bool = False,
+        **more: Unpack[Shadow],
+    ) -> Table: ...
+    @overload
+    def shadow(
+        self,
+        *,
+        sun: Direction | None = None,
+        time: Time | None = None,
+        targets: Places | Cloud,
+        probability: Literal[False] = False,
+        certain: None = None,
+        casters: Literal[False] = False,
+        **more: Unpack[Shadow],
+    ) -> npt.NDArray[np.float32]: ...
+    @overload
+    def shadow(
+        self,
+        *,
+        sun: Direction | None = None,
+        time: Time | None = None,
+        targets: Places | Cloud,
+        probability: bool = False,
+        certain: float | None = None,
+        casters: bool = False,
+        **more: Unpack[Shadow],
+    ) -> Table: ...
+    @overload
+    def shadow(
+        self,
+        *,
+        sun: Sequence[Direction] | None = None,
+        time: Iterable[Time] | None = None,
+        targets: None = None,
+        probability: bool = False,
+        certain: float | None = None,
+        casters: bool = False,
+        **more: Unpack[Shadow],
+    ) -> RasterSeries: ...
+    @overload
+    def shadow(
+        self,
+        *,
+        sun: Sequence[Direction] | None = None,
+        time: Iterable[Time] | None = None,
+        targets: Mesh,
+        probability: bool = False,
+        certain: float | None = None,
+        casters: bool = False,
+        **more: Unpack[Shadow],
+    ) -> list[Table]: ...
+    @overload
+    def shadow(
+        self,
+        *,
+        sun: Sequence[Direction] | None = None,
+        time: Iterable[Time] | None = None,
+        targets: Places | Cloud,
+        probability: Literal[False] = False,
+        certain: None = None,
+        casters: Literal[False] = False,
+        **more: Unpack[Shadow],
+    ) -> list[npt.NDArray[np.float32]]: ...
+    @overload
+    def shadow(
+        self,
+        *,
+        sun: Sequence[Direction] | None = None,
+        time: Iterable[Time] | None = None,
+        targets: Places | Cloud,
+        probability: bool = False,
+        certain: float | None = None,
+        casters: bool = False,
+        **more: Unpack[Shadow],
+    ) -> list[Table]: ...
+    @overload
+    def shadow(
+        self,
+        *,
+        sun: Numbers,
+        targets: Targets = None,
+        probability: bool = False,
+        certain: float | None = None,
+        casters: bool = False,
+        **more: Unpack[Shadow],
+    ) -> Any: ...
+    def shadow(
+        self,
+        *,
+        sun: Numbers | None = None,
         time: Time | Iterable[Time] | None = None,
         targets: Targets = None,
-        normals: npt.ArrayLike | None = None,
+        normals: Numbers | None = None,
         cell: float | None = None,
         target_height: float | None = None,
         surface: bool = False,
-        ground: str | None = None,
+        ground: Ground | None = None,
         soft: bool = False,
-        through_trees: str | float | None = None,
-        leaves: str | None = None,
-        location: npt.ArrayLike | None = None,
+        through_trees: ThroughTrees | None = None,
+        leaves: Leaves | None = None,
+        location: Location | None = None,
         grid_north: bool = False,
         probability: bool = False,
         certain: float | None = None,
@@ -87,7 +209,7 @@ class Sunlight:
             Light that passes through crowns; none if not given.
         leaves : {'auto', 'on', 'off'}, optional
             Whether trees have leaves; by the date if not given, and as they were measured without one.
-        location : array_like, shape (2,), optional
+        location : array_like, shape (2,), or Location of pvlib, optional
             Latitude and longitude, degrees, where the reference system does not say where the scene lies.
         grid_north : bool, optional
             Whether azimuths are counted from grid north.
@@ -101,7 +223,7 @@ class Sunlight:
 
         Returns
         -------
-        Raster, or ndarray of shape (N,), float32; a list of these for several suns
+        Raster, or ndarray of shape (N,), float32; for several suns a RasterSeries, or a list of arrays
             With `probability` or `certain` a Raster has these as attributes `probability` and `uncertain`, and places
             give a Table with ``lit``, ``probability`` and ``uncertain``. With `casters` likewise ``caster``: 0 sun, 1
             building, 2 trees, 3 ground, 4 water, 5 other things, 6 terrain beyond the cloud, 7 the surface of the
@@ -148,7 +270,9 @@ class Sunlight:
         )
         has_columns = probability or certain is not None or casters
         made = [self._lit(result, targets, has_columns) for result in results]
-        return made[0] if is_one else made
+        if is_one:
+            return made[0]
+        return RasterSeries(made) if targets is None else made
 
     def _lit(self, results: Results, targets: Targets, has_columns: bool) -> Any:
         """The share of one sun."""
@@ -157,39 +281,53 @@ class Sunlight:
             warned(given)
             return columns[0][2]
         found = measures(results, self._core.crs, targets)
-        if grid is None:
+        if isinstance(found, Table):
             return found
-        lit: Raster = found["lit"]
+        lit = found["lit"]
         lit.unproven = found.get("unproven")
         lit.probability, lit.uncertain = found.get("probability"), found.get("uncertain")
         lit.caster = found.get("caster")
         return lit
 
+    @overload
+    def sun_hours(
+        self,
+        *,
+        targets: None = None,
+        **more: Unpack[SunHours],
+    ) -> Rasters: ...
+    @overload
+    def sun_hours(
+        self,
+        *,
+        targets: Rows,
+        **more: Unpack[SunHours],
+    ) -> Table: ...
     def sun_hours(
         self,
         *,
         date: Day | Iterable[Day] | None = None,
-        period: tuple[Day | Time, Day | Time] | None = None,
+        period: Period | None = None,
         rule: str | list[str] = [],
         year: int | None = None,
         time_step_min: float | None = None,
         min_sun_elevation_deg: float | None = None,
         sun_tolerance_deg: float | None = None,
         targets: Targets = None,
-        normals: npt.ArrayLike | None = None,
+        normals: Numbers | None = None,
         cell: float | None = None,
         target_height: float | None = None,
         surface: bool = False,
-        ground: str | None = None,
-        through_trees: str | float | None = None,
-        leaves: str | None = None,
-        location: npt.ArrayLike | None = None,
-        zone: str | datetime.tzinfo | None = None,
-        sun_elevation: str = "apparent",
-        air: npt.ArrayLike | None = None,
+        ground: Ground | None = None,
+        through_trees: ThroughTrees | None = None,
+        leaves: Leaves | None = None,
+        location: Location | None = None,
+        zone: Zone | None = None,
+        sun_elevation: SunElevation = "apparent",
+        air: Numbers | None = None,
         interval: bool = False,
         progress: Progress = None,
-    ) -> RastersOrTable:
+    ) -> Rasters | Table:
         """Hours of sun on days, and when.
 
         Parameters
@@ -272,11 +410,11 @@ class Sunlight:
         cell: float | None = None,
         target_height: float | None = None,
         surface: bool = False,
-        ground: str | None = None,
-        location: npt.ArrayLike | None = None,
-        zone: str | datetime.tzinfo | None = None,
-        sun_elevation: str = "apparent",
-        air: npt.ArrayLike | None = None,
+        ground: Ground | None = None,
+        location: Location | None = None,
+        zone: Zone | None = None,
+        sun_elevation: SunElevation = "apparent",
+        air: Numbers | None = None,
         progress: Progress = None,
     ) -> Rasters:
         """Sun of each hour of a year, a bit for each day: the hourly shade of the Google Solar API.
@@ -333,21 +471,35 @@ class Sunlight:
             one.remarks = remarks
         return made
 
+    @overload
+    def sky_view(
+        self,
+        *,
+        targets: None = None,
+        **more: Unpack[SkyView],
+    ) -> Rasters: ...
+    @overload
+    def sky_view(
+        self,
+        *,
+        targets: Rows,
+        **more: Unpack[SkyView],
+    ) -> Table: ...
     def sky_view(
         self,
         *,
         directions: int | None = None,
-        patches: str | None = None,
+        patches: Patches | None = None,
         targets: Targets = None,
-        normals: npt.ArrayLike | None = None,
+        normals: Numbers | None = None,
         cell: float | None = None,
         target_height: float | None = None,
         surface: bool = False,
-        ground: str | None = None,
-        through_trees: str | float | None = None,
+        ground: Ground | None = None,
+        through_trees: ThroughTrees | None = None,
         interval: bool = False,
         progress: Progress = None,
-    ) -> RastersOrTable:
+    ) -> Rasters | Table:
         """How much of the sky places see.
 
         Parameters
@@ -379,6 +531,8 @@ class Sunlight:
         >>> sky["sky_view_factor"].shape == (len(targets),)
         True
         """
+        check_whole(directions=directions)
+        check_words(patches=patches)
         targets = in_system(targets, "targets", self._core.crs.text)
         results = self._core.sky_view(
             directions,
@@ -390,16 +544,14 @@ class Sunlight:
         )
         return measures(results, self._core.crs, targets)
 
-    def sun_position(
-        self, time: Time | Iterable[Time], *, location: npt.ArrayLike | None = None
-    ) -> npt.NDArray[np.float64]:
+    def sun_position(self, time: Time | Iterable[Time], *, location: Location | None = None) -> npt.NDArray[np.float64]:
         """Azimuth, clockwise from true north, and elevation of the sun above the scene, degrees.
 
         Parameters
         ----------
         time : datetime, pandas Timestamp, ISO text, or several
             With a time zone.
-        location : array_like, shape (2,), optional
+        location : array_like, shape (2,), or Location of pvlib, optional
             Latitude and longitude, degrees, where the reference system does not say where the scene lies.
 
         Returns
@@ -414,64 +566,3 @@ class Sunlight:
         texts, is_one = times(time)
         positions = np.array(self._core.sun_positions(texts, _place(location)))
         return positions[0] if is_one else positions
-
-
-def _cells(cell: float | None, target_height: float | None, surface: bool, ground: str | None) -> Cells:
-    return {"cell": cell, "target_height": target_height, "surface": surface, "ground": ground}
-
-
-def _days(
-    date: Any,
-    period: Any,
-    year: int | None,
-    time_step_min: float | None,
-    min_sun_elevation_deg: float | None = None,
-    sun_tolerance_deg: float | None = None,
-) -> dict[str, Any]:
-    if date is not None and period is not None:
-        raise wrong("date and period", "given together", "give one of them")
-    return {
-        "dates": [] if date is None else day_texts(date),
-        "between": None if period is None else moments(period),
-        "year": year,
-        "step": time_step_min,
-        "min_sun_elevation": min_sun_elevation_deg,
-        "tolerance": sun_tolerance_deg,
-    }
-
-
-def _suns(sun: npt.ArrayLike | None, time: Time | Iterable[Time] | None) -> tuple[Any, bool]:
-    """Directions or times, and whether there is one that was not given in a list."""
-    if (sun is None) == (time is None):
-        raise wrong("sun and time", "both given" if sun is not None else "missing", "give one of them")
-    if time is not None:
-        return times(time)
-    try:
-        array = np.asarray(sun, np.float64)
-    except (TypeError, ValueError):
-        raise wrong("sun", repr(sun), _DIRECTION) from None
-    if array.ndim == 1:
-        return [number_pair(array, "sun", _DIRECTION)], True
-    if array.ndim != 2 or array.shape[1] != 2 or not len(array):
-        raise wrong("sun", f"an array of shape {array.shape}", _DIRECTION)
-    return [number_pair(one, "sun", _DIRECTION) for one in array], False
-
-
-def _place(
-    location: npt.ArrayLike | None,
-    *,
-    zone: str | datetime.tzinfo | None = None,
-    grid_north: bool = False,
-    sun_elevation: str = "apparent",
-    air: npt.ArrayLike | None = None,
-) -> dict[str, Any]:
-    if sun_elevation not in ("apparent", "geometric"):
-        raise wrong("sun_elevation", repr(sun_elevation), "use 'apparent' or 'geometric'")
-    what = "give pressure in hPa and temperature in degrees Celsius"
-    return {
-        "location": location_pair(location),
-        "zone": zone_text(zone),
-        "grid_north": grid_north,
-        "geometric": sun_elevation == "geometric",
-        "air": None if air is None else number_pair(air, "air", what),
-    }

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ._errors import missing, wrong
+from ._errors import missing, no_attribute, wrong
 from ._remarks import Remark
 
 if TYPE_CHECKING:
@@ -73,8 +73,22 @@ class Table(dict[str, "npt.NDArray[Any]"]):
         self.hours: list[Table] = []
         self.remarks: tuple[Remark, ...] = ()
 
+    def __getitem__(self, name: str, /) -> npt.NDArray[Any]:
+        if not isinstance(name, str):
+            raise TypeError("a Table has columns by name; rows are those of a column or of to_pandas()")
+        return super().__getitem__(name)
+
     def __missing__(self, name: str) -> npt.NDArray[Any]:
+        if name not in self._wide:
+            raise KeyError(f"no column {name!r}; use {', '.join([*self, *self._wide])}")
         return self._wide[name]
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_"):
+                raise AttributeError(name)
+            raise no_attribute(self, name, self)
 
     def __contains__(self, name: object) -> bool:
         return super().__contains__(name) or name in self._wide

@@ -11,16 +11,17 @@ import numpy.typing as npt
 from . import _core
 from ._cloud import Cloud
 from ._errors import wrong
-from ._inputs import Places, check_finite, map_places, places
+from ._inputs import check_finite, map_places, places
 from ._mesh import Mesh
 from ._raster import Raster, Rasters
 from ._remarks import warned
 from ._table import Table
+from ._types import Ground, Numbers, Places
 
-#: Cells of a grid (None), places of shape (N, 3), the points of a cloud, or the faces of a mesh.
-Targets = Union[Places, Cloud, Mesh, None]
-#: `Rasters` for the cells of a grid, a `Table` for other targets. Any, because users know which targets they gave.
-RastersOrTable = Union[Rasters, Any]
+#: Places of shape (N, 3), the points of a cloud, or the faces of a mesh: targets that are no cells.
+Rows = Union[Places, Cloud, Mesh]
+#: Cells of a grid (None), or rows.
+Targets = Union[Rows, None]
 
 
 class Cells(TypedDict, total=False):
@@ -29,12 +30,10 @@ class Cells(TypedDict, total=False):
     cell: float | None
     target_height: float | None
     surface: bool
-    ground: str | None
+    ground: Ground | None
 
 
-def wanted(
-    targets: Targets, normals: npt.ArrayLike | None, cells: Cells, may_lack_heights: bool = False
-) -> dict[str, Any]:
+def wanted(targets: Targets, normals: Numbers | None, cells: Cells, may_lack_heights: bool = False) -> dict[str, Any]:
     """Targets as the native part takes them."""
     on_map = None
     if may_lack_heights and targets is not None and not isinstance(targets, (Cloud, Mesh)):
@@ -76,7 +75,7 @@ def wanted(
     }
 
 
-def _on_map(targets: Places) -> npt.NDArray[np.float64] | None:
+def _on_map(targets: Any) -> npt.NDArray[np.float64] | None:
     """Rows of x, y and an unknown height, or of latitude and longitude; None for places with heights."""
     try:
         shape = np.shape(targets)
@@ -107,7 +106,7 @@ Results = tuple[
 ]
 
 
-def measures(results: Results, crs: _core.Crs, targets: Targets) -> RastersOrTable:
+def measures(results: Results, crs: _core.Crs, targets: Targets) -> Rasters | Table:
     """Measures as rasters where targets are cells, and as a table elsewhere."""
     columns, grid, faces, given, on_map = results
     remarks = warned(given)

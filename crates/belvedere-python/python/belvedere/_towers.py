@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from os import PathLike, fspath
-from typing import Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core
 from ._errors import wrong
-from ._inputs import Progress, check_finite, reporter, table_columns
+from ._inputs import check_finite, reporter, table_columns
+from ._keywords import Towers as TowersKeywords
 from ._outlook import _looking
+from ._questions import _cells
+from ._raster import Rasters
 from ._shapes import in_system
-from ._sunlight import _cells
-from ._targets import RastersOrTable, Targets, measures, wanted
+from ._table import Table
+from ._targets import Rows, Targets, measures, wanted
+from ._types import Columns, Curvature, Ground, Progress
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 class Towers:
@@ -23,27 +28,43 @@ class Towers:
 
     _core: _core.Scene
 
+    @overload
     def towers(
         self,
-        towers: Mapping[str, npt.ArrayLike],
+        towers: Columns,
+        *,
+        targets: None = None,
+        **more: Unpack[TowersKeywords],
+    ) -> Rasters: ...
+    @overload
+    def towers(
+        self,
+        towers: Columns,
+        *,
+        targets: Rows,
+        **more: Unpack[TowersKeywords],
+    ) -> Table: ...
+    def towers(
+        self,
+        towers: Columns,
         *,
         observer_height: float | None = None,
         max_distance: float | None = None,
         targets: Targets = None,
         cell: float | None = None,
         surface: bool = False,
-        ground: str | None = None,
-        curvature: str | None = None,
+        ground: Ground | None = None,
+        curvature: Curvature | None = None,
         refraction: float | None = None,
         far: bool = False,
         wirelines: str | PathLike[str] | None = None,
         progress: Progress = None,
-    ) -> RastersOrTable:
+    ) -> Rasters | Table:
         """Visible metres of towers from places.
 
         Parameters
         ----------
-        towers : mapping of str to array_like
+        towers : mapping of str to array_like, or DataFrame
             Columns ``x``, ``y`` and ``tip``, and if known ``base``, ``hub``, ``name`` and ``scheme``; a DataFrame will
             do. ``tip`` and ``hub`` are metres above the base, a height of the file. Without it a tower stands on the
             ground of the cloud, or on the terrain of the scene. ``x`` and ``y`` may be latitude and longitude.
@@ -115,9 +136,9 @@ class Towers:
         return measures(results, self._core.crs, targets)
 
 
-def _rows(towers: Mapping[str, npt.ArrayLike]) -> list[dict[str, Any]]:
+def _rows(towers: Columns) -> list[dict[str, Any]]:
     known = ("x", "y", "base", "hub", "tip", "name", "scheme")
-    columns = table_columns(towers, "towers", known, ("x", "y", "tip"))
+    columns = table_columns(towers, "towers", known, ("x", "y", "tip"), ("name", "scheme"))
 
     def number(name: str, row: int) -> float | None:
         value = float(columns[name][row]) if name in columns else np.nan

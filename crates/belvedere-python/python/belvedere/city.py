@@ -22,9 +22,12 @@ import subprocess
 import sysconfig
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from ._errors import BelvedereError, wrong
+
+if TYPE_CHECKING:
+    import distributed
 
 __all__ = ["answer", "merge", "plan", "run", "status"]
 
@@ -35,7 +38,7 @@ SHARES_PER_THREAD = 4
 
 
 def answer(
-    question: str,
+    question: Literal["shadow", "sun_hours", "sky_view", "irradiance", "viewshed"],
     clouds: str | Path | Iterable[str | Path],
     output: str | Path | Iterable[str | Path],
     **flags: object,
@@ -93,7 +96,9 @@ def plan(clouds: str | Path | Iterable[str | Path], folder: str | Path, **flags:
     return _program("city", "plan", *_paths(clouds), *_words(flags), "-o", folder)
 
 
-def run(folder: str | Path, client: Any = None, *, threads: int | None = None, retries: int = 3) -> dict[str, Any]:
+def run(
+    folder: str | Path, client: distributed.Client | None = None, *, threads: int | None = None, retries: int = 3
+) -> dict[str, Any]:
     """Computes the tiles that are not done yet. Returns `status` at the end.
 
     Parameters
@@ -113,13 +118,15 @@ def run(folder: str | Path, client: Any = None, *, threads: int | None = None, r
     BelvedereError
         If tiles failed; all others are done.
     """
-    if client is not None:
+    # distributed declares no types
+    cluster: Any = client
+    if cluster is not None:
         tiles = status(folder)["tiles"]
-        shares = max(1, min(tiles, SHARES_PER_THREAD * sum(client.nthreads().values())))
+        shares = max(1, min(tiles, SHARES_PER_THREAD * sum(cluster.nthreads().values())))
         numbers = range(1, shares + 1)
         # balls of all tiles first: results need those of neighbours
         for more in (["--balls-only"], []):
-            jobs = client.map(
+            jobs = cluster.map(
                 _share,
                 numbers,
                 folder=str(folder),
@@ -129,7 +136,7 @@ def run(folder: str | Path, client: Any = None, *, threads: int | None = None, r
                 retries=retries,
                 pure=False,
             )
-            client.gather(jobs)
+            cluster.gather(jobs)
     # what is left, and the list of all tiles
     _program("city", "run", folder, threads=threads)
     return status(folder)
