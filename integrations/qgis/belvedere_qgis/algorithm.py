@@ -50,8 +50,8 @@ class BelvedereAlgorithm(QgsProcessingAlgorithm):
     def __init__(self, command):
         super().__init__()
         self.command = command
-        self.definitions = {}
-        """layer definitions of results of several times, by the paths of the results"""
+        self.layers = {}
+        """style and, of several times, layer definition of the results that are layers, by their paths"""
 
     def createInstance(self):
         return BelvedereAlgorithm(self.command)
@@ -103,8 +103,8 @@ class BelvedereAlgorithm(QgsProcessingAlgorithm):
 
     def postProcessAlgorithm(self, context, feedback):
         # in the thread of the project, unlike the run
-        for result, definition in self.definitions.items():
-            times.load(definition, result, context)
+        for result, (made, definition) in self.layers.items():
+            times.show(result, made, definition, context)
         return {}
 
     def _process(self, parameters, context, feedback):
@@ -136,10 +136,10 @@ class BelvedereAlgorithm(QgsProcessingAlgorithm):
             if output.kind in ("vector", "table"):
                 layers.convert(written[output.key], wanted[output.key], scene, context)
             if output.kind in ("raster", "vector", "table"):
-                layers.write_style(self.command.name, output, wanted[output.key])
-                definition = times.write_definition(self.command.name, output, wanted[output.key], self.command.title)
-                if definition is not None:
-                    self.definitions[wanted[output.key]] = definition
+                made = layers.write_style(self.command.name, output, wanted[output.key])
+                if made is not None:
+                    definition = times.write_definition(self.command.name, output, wanted[output.key], self.command.title, made)
+                    self.layers[wanted[output.key]] = made, definition
         return wanted
 
     def _run(self, path, typed, feedback):

@@ -21,6 +21,7 @@ from qgis.core import (
     QgsWkbTypes,
 )
 from qgis.PyQt.QtCore import QVariant
+from qgis.PyQt.QtXml import QDomDocument
 
 from . import style
 
@@ -137,11 +138,26 @@ def _value(text, is_text, is_whole):
 
 
 def write_style(command, output, path):
-    """Writes the style beside a result, where QGIS finds it whenever the result is loaded."""
+    """Writes the style of a result, and returns it: into a package, else beside the file, where QGIS finds it whenever the result is loaded."""
     made = _raster_style(command, output.key, path) if output.kind == "raster" else _vector_style(command, output.key, path)
-    if made is not None:
+    if made is None:
+        return None
+    if path.endswith(".gpkg"):
+        # a raster with the same name needs the file beside it
+        layer = QgsVectorLayer(path, "result", "ogr")
+        give_style(layer, made)
+        layer.saveStyleToDatabase("result", "", True, "")
+    else:
         with open(os.path.splitext(path)[0] + ".qml", "w", encoding="utf-8") as file:
             file.write(made)
+    return made
+
+
+def give_style(layer, made):
+    """Gives a layer a style."""
+    document = QDomDocument()
+    document.setContent(made)
+    layer.importNamedStyle(document)
 
 
 def add_shown_band(path):

@@ -37,9 +37,11 @@ SIGHTS = (
     (4, OUTSIDE, "outside the cloud"),
     (5, "#8c5a3c", "inside an obstacle"),
 )
-# of rasters; without a band of what is unproven, nothing blocks what may be visible
+# results of answers: bytes
 SEEN = (("viewshed", "OUTPUT"), ("viewshed", "FAR_OUTPUT"))
-ANSWERS = ((0, BLOCKED, "blocked"), (1, VISIBLE, "nothing blocks it"), *SIGHTS[2:])
+ANSWERS = ((0, BLOCKED, "blocked"), *SIGHTS[1:])
+# of a raster that does not say what is unproven
+UNBLOCKED = (ANSWERS[0], (1, VISIBLE, "nothing blocks it"))
 AREAS = (("visible", VISIBLE, "visible"), ("unproven", UNPROVEN, "unproven"))
 EDGES = ((0, "#ffffff00", "reliable"), (1, EDGE, "near the edge of the cloud"))
 # Shadows by what casts them; without casters all are "else".
@@ -103,7 +105,7 @@ def raster(command, key, low, high, is_bytes, band=1, opacity=None, span=None):
     if key == "EDGE_MASK":
         return _raster(_paletted(EDGES, band), span)
     if (command, key) in SEEN and is_bytes:
-        return _raster(_paletted([answer for answer in ANSWERS if answer[0] <= max(1, high)], band), span)
+        return _raster(_paletted([one for one in ANSWERS if one[0] <= high] if high > 1 else UNBLOCKED, band), span)
     ramp = RAMPS.get((command, key))
     if ramp is None:
         return None
@@ -220,7 +222,7 @@ def _symbol(name, color, geometry, sector):
 
 def _sector(name, color, direction, angle):
     """What a point sees, 8 mm wide on the map at any scale."""
-    wedge = f'wedge_buffer($geometry, coalesce("{direction}", 0), {angle}, 0.008 * @map_scale)'
+    wedge = f'wedge_buffer($geometry, coalesce("{direction}", 0), {angle}, 0.008 * coalesce(@map_scale, 2000))'
     fill = _symbol_layer("SimpleFill", {"color": _rgba(color[:7] + "80"), "outline_color": "60,60,60,200", "outline_width": "0.1"})
     listed = f'<prop k="SymbolType" v="Fill"/><prop k="geometryModifier" v={quoteattr(wedge)}/>'
     symbol = f'<symbol type="fill" name="@{name}@0" alpha="1" clip_to_extent="1">{fill}</symbol>'

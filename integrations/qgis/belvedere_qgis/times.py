@@ -4,10 +4,19 @@ import os
 from datetime import datetime, timedelta
 
 from osgeo import gdal
-from qgis.core import Qgis, QgsLayerDefinition, QgsLayerTreeGroup, QgsLayerTreeLayer, QgsRasterBandStats, QgsRasterLayer, QgsVectorLayer
-from qgis.PyQt.QtXml import QDomDocument
+from qgis.core import (
+    Qgis,
+    QgsLayerDefinition,
+    QgsLayerTreeGroup,
+    QgsLayerTreeLayer,
+    QgsProcessingLayerPostProcessorInterface,
+    QgsRasterBandStats,
+    QgsRasterLayer,
+    QgsVectorLayer,
+)
 
 from . import style
+from .layers import give_style
 
 # How long the last of the times lasts if there is no step before it.
 LAST = timedelta(hours=1)
@@ -27,8 +36,8 @@ def bands(path):
     return [(number, start, end) for (number, start), end in zip(ones, ends)]
 
 
-def write_definition(command, output, path, title):
-    """Writes a layer definition beside a result of several times, and returns its path; None where there are none.
+def write_definition(command, output, path, title, made):
+    """Writes a layer definition beside a result of several times with a style, and returns its path; None where there are none.
 
     QGIS 3.22 keeps no times in the style of a layer that it opens, so that a file .qml is not enough.
     """
@@ -37,12 +46,12 @@ def write_definition(command, output, path, title):
         layers = list(_layers_of_bands(command, output.key, path))
         node = QgsLayerTreeGroup(title)
         for layer in layers:
-            node.addLayer(layer)
+            node.addLayer(layer).setExpanded(False)
     else:
-        layers = [QgsVectorLayer(path, output.label, "ogr")]
-        layers[0].loadNamedStyle(stem + ".qml")
-        layers = [layer for layer in layers if layer.temporalProperties().isActive()]
-        node = QgsLayerTreeLayer(layers[0]) if layers else None
+        layer = QgsVectorLayer(path, output.label, "ogr")
+        give_style(layer, made)
+        layers = [layer] if layer.temporalProperties().isActive() else []
+        node = QgsLayerTreeLayer(layer)
     if not layers:
         return None
     QgsLayerDefinition.exportLayerDefinition(stem + ".qlr", [node])
@@ -61,15 +70,34 @@ def _layers_of_bands(command, key, path):
         if made is None:
             return
         layer = QgsRasterLayer(path, start.isoformat(" ", "minutes"))
-        document = QDomDocument()
-        document.setContent(made)
-        layer.importNamedStyle(document)
+        give_style(layer, made)
         yield layer
 
 
-def load(definition, result, context):
-    """Loads the layers of a definition into the project instead of the result, if the user wants to see it."""
+# QGIS holds no reference to what styles a layer, and says not when it is done.
+KEPT = []
+
+
+class _Styler(QgsProcessingLayerPostProcessorInterface):
+    """Gives the layer of a result its style, which Processing leaves out."""
+
+    def __init__(self, made):
+        super().__init__()
+        self.made = made
+
+    def postProcessLayer(self, layer, context, feedback):
+        give_style(layer, self.made)
+        layer.triggerRepaint()
+
+
+def show(result, made, definition, context):
+    """Has a result loaded with its style, or the layers of its definition instead, if the user wants to see it."""
     if context.project() is None or not context.willLoadLayerOnCompletion(result):
+        return
+    if definition is None:
+        styler = _Styler(made)
+        KEPT.append(styler)
+        context.layerToLoadOnCompletionDetails(result).setPostProcessor(styler)
         return
     wanted = context.layersToLoadOnCompletion()
     wanted.pop(result)

@@ -14,7 +14,7 @@ EXTENSIONS = re.compile(r" \((?:\.[\w.]+[ ,]*)+\)")
 # What only a command line has.
 PLACES = re.compile(
     r":? ?(?:X,Y\[,Z\])?,? in file coordinates(?:,? or (?:as )?(?:LAT,LON|LATITUDE,LONGITUDE in degrees))?"
-    r"| as LATITUDE,LONGITUDE| in degrees, north and east positive"
+    r"| as LATITUDE,LONGITUDE| in degrees, north and east positive|, as EPSG:CODE or WKT"
 )
 USAGE = re.compile(r"\n*(Usage: |For more information, try).*?(?=\n\n|\Z)", re.DOTALL)
 MISSING = re.compile(r"the following required arguments were not provided:\n((?:  .+\n?)+)")

@@ -25,6 +25,8 @@ from qgis.core import (  # noqa: E402
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
     QgsDateTimeRange,
+    QgsExpressionContext,
+    QgsExpressionContextUtils,
     QgsFeature,
     QgsGeometry,
     QgsGraduatedSymbolRenderer,
@@ -35,6 +37,8 @@ from qgis.core import (  # noqa: E402
     QgsProcessingContext,
     QgsProcessingException,
     QgsProcessingFeedback,
+    QgsProcessingOutputLayerDefinition,
+    QgsProcessingUtils,
     QgsProject,
     QgsRasterLayer,
     QgsRenderContext,
@@ -88,6 +92,10 @@ def draw(name, *layers):
     extent = layers[-1].extent()
     extent.scale(1.04)
     settings.setExtent(extent)
+    # as the canvas of QGIS does
+    scopes = QgsExpressionContext()
+    scopes.appendScope(QgsExpressionContextUtils.mapSettingsScope(settings))
+    settings.setExpressionContext(scopes)
     job = QgsMapRendererParallelJob(settings)
     job.start()
     job.waitForFinished()
@@ -379,6 +387,16 @@ def check_results():
     assert {0, 1, 2} <= set(bands[1][2].ravel())
     assert ((bands[1][2] == 2) == ((bands[0][0] == 1) & (bands[0][1] == 1))).all()
 
+    # of many observers, cells are the fainter the more of their number is unproven
+    status, printed = run("viewshed", CLOUDS=DATA, CRS="EPSG:28992", SPREAD=20, CELL=2, OUTPUT=FOLDER / "total.tif")
+    assert status == 0, printed
+    total = loaded("total.tif")
+    assert total.renderer().alphaBand() == 3 and isinstance(total.renderer(), QgsSingleBandPseudoColorRenderer)
+    draw("total", total)
+    shares = [(opacity, count, unproven) for count, unproven, opacity in zip(*(values(total, band) for band in (1, 2, 3))) if count]
+    assert {opacity == 254 for opacity, _, unproven in shares if not unproven} == {True}
+    assert {opacity == 80 for opacity, count, unproven in shares if unproven == count} == {True}
+
     # areas lie on the visible cells of the raster that its second band does not call unproven: brought back from
     # longitude and latitude they may be off by the rounding of degrees
     raster = layers["viewshed.tif"]
@@ -443,15 +461,45 @@ def check_errors():
     os.environ["BELVEDERE_PROGRAM"] = PROGRAM
 
 
-def check_cancelling():
+def provider():
+    """The plugin in this process."""
     sys.path[:0] = [PLUGINS, "/usr/share/qgis/python/plugins"]
     from processing.core.Processing import Processing
 
     from belvedere_qgis.provider import BelvedereProvider
 
     Processing.initialize()
-    provider = BelvedereProvider()
-    QgsApplication.processingRegistry().addProvider(provider)
+    made = BelvedereProvider()
+    QgsApplication.processingRegistry().addProvider(made)
+    return made
+
+
+def check_loading(plugin):
+    """What a run in a project loads has its style, and results of several times come as their layers."""
+    project, context = QgsProject(), QgsProcessingContext()
+    context.setProject(project)
+    scene = {"CLOUDS": [str(DATA)], "CRS": QgsCoordinateReferenceSystem("EPSG:28992"), "CELL": 2}
+
+    def loads(algorithm, **given):
+        outputs = {key: QgsProcessingOutputLayerDefinition(str(FOLDER / name), project) for key, name in given.pop("outputs").items()}
+        _, done = plugin.algorithm(algorithm).create().run({**scene, **given, **outputs}, context, QgsProcessingFeedback())
+        assert done
+
+    loads("viewshed", OBSERVER="85036,447527 [EPSG:28992]", outputs={"OUTPUT": "loaded.tif", "OUTPUT_AREAS": "loaded.gpkg"})
+    for name, renderer in (("loaded.tif", QgsPalettedRasterRenderer), ("loaded.gpkg", QgsCategorizedSymbolRenderer)):
+        details = context.layersToLoadOnCompletion()[str(FOLDER / name)]
+        assert details.name.startswith("Viewshed: "), details.name
+        layer = QgsProcessingUtils.mapLayerFromString(str(FOLDER / name), context)
+        # what Processing does before it adds a layer to the project
+        details.postProcessor().postProcessLayer(layer, context, QgsProcessingFeedback())
+        assert isinstance(layer.renderer(), renderer), layer.renderer()
+    loads("shadow", TIME="2026-06-21T09:00+02:00; 2026-06-21T10:00+02:00", outputs={"OUTPUT": "hours.tif"})
+    assert str(FOLDER / "hours.tif") not in context.layersToLoadOnCompletion()
+    groups = project.layerTreeRoot().findGroups()
+    assert [(group.name(), len(group.findLayers())) for group in groups] == [("Shadow", 2)], groups
+
+
+def check_cancelling(plugin):
     algorithm = QgsApplication.processingRegistry().createAlgorithmById("belvedere:sky_view")
 
     class Impatient(QgsProcessingFeedback):
@@ -478,7 +526,7 @@ def check_cancelling():
         results = {"error": str(error)}
     assert feedback.steps > 3 and "OUTPUT" not in results, results
     assert not out.exists() and time.monotonic() - start < 60
-    texts = [provider.algorithm(name).shortHelpString() for name in ("viewshed", "envelope")]
+    texts = [plugin.algorithm(name).shortHelpString() for name in ("viewshed", "envelope")]
     assert all("<b>Input</b>" in text for text in texts), texts[0]
 
 
@@ -488,8 +536,12 @@ def main():
         return
     application = QgsApplication([], False)
     application.initQgis()
-    for check in (check_fetch, check_algorithms, check_further_algorithms, check_results, check_times, check_errors, check_cancelling):
+    for check in (check_fetch, check_algorithms, check_further_algorithms, check_results, check_times, check_errors):
         check()
+        print(f"{check.__name__.replace('_', ' ')}: passed")
+    plugin = provider()
+    for check in (check_loading, check_cancelling):
+        check(plugin)
         print(f"{check.__name__.replace('_', ' ')}: passed")
 
 
