@@ -221,9 +221,9 @@ def _symbol(name, color, geometry, sector):
 
 
 def _sector(name, color, direction, angle):
-    """What a point sees, 8 mm wide on the map at any scale."""
+    """What a point sees, 8 mm wide on the map at any scale; with a white edge, as rasters have the same colours."""
     wedge = f'wedge_buffer($geometry, coalesce("{direction}", 0), {angle}, 0.008 * coalesce(@map_scale, 2000))'
-    fill = _symbol_layer("SimpleFill", {"color": _rgba(color[:7] + "80"), "outline_color": "60,60,60,200", "outline_width": "0.1"})
+    fill = _symbol_layer("SimpleFill", {"color": _rgba(color[:7] + "b4"), "outline_color": "255,255,255,255", "outline_width": "0.4"})
     listed = f'<prop k="SymbolType" v="Fill"/><prop k="geometryModifier" v={quoteattr(wedge)}/>'
     symbol = f'<symbol type="fill" name="@{name}@0" alpha="1" clip_to_extent="1">{fill}</symbol>'
     return f'<layer class="GeometryGenerator" enabled="1" pass="0" locked="0">{listed}{symbol}</layer>'

@@ -1,7 +1,6 @@
 """Results of several times, as layers that the temporal controller plays."""
 
-import os
-from datetime import datetime, timedelta
+from datetime import datetime
 
 from osgeo import gdal
 from qgis.core import (
@@ -18,22 +17,16 @@ from qgis.core import (
 from . import style
 from .layers import give_style
 
-# How long the last of the times lasts if there is no step before it.
-LAST = timedelta(hours=1)
-
 
 def bands(path):
-    """The bands of one measure that have a time, with the clock time from which and up to which each holds; none for fewer than two."""
+    """The bands of one measure that have a time, with the clock time from which and up to which each holds: the shortest step; none for fewer than two."""
     raster = gdal.Open(path)
     numbered = [(number, raster.GetRasterBand(number)) for number in range(1, raster.RasterCount + 1)]
     timed = [(band.GetDescription().split("_")[0], number, band.GetMetadataItem("TIME")) for number, band in numbered if band.GetMetadataItem("TIME")]
     # clock times: so QGIS reads the times of vector layers, too
-    ones = [(number, datetime.fromisoformat(time[:19])) for measure, number, time in timed if measure == timed[0][0]]
-    ends = [time for _, time in ones[1:]]
-    if not ends:
-        return []
-    ends.append(ones[-1][1] + (ones[-1][1] - ones[-2][1] if ones[-1][1] > ones[-2][1] else LAST))
-    return [(number, start, end) for (number, start), end in zip(ones, ends)]
+    ones = sorted((datetime.fromisoformat(time[:19]), number) for measure, number, time in timed if measure == timed[0][0])
+    steps = [later[0] - earlier[0] for earlier, later in zip(ones, ones[1:]) if later[0] > earlier[0]]
+    return [(number, start, start + min(steps)) for start, number in ones] if steps else []
 
 
 def write_definition(command, output, path, title, made):
@@ -41,7 +34,6 @@ def write_definition(command, output, path, title, made):
 
     QGIS 3.22 keeps no times in the style of a layer that it opens, so that a file .qml is not enough.
     """
-    stem = os.path.splitext(path)[0]
     if output.kind == "raster":
         layers = list(_layers_of_bands(command, output.key, path))
         node = QgsLayerTreeGroup(title)
@@ -54,8 +46,8 @@ def write_definition(command, output, path, title, made):
         node = QgsLayerTreeLayer(layer)
     if not layers:
         return None
-    QgsLayerDefinition.exportLayerDefinition(stem + ".qlr", [node])
-    return stem + ".qlr"
+    QgsLayerDefinition.exportLayerDefinition(path + ".qlr", [node])
+    return path + ".qlr"
 
 
 def _layers_of_bands(command, key, path):
@@ -74,7 +66,7 @@ def _layers_of_bands(command, key, path):
         yield layer
 
 
-# QGIS holds no reference to what styles a layer, and says not when it is done.
+# What styles layers: QGIS holds no reference to it, and does not say when it is done.
 KEPT = []
 
 

@@ -68,7 +68,8 @@ def geojson(name, shapes, crs="EPSG:28992"):
 
 def run(algorithm, **parameters):
     """Runs an algorithm in a process of its own; its exit status and what it printed."""
-    typed = [f"{name}={value}" for name, value in parameters.items()]
+    # several files are given one by one
+    typed = [f"{name}={one}" for name, value in parameters.items() for one in (value if isinstance(value, list) else [value])]
     done = subprocess.run([PROCESS, "run", f"belvedere:{algorithm}", "--", *typed], capture_output=True, text=True, check=False)
     return done.returncode, done.stdout + done.stderr
 
@@ -427,7 +428,7 @@ def check_results():
 def check_times():
     """Shadows of three hours are three layers for the temporal controller, and their outlines one; they look so wherever their definition is opened."""
     project = QgsProject()
-    for name, count in (("shadow", 3), ("outlines", 1)):
+    for name, count in (("shadow.tif", 3), ("outlines.gpkg", 1)):
         root = project.layerTreeRoot()
         before = len(root.findLayers())
         done, error = QgsLayerDefinition.loadLayerDefinition(str(FOLDER / f"{name}.qlr"), project, root)
@@ -447,6 +448,35 @@ def check_times():
     at = QgsDateTimeRange(QDateTime(2026, 6, 21, 19, 20), QDateTime(2026, 6, 21, 19, 30))
     shown = [layer.name() for layer in layers if isinstance(layer, QgsRasterLayer) and layer.temporalProperties().isVisibleInTemporalRange(at)]
     assert shown == ["2026-06-21 19:00"], shown
+
+
+def check_tutorial():
+    """The runs of the tutorial say what its page quotes, with numbers within a tenth: answers change from version to version."""
+    page = (ROOT / "docs/tutorials/plan_in_qgis.md").read_text(encoding="utf-8").replace("\n", " ")
+    clouds = [str(DATA.with_name(f"ahn3_cropped_{number}.laz")) for number in (1, 2)]
+    scene = {"CLOUDS": clouds, "CRS": "EPSG:28992", "CELL": 0.5}
+    building = "POLYGON((85015 447465, 85045 447465, 85045 447500, 85015 447500, 85015 447465))"
+    day = {"DATE": "2026-03-21", "ZONE": "Europe/Amsterdam"}
+    for quoted, steps in (
+        ('visible [^"]* unproven [0-9.]*', [("viewshed", {**scene, "OBSERVER": "85036,447527 [EPSG:28992]", "MAX_DISTANCE": 200, "OUTPUT": "quay.tif"})]),
+        (
+            'gain on [^",]*,[^",]*',
+            [
+                ("sun_hours", {**scene, **day, "OUTPUT": "with.tif"}),
+                ("sun_hours", {**scene, **day, "CLEAR": geojson("plan", [building]), "OUTPUT": "without.tif"}),
+                ("difference", {"BEFORE": FOLDER / "with.tif", "AFTER": FOLDER / "without.tif", "OUTPUT": "gain.tif"}),
+            ],
+        ),
+    ):
+        for algorithm, given in steps:
+            status, printed = run(algorithm, **{**given, "OUTPUT": FOLDER / given["OUTPUT"]})
+            assert status == 0, printed
+        told = [numbers(re.search(quoted, text)[0]) for text in (page, printed)]
+        assert all(abs(one - other) <= 1 + 0.1 * abs(one) for one, other in zip(*told)), told
+
+
+def numbers(text):
+    return [float(number.replace(",", "")) for number in re.findall(r"\d[\d,]*(?:\.\d+)?", text)]
 
 
 def check_errors():
@@ -536,7 +566,7 @@ def main():
         return
     application = QgsApplication([], False)
     application.initQgis()
-    for check in (check_fetch, check_algorithms, check_further_algorithms, check_results, check_times, check_errors):
+    for check in (check_fetch, check_algorithms, check_further_algorithms, check_results, check_times, check_tutorial, check_errors):
         check()
         print(f"{check.__name__.replace('_', ' ')}: passed")
     plugin = provider()
