@@ -121,7 +121,7 @@ class Command:
     summary: str
     description: str
     labels: dict[str, str] = field(default_factory=dict)
-    """what its parameters are called in sentences, by their flags"""
+    """what parameters of this and other dialogs are called in sentences, by their flags"""
     parameters: tuple[Parameter, ...] = ()
 
     def reworded(self, text):
@@ -142,7 +142,12 @@ def commands(described):
     """The commands that become algorithms, in the order of the groups."""
     by_name = {command["name"]: command for command in described["commands"]}
     threads = [one for one in described["global_parameters"] if one["name"] == "--threads"]
-    return [_command(by_name[name], threads) for name in ALGORITHMS if name in by_name]
+    found = [by_name[name] for name in ALGORITHMS if name in by_name]
+    # texts name fields of other dialogs, too
+    shared = {}
+    for command in found:
+        shared = _labels(command["parameters"]) | shared
+    return [_command(command, threads, shared) for command in found]
 
 
 def as_html(description):
@@ -158,10 +163,15 @@ def as_html(description):
     return "".join(parts)
 
 
-def _command(described, further):
+def _labels(described):
+    """What parameters are called in sentences, by their flags."""
+    return {one["name"]: wording.short(_label(one, _kind(one))) for one in described} | {"--output": "Result"}
+
+
+def _command(described, further, shared):
     name = described["name"]
     all_described = described["parameters"] + further
-    labels = {one["name"]: wording.short(_label(one, _kind(one))) for one in all_described} | {"--output": "Result"}
+    labels = shared | _labels(all_described)
 
     def plain(text):
         return wording.help_text(text, labels, TITLES)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-# A flag, with the placeholder of its value.
-FLAG = re.compile(r"(?<![\w-])(--?[a-z][a-z0-9-]*)(?:[ =](?:<[^<>]+>|[A-Z](?:[A-Z,]*[A-Z])?(?![\w:=])))?")
+# A flag, with the placeholder of its value. Of short flags texts name two; others are minus signs, as in x, -z, y.
+FLAG = re.compile(r"(?<![\w-])(--[a-z][a-z0-9-]*|-[ov]\b)(?:[ =](?:<[^<>]+>|[A-Z](?:[A-Z,]*[A-Z])?(?![\w:=])))?")
 # `belvedere balls --help`, `balls`, belvedere sun-position: a command, with whatever stands behind it.
 COMMAND = re.compile(r"`(belvedere )?([a-z-]+)[^`]*`|(belvedere) ([a-z]+-[a-z]+)\b")
 # A remark in parentheses that speaks of what the dialog has not.
@@ -67,7 +67,7 @@ def label_text(text, limit, titles, is_typed):
     text = re.sub(r"^With [^:]*: ", "", PLACES.sub("", EXTENSIONS.sub("", text)).replace("Latitude and longitude", "Place"))
     text = text.split("; ")[0].split(" from a table")[0]
     if not is_typed:
-        text = re.split(r": |, such as | such as | \(", text)[0]
+        text = re.split(r": |, such as | such as | \(|, or table", text)[0]
     return _cut(text, limit) or _cut(without_flags(text), limit)
 
 

@@ -283,6 +283,7 @@ def check_further_algorithms():
         ("trajectory", {**scene, "OUTPUT": FOLDER / "flight.gpkg"}),
         ("normals", {**scene, "OUTPUT": FOLDER / "normals.laz"}),
         ("balls", {**scene, "OUTPUT": FOLDER / "balls.npz"}),
+        ("calibrate", {**scene, "PAGE": FOLDER / "reliability.html"}),
         ("simulate", {"EXTENT": 60, "DENSITY": 2, "OUTPUT": FOLDER / "town"}),
         ("sun_hours", {**scene, "DATE": "2026-03-21", "CELL": 2, "CLEAR": geojson("gone", [building], "EPSG:4326"), "OUTPUT": FOLDER / "after.tif"}),
         ("difference", {"BEFORE": FOLDER / "sun_hours.tif", "AFTER": FOLDER / "after.tif", "OUTPUT": FOLDER / "change.tif"}),
@@ -296,6 +297,7 @@ def check_further_algorithms():
 
     page = (FOLDER / "info.html").read_text(encoding="utf-8")
     assert "208,432 points" in page and "class 6" in page and "--" not in page, page
+    assert "pulses" in (FOLDER / "reliability.html").read_text(encoding="utf-8")
     assert "scenes are kept" in (FOLDER / "cache.html").read_text(encoding="utf-8")
     # NOAA solar calculator, Delft: true noon of the shortest day stands 14.6 degrees high
     suns = list(QgsVectorLayer(str(FOLDER / "suns.gpkg"), "suns", "ogr").getFeatures())

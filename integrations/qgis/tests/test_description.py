@@ -113,15 +113,21 @@ def test_units_are_in_the_labels(commands):
 
 
 def test_no_text_of_a_dialog_speaks_of_a_command_line(commands):
-    typed = re.compile(r"(?<![\w-])--?[a-z]{1,}[a-z-]*\b|belvedere|\bflags?\b|standard output|command line|repeatable|LAT,LON|\[default|\0")
+    typed = re.compile(r"(?<![\w-])(?:--[a-z]|-[ov]\b)|belvedere|\bflags?\b|standard output|command line|repeatable|LAT,LON|\[default|\0")
     for command in commands.values():
         texts = [command.title, command.summary, command.description]
         for one in command.parameters:
             texts += [one.label, one.help, *(text for _, text in one.choices), *(output.label for output in one.outputs)]
         for text in texts:
-            # "Files in 1/64-parts" and the like are no flags
             assert not typed.search(text), (command.name, text)
             assert len(text.splitlines()) > 1 or text == text.strip(), (command.name, text)
+
+
+def test_texts_keep_minus_signs_and_name_fields_of_other_dialogs(commands):
+    assert "x, -z, y" in parameter(commands, "viewshed", "--up").help
+    assert "en17037-minimum, -medium, -high" in commands["sun-hours"].description
+    assert 'made without and with "Add a mesh to the scene" or "Clear what stands in an area"' in " ".join(commands["difference"].description.split())
+    assert "as one JSON object" not in commands["info"].description
 
 
 def test_an_empty_field_says_what_the_program_does_then(commands):
