@@ -75,7 +75,11 @@ def is_shown(line: str, printed: str) -> bool:
     return any(numbers(each) == pytest.approx(numbers(line), rel=0.1, abs=1) for each in same_words)
 
 
-@pytest.mark.parametrize("path", sorted((DOCS / "tutorials").glob("*.md")), ids=lambda path: path.stem)
+# the page on QGIS has nothing to type: the checks of the plugin follow it
+TYPED = [path for path in sorted((DOCS / "tutorials").glob("*.md")) if path.stem != "plan_in_qgis"]
+
+
+@pytest.mark.parametrize("path", TYPED, ids=lambda path: path.stem)
 def test_tutorial_works_as_printed(path, tmp_path):
     page = path.read_text(encoding="utf-8")
     source, name = re.search(r"<!-- data: (\S+) as (\S+) -->", page).groups()

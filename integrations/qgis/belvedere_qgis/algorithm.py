@@ -22,13 +22,14 @@ from qgis.core import (
     QgsProcessingParameterNumber,
     QgsProcessingParameterPoint,
     QgsProcessingParameterRasterDestination,
+    QgsProcessingParameterRasterLayer,
     QgsProcessingParameterString,
     QgsProcessingParameterVectorDestination,
     QgsProcessingUtils,
 )
 from qgis.PyQt.QtGui import QIcon
 
-from . import layers, program
+from . import layers, page, program, times
 from .command_line import arguments
 from .description import as_html
 
@@ -49,6 +50,8 @@ class BelvedereAlgorithm(QgsProcessingAlgorithm):
     def __init__(self, command):
         super().__init__()
         self.command = command
+        self.layers = {}
+        """style and, of several times, layer definition of the results that are layers, by their paths"""
 
     def createInstance(self):
         return BelvedereAlgorithm(self.command)
@@ -94,9 +97,15 @@ class BelvedereAlgorithm(QgsProcessingAlgorithm):
         try:
             return self._process(parameters, context, feedback)
         except program.ProgramError as error:
-            raise QgsProcessingException(str(error)) from None
+            raise QgsProcessingException(self.command.reworded(str(error))) from None
         except program.Cancelled:
             return {}
+
+    def postProcessAlgorithm(self, context, feedback):
+        # in the thread of the project, unlike the run
+        for result, (made, definition) in self.layers.items():
+            times.show(result, made, definition, context)
+        return {}
 
     def _process(self, parameters, context, feedback):
         path = program.find(path_setting())
@@ -112,18 +121,25 @@ class BelvedereAlgorithm(QgsProcessingAlgorithm):
             if output.key in wanted
         }
         summary = self._run(path, arguments(self.command, values, written), feedback)
+        for sentence in self.command.sentences(summary):
+            feedback.pushInfo(sentence)
         for remark in summary.get("remarks", []):
-            (feedback.pushWarning if remark["severity"] == "warning" else feedback.pushInfo)(remark["text"])
+            (feedback.pushWarning if remark["severity"] == "warning" else feedback.pushInfo)(self.command.reworded(remark["text"]))
         for name, value in summary.items():
             if isinstance(value, (int, float, str)):
                 feedback.pushInfo(f"{name.replace('_', ' ')}: {value}")
         for output in self.command.outputs:
             if output.key not in wanted:
                 continue
+            if output.kind == "page":
+                page.write(wanted[output.key], self.command, summary)
             if output.kind in ("vector", "table"):
                 layers.convert(written[output.key], wanted[output.key], scene, context)
             if output.kind in ("raster", "vector", "table"):
-                layers.write_style(self.command.name, output, wanted[output.key])
+                made = layers.write_style(self.command.name, output, wanted[output.key])
+                if made is not None:
+                    definition = times.write_definition(self.command.name, output, wanted[output.key], self.command.title, made)
+                    self.layers[wanted[output.key]] = made, definition
         return wanted
 
     def _run(self, path, typed, feedback):
@@ -141,12 +157,14 @@ class BelvedereAlgorithm(QgsProcessingAlgorithm):
 
     def _scene(self, path, parameters, wanted, context, feedback):
         """The system of the scene, for what goes between layers and the program; an invalid one where it is not known or not needed."""
-        given = self.parameterAsCrs(parameters, "CRS", context)
+        given = self.parameterAsCrs(parameters, "CRS", context) if self.parameterDefinition("CRS") else QgsCoordinateReferenceSystem()
         is_needed = any(output.kind in ("vector", "table") for output in self.command.outputs if output.key in wanted)
         is_needed |= any(one.kind in ("layer", "point") and parameters.get(one.key) for one in self.command.parameters)
         if given.isValid() or not is_needed:
             return given
-        clouds = self.parameterAsFileList(parameters, "CLOUDS", context)
+        clouds = self.parameterAsFileList(parameters, "CLOUDS", context) if "CLOUDS" in parameters else []
+        if not clouds:
+            return given
         feedback.setProgressText("Reading the reference system")
         return layers.system(program.run(path, ["info", "--", *clouds], is_cancelled=feedback.isCanceled).get("crs"))
 
@@ -160,7 +178,7 @@ class BelvedereAlgorithm(QgsProcessingAlgorithm):
         if given is None or given == "":
             return None
         if one.kind == "files":
-            return self.parameterAsFileList(parameters, one.key, context)
+            return self.parameterAsFileList(parameters, one.key, context) or None
         if one.kind == "flag":
             return self.parameterAsBool(parameters, one.key, context)
         if one.kind == "choice":
@@ -182,6 +200,11 @@ class BelvedereAlgorithm(QgsProcessingAlgorithm):
             if source is None:
                 raise QgsProcessingException(self.invalidSourceError(parameters, one.key))
             return layers.write_geojson(source, scene, os.path.join(folder, one.key.lower() + ".geojson"), context)
+        if one.kind == "raster":
+            layer = self.parameterAsRasterLayer(parameters, one.key, context)
+            if layer is None:
+                raise QgsProcessingException(self.invalidRasterError(parameters, one.key))
+            return layer.source()
         if one.kind == "file":
             return self.parameterAsFile(parameters, one.key, context)
         return self.parameterAsString(parameters, one.key, context)
@@ -192,7 +215,7 @@ def _definitions(one):
     if one.kind == "written":
         return [_destination(output) for output in one.outputs]
     if one.kind == "files":
-        return [QgsProcessingParameterMultipleLayers(one.key, one.label, QgsProcessing.TypeFile)]
+        return [QgsProcessingParameterMultipleLayers(one.key, one.label, QgsProcessing.TypeFile, optional=optional)]
     if one.kind == "flag":
         return [QgsProcessingParameterBoolean(one.key, one.label, defaultValue=False)]
     if one.kind == "choice":
@@ -208,6 +231,8 @@ def _definitions(one):
     if one.kind == "layer":
         kinds = [GEOMETRIES[one.geometry]]
         return [QgsProcessingParameterFeatureSource(one.key, one.label, kinds, optional=optional)]
+    if one.kind == "raster":
+        return [QgsProcessingParameterRasterLayer(one.key, one.label, optional=optional)]
     if one.kind == "file":
         return [QgsProcessingParameterFile(one.key, one.label, optional=optional)]
     return [QgsProcessingParameterString(one.key, one.label, optional=optional)]

@@ -14,14 +14,14 @@ def arguments(command, values, outputs):
     for parameter in command.parameters:
         if parameter.kind == "written":
             for output in parameter.outputs:
-                if outputs.get(output.key):
+                if outputs.get(output.key) and output.kind != "page":
                     flags.append(f"{parameter.flag}={outputs[output.key]}")
             continue
         value = values.get(parameter.key)
         if value is None or value == "" or value == parameter.default:
             continue
-        if parameter.kind == "files":
-            inputs.extend(value)
+        if not parameter.flag.startswith("-"):
+            inputs.extend(_written(parameter, value))
         elif parameter.kind == "flag":
             flags.append(parameter.flag)
         else:
@@ -30,6 +30,8 @@ def arguments(command, values, outputs):
 
 
 def _written(parameter, value):
+    if parameter.kind == "files":
+        return value
     if parameter.kind == "choice":
         return [parameter.choices[value][0]]
     if parameter.kind == "number":

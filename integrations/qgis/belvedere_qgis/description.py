@@ -3,55 +3,45 @@
 from __future__ import annotations
 
 import html
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
-# The commands that become algorithms, with the group they are listed in.
-GROUPS = {
-    "viewshed": "Visibility",
-    "line-of-sight": "Visibility",
-    "isovist": "Visibility",
-    "horizon": "Visibility",
-    "towers": "Visibility",
-    "landmark": "Visibility",
-    "protected-view": "Visibility",
-    "window-views": "Visibility",
-    "cameras": "Visibility",
-    "survey-plan": "Visibility",
-    "shadow": "Sun and sky",
-    "sun-hours": "Sun and sky",
-    "sky-view": "Sun and sky",
-    "irradiance": "Sun and sky",
-    "heat": "Sun and sky",
-    "glare": "Sun and sky",
-    "envelope": "Sun and sky",
-    "comfort": "Sun and sky",
-    "report": "Sun and sky",
-    "surfaces": "Scene",
-    "fetch": "Scene",
+from . import wording
+
+# The commands that become algorithms: their group in the toolbox, and their title.
+ALGORITHMS = {
+    "viewshed": ("Visibility", "Viewshed"),
+    "line-of-sight": ("Visibility", "Line of sight"),
+    "isovist": ("Visibility", "Visible space"),
+    "horizon": ("Visibility", "Horizon"),
+    "towers": ("Visibility", "Visible metres of towers"),
+    "landmark": ("Visibility", "Visibility of a landmark"),
+    "protected-view": ("Visibility", "Protected view"),
+    "window-views": ("Visibility", "Views from windows"),
+    "cameras": ("Visibility", "Where to put cameras"),
+    "survey-plan": ("Visibility", "Where to scan again"),
+    "shadow": ("Sun and sky", "Shadow"),
+    "sun-hours": ("Sun and sky", "Sun hours"),
+    "sky-view": ("Sun and sky", "Sky view factor"),
+    "irradiance": ("Sun and sky", "Solar irradiance"),
+    "heat": ("Sun and sky", "Heat stress"),
+    "glare": ("Sun and sky", "Glare of panels and glass"),
+    "envelope": ("Sun and sky", "Solar envelope"),
+    "comfort": ("Sun and sky", "Sun and sky along walks"),
+    "sun-calendar": ("Sun and sky", "Sun calendar of windows and places"),
+    "sun-position": ("Sun and sky", "Position of the sun"),
+    "report": ("Sun and sky", "Sunlight report"),
+    "difference": ("Before and after", "Difference of two results"),
+    "fetch": ("Scene", "Points of an open survey"),
+    "info": ("Scene", "What a point cloud contains"),
+    "balls": ("Scene", "Ball file for many questions"),
+    "calibrate": ("Scene", "How reliable answers are"),
+    "surfaces": ("Scene", "Roofs and walls"),
+    "normals": ("Scene", "Normals of points"),
+    "trajectory": ("Scene", "Positions of the scanner"),
+    "simulate": ("Scene", "Simulated town"),
+    "cache": ("Scene", "Kept scenes"),
 }
-TITLES = {
-    "viewshed": "Viewshed",
-    "line-of-sight": "Line of sight",
-    "isovist": "Visible space",
-    "horizon": "Horizon",
-    "towers": "Visible metres of towers",
-    "landmark": "Visibility of a landmark",
-    "protected-view": "Protected view",
-    "window-views": "Views from windows",
-    "cameras": "Where to put cameras",
-    "survey-plan": "Where to scan again",
-    "shadow": "Shadow",
-    "sun-hours": "Sun hours",
-    "sky-view": "Sky view factor",
-    "irradiance": "Solar irradiance",
-    "heat": "Heat stress",
-    "glare": "Glare of panels and glass",
-    "envelope": "Solar envelope",
-    "comfort": "Sun and sky along walks",
-    "report": "Sunlight report",
-    "surfaces": "Roofs and walls",
-    "fetch": "Points of an open survey",
-}
+TITLES = {name: title for name, (_, title) in ALGORITHMS.items()}
 # Headings of parameters that few people change.
 RARE = ("Lines of sight", "Scene", "Balls", "Global options")
 # Layers that must have a certain geometry; others take any.
@@ -69,13 +59,19 @@ GEOMETRIES = {
 }
 # Commands whose tables become the same lines as their GeoJSON, which rounds degrees.
 LINES_IN_TABLES = ("line-of-sight",)
-# Names of layers that say more than those of their flags.
-NAMES = {"--pairs": "Lines from observers to targets", "--protect": "Lines, polygons or points to protect from shadow"}
-# Results that are no areas although they are written as GeoJSON.
-OUTPUT_LABELS = {("cameras", "OUTPUT_AREAS"): "Cameras as points"}
+# Commands that report more than they write.
+REPORTED = ("fetch", "calibrate")
+# Names of inputs whose texts begin with the kinds of files that they take.
+NAMES = {
+    "--pairs": "Lines from observers to targets",
+    "--protect": "Lines, polygons or points to protect from shadow",
+    "--targets": "Targets",
+    "--candidates": "Candidates: places as points or lines",
+}
 UNITS = {"degree": "degrees", "minute": "minutes", "m2": "square metres"}
 # A label longer than this makes the dialog too wide.
-LONGEST_LABEL = 60
+LONGEST_LABEL = 80
+SEVERAL = " (separate several with ;)"
 
 
 @dataclass(frozen=True)
@@ -84,7 +80,7 @@ class Output:
 
     key: str
     kind: str
-    """raster, vector, table (a vector layer made from a table), file or folder"""
+    """raster, vector, table (a vector layer made from a table), file, folder or page (what the program reports)"""
     label: str
     formats: tuple[str, ...]
     is_usual: bool = False
@@ -98,7 +94,7 @@ class Parameter:
     flag: str
     key: str
     kind: str
-    """flag, choice, number, integer, text, crs, point, place (on earth), layer, file, files or written"""
+    """flag, choice, number, integer, text, crs, point, place (on earth), layer, raster, file, files or written"""
     label: str
     help: str
     default: object = None
@@ -124,8 +120,18 @@ class Command:
     group: str
     summary: str
     description: str
-    examples: tuple[str, ...] = ()
-    parameters: tuple[Parameter, ...] = field(default=())
+    labels: dict[str, str] = field(default_factory=dict)
+    """what parameters of this and other dialogs are called in sentences, by their flags"""
+    parameters: tuple[Parameter, ...] = ()
+
+    def reworded(self, text):
+        """What the program says of a run, with the labels of the dialog."""
+        return wording.error_text(text, self.labels, TITLES)
+
+    def sentences(self, summary):
+        """What a summary says in sentences, but for those on the command line."""
+        told = (wording.help_text(one, self.labels, TITLES) for one in summary.get("headline", []))
+        return [one for one in told if one]
 
     @property
     def outputs(self):
@@ -136,7 +142,12 @@ def commands(described):
     """The commands that become algorithms, in the order of the groups."""
     by_name = {command["name"]: command for command in described["commands"]}
     threads = [one for one in described["global_parameters"] if one["name"] == "--threads"]
-    return [_command(by_name[name], threads) for name in GROUPS if name in by_name]
+    found = [by_name[name] for name in ALGORITHMS if name in by_name]
+    # texts name fields of other dialogs, too
+    shared = {}
+    for command in found:
+        shared = _labels(command["parameters"]) | shared
+    return [_command(command, threads, shared) for command in found]
 
 
 def as_html(description):
@@ -152,42 +163,64 @@ def as_html(description):
     return "".join(parts)
 
 
-def _command(described, further):
+def _labels(described):
+    """What parameters are called in sentences, by their flags."""
+    return {one["name"]: wording.short(_label(one, _kind(one))) for one in described} | {"--output": "Result"}
+
+
+def _command(described, further, shared):
     name = described["name"]
-    parameters = [_parameter(name, one) for one in described["parameters"] + further]
-    # the point cloud first, results last, rare parameters as QGIS places them
-    order = {"files": 0, "crs": 1, "written": 3}
-    parameters.sort(key=lambda parameter: order.get(parameter.kind, 2))
+    all_described = described["parameters"] + further
+    labels = shared | _labels(all_described)
+
+    def plain(text):
+        return wording.help_text(text, labels, TITLES)
+
+    parameters = [made for one in all_described for made in _parameters(name, one, plain)]
+    if name in REPORTED or not any(one.outputs for one in parameters):
+        page = Output("PAGE", "page", f"{TITLES[name]}: page", (".html",), is_usual=True)
+        parameters.append(Parameter("", "PAGE", "written", page.label, "What the program reports, as a page.", outputs=(page,)))
+    parameters.sort(key=lambda one: 3 if one.kind == "written" else 1 if one.kind == "crs" else 2 if one.flag.startswith("-") else 0)
+    group, title = ALGORITHMS[name]
     return Command(
         name=name,
-        title=TITLES[name],
-        group=GROUPS[name],
-        summary=described["summary"],
-        description=described["description"],
-        examples=tuple(described["examples"]),
+        title=title,
+        group=group,
+        summary=plain(described["summary"]),
+        description=plain(described["description"]),
+        labels=labels,
         parameters=tuple(parameters),
     )
 
 
-def _parameter(command, described):
+def _parameters(command, described, plain):
+    """A parameter, or two where a flag takes a layer and what no layer holds."""
+    made = _parameter(command, described, plain)
+    if described["value_name"] != "AREA":
+        return [made]
+    layer = replace(made, kind="layer", geometry="polygon", label=wording.label_text(described["text"], LONGEST_LABEL, TITLES, is_typed=False))
+    return [layer, replace(made, key=made.key + "_TEXT", label="Clear a class of points (class:N) or a box (X0,Y0,X1,Y1)" + SEVERAL, is_advanced=True)]
+
+
+def _parameter(command, described, plain):
     flag = described["name"]
-    key = flag.lstrip("-").replace("-", "_").upper()
     kind = _kind(described)
+    default, said = _default(described, kind), described["default"]
+    without = f"\n\nIf empty: {plain(said)}." if said and default is None and kind != "written" else ""
     is_usual = flag in ("clouds", "--crs")
-    help_text = described["text"] + ("\n\n" + described["details"] if described["details"] else "")
     return Parameter(
         flag=flag,
-        key=key,
+        key=flag.lstrip("-").replace("-", "_").upper(),
         kind=kind,
         label=_label(described, kind),
-        help=help_text.replace(described["text"] + "\n\n" + described["text"], described["text"]),
-        default=_default(described, kind),
-        choices=tuple((choice["name"], choice["text"]) for choice in described["choices"]),
+        help=plain(described["details"] or described["text"]) + without,
+        default=default,
+        choices=tuple((choice["name"], plain(choice["text"])) for choice in described["choices"]),
         geometry=GEOMETRIES.get((command, flag), "any"),
         is_required=described["required"] and kind != "written",
         is_repeatable=described["repeatable"],
         is_advanced=not is_usual and (described["builds_balls"] or described["heading"] in RARE),
-        outputs=_outputs(command, described, key) if kind == "written" else (),
+        outputs=_outputs(command, described) if kind == "written" else (),
     )
 
 
@@ -197,40 +230,37 @@ def _kind(described):
         return "written"
     if described["name"] == "clouds":
         return "files"
-    if named == "CRS":
-        return "crs"
+    if named in ("CRS", "LAT,LON"):
+        return {"CRS": "crs", "LAT,LON": "place"}[named]
     if named.startswith("X,Y"):
         return "point"
-    if described["name"] == "--at" and named == "LAT,LON":
-        return "place"
     if ".geojson" in described["formats"]:
         return "layer"
+    if ".tif" in described["formats"]:
+        return "raster"
     if described["type"] == "path":
-        return "file"
-    # several numbers in one value are typed, as on the command line
-    return "text" if described["type"] == "numbers" else described["type"]
+        return "files" if described["repeatable"] else "file"
+    # several numbers are typed, as on the command line
+    is_several = described["repeatable"] and described["type"] in ("number", "integer")
+    return "text" if is_several or described["type"] == "numbers" else described["type"]
 
 
 def _label(described, kind):
-    name = described["name"].lstrip("-").replace("-", " ").capitalize()
-    if described["name"] == "clouds":
+    flag, text = described["name"], described["text"]
+    if flag == "clouds":
         return "Point clouds, or a ball file"
-    if kind == "layer":
-        label = NAMES.get(described["name"], name)
-    elif described["text"].startswith("With "):
-        label = name
-    else:
-        label = described["text"]
-        for end in (": ", "; ", " (", ", in metres", ", in degrees", ", such as"):
-            label = label.split(end)[0]
-        label = label if len(label) <= LONGEST_LABEL else name
+    label = NAMES.get(flag) if kind in ("layer", "file") else None
+    is_typed = kind not in ("choice", "layer", "raster", "file", "files")
+    label = label or wording.label_text(text, LONGEST_LABEL, TITLES, is_typed) or _name(flag)
     unit = UNITS.get(described["unit"], described["unit"])
-    says_unit = any(word in label for word in ("metre", "degree", "minute", "hPa"))
+    says_unit = any(word in label for word in ("metre", "degree", "minute", "second", "hPa", "GHz", "percent", " kW"))
     if kind in ("number", "integer") and unit and not says_unit:
         label += {"m": " in metres", "s": " in seconds"}.get(unit, f" in {unit}")
-    if described["repeatable"] and kind == "text":
-        label += " (separate several with ;)"
-    return label
+    return label + SEVERAL if described["repeatable"] and kind == "text" and "," not in described["value_name"] else label
+
+
+def _name(flag):
+    return flag.lstrip("-").replace("-", " ").capitalize()
 
 
 def _default(described, kind):
@@ -252,32 +282,34 @@ def _default(described, kind):
     return None
 
 
-def _outputs(command, described, key):
-    text = described["text"].replace("Also write ", "", 1).replace("Also save ", "", 1)
-    name = key.replace("_", " ").capitalize()
-    short = text.split(" (")[0].split(":")[0]
-    says_what = len(short) <= LONGEST_LABEL and not short.startswith("With ")
-    label = short[:1].upper() + short[1:] if says_what else name
+def _outputs(command, described):
+    key = described["name"].lstrip("-").replace("-", "_").upper()
     is_main = described["name"] == "--output"
     if described["type"] == "folder":
-        return (Output(key, "folder", label, ()),)
+        return (Output(key, "folder", wording.folder_text(described["text"]), (), is_main),)
+    said = wording.result_texts(described["text"])
     # QGIS writes packages itself
     left = [one for one in dict.fromkeys(described["formats"]) if one != ".gpkg"]
     if is_main and command in LINES_IN_TABLES:
         left.remove(".geojson")
     found = []
 
-    def take(kind, suffix, own_label, *extensions):
+    def take(kind, suffix, *extensions):
         formats = tuple(one for one in extensions if one in left)
         if formats and (described["repeatable"] or not found):
-            is_usual = is_main and not found
-            own_key = key if not found else key + suffix
-            found.append(Output(own_key, kind, OUTPUT_LABELS.get((command, own_key), own_label), formats, is_usual))
+            phrases = dict.fromkeys(said.get(one, _name(key.lower())) for one in formats)
+            first, *others = phrases
+            label = " or ".join([first, *map(wording.lowered, others)])
+            label += f" ({' '.join(formats)})" if kind == "file" else " as a table" * any(one.label == label for one in found)
+            found.append(Output(key + suffix * bool(found), kind, label, formats, is_main and not found))
             left[:] = [one for one in left if one not in formats]
 
-    take("raster", "_RASTER", "Result as a raster" if is_main else label, ".tif")
-    take("vector", "_AREAS", "Result as areas" if is_main else label, ".geojson")
-    if is_main:
-        take("table", "_LAYER", "Result as a vector layer", ".csv")
-    take("file", "_FILE", "Result as a file" if is_main else label + " as a file" * bool(found), *left)
-    return tuple(found)
+    take("raster", "_RASTER", ".tif")
+    take("vector", "_AREAS", ".geojson")
+    # a cloud whose points get a column stays a cloud
+    if is_main and (found or ".laz" not in left):
+        take("table", "_LAYER", ".csv")
+    take("file", "_FILE", *left)
+    # "raster" alone says too little: a layer is named by its label
+    before = TITLES[command] if is_main else _name(described["name"]) if len(found) > 1 else None
+    return tuple(replace(one, label=f"{before}: {wording.lowered(one.label)}") if before else one for one in found)

@@ -4,6 +4,8 @@ import csv
 import json
 import os
 
+import numpy as np
+from osgeo import gdal
 from qgis.core import (
     Qgis,
     QgsCoordinateReferenceSystem,
@@ -18,12 +20,16 @@ from qgis.core import (
     QgsVectorLayer,
     QgsWkbTypes,
 )
+from qgis.PyQt.QtCore import QVariant
+from qgis.PyQt.QtXml import QDomDocument
 
 from . import style
 
 # What the columns of a table are, by the columns that say where a row is.
 LINE = ("ax", "ay", "az", "bx", "by", "bz")
 POINT = ("x", "y", "z")
+# Opacities of cells that are proven and unproven. 255 is nodata in some rasters.
+OPAQUE, FAINT = 254, 80
 
 
 def system(text):
@@ -132,19 +138,64 @@ def _value(text, is_text, is_whole):
 
 
 def write_style(command, output, path):
-    """Writes the style beside a result, where QGIS finds it whenever the result is loaded."""
+    """Writes the style of a result, and returns it: into a package, else beside the file, where QGIS finds it whenever the result is loaded."""
     made = _raster_style(command, output.key, path) if output.kind == "raster" else _vector_style(command, output.key, path)
-    if made is not None:
+    if made is None:
+        return None
+    if path.endswith(".gpkg"):
+        # a raster with the same name needs the file beside it
+        layer = QgsVectorLayer(path, "result", "ogr")
+        give_style(layer, made)
+        layer.saveStyleToDatabase("result", "", True, "")
+    else:
         with open(os.path.splitext(path)[0] + ".qml", "w", encoding="utf-8") as file:
             file.write(made)
+    return made
+
+
+def give_style(layer, made):
+    """Gives a layer a style."""
+    document = QDomDocument()
+    document.setContent(made)
+    layer.importNamedStyle(document)
+
+
+def add_shown_band(path):
+    """Adds to a raster what a map shows of its first band and the band "unproven", and returns the number of the band; None without such a band.
+
+    Of answers the band is 2 where they are unproven, as codes of answers are elsewhere. Of numbers it is the opacity of the cell, 0 to 254: the more of the
+    number is unproven, the lower. A style has no other way to show two bands.
+    """
+    source = gdal.Open(path)
+    names = [source.GetRasterBand(number).GetDescription() for number in range(1, source.RasterCount + 1)]
+    if "unproven" not in names:
+        return None
+    first, unproven = source.GetRasterBand(1).ReadAsArray(), source.GetRasterBand(names.index("unproven") + 1).ReadAsArray()
+    nodata, kind = source.GetRasterBand(1).GetNoDataValue(), source.GetRasterBand(1).DataType
+    is_answer = kind == gdal.GDT_Byte
+    known = first != nodata
+    share = np.divide(unproven, first, out=np.zeros(first.shape), where=known & (first > 0)).clip(0, 1)
+    shown = np.where(known & (share > 0), 2, first) if is_answer else OPAQUE - (OPAQUE - FAINT) * share
+    copy = gdal.GetDriverByName("MEM").CreateCopy("", source)
+    source = None
+    copy.AddBand(kind)
+    band = copy.GetRasterBand(copy.RasterCount)
+    band.WriteArray(shown)
+    band.SetDescription("answer" if is_answer else "opacity")
+    band.SetNoDataValue(nodata)
+    gdal.GetDriverByName("GTiff").CreateCopy(path, copy, options=["COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER"])
+    return copy.RasterCount
 
 
 def _raster_style(command, key, path):
+    shown = add_shown_band(path)
     layer = QgsRasterLayer(path, "result")
     provider = layer.dataProvider()
-    found = provider.bandStatistics(1, QgsRasterBandStats.Min | QgsRasterBandStats.Max)
     is_bytes = provider.dataType(1) == Qgis.Byte
-    return style.raster(command, key, found.minimumValue, found.maximumValue, is_bytes)
+    is_answer = shown is not None and is_bytes
+    band = shown if is_answer else 1
+    found = provider.bandStatistics(band, QgsRasterBandStats.Min | QgsRasterBandStats.Max)
+    return style.raster(command, key, found.minimumValue, found.maximumValue, is_bytes, band, None if is_answer else shown)
 
 
 def _vector_style(command, key, path):
@@ -157,8 +208,18 @@ def _vector_style(command, key, path):
     geometry = kinds.get(layer.geometryType())
     if geometry is None:
         return None
+    fields = layer.fields().names()
     low, high, field = 0.0, 1.0, style.field_of(command, key)
     if field is not None:
-        values = [feature[field] for feature in layer.getFeatures() if isinstance(feature[field], (int, float))]
+        values = [feature[field] for feature in layer.getFeatures() if isinstance(feature[field], (int, float))] if field in fields else []
         low, high = (min(values), max(values)) if values else (low, high)
-    return style.vector(command, key, geometry, low, high)
+    return style.vector(command, key, geometry, low, high, fields, _step_min(layer))
+
+
+def _step_min(layer):
+    """Minutes between the times of the features of a layer, or None where it has no two times."""
+    at = layer.fields().indexFromName("time")
+    if at < 0 or layer.fields()[at].type() != QVariant.DateTime:
+        return None
+    times = sorted(time for time in layer.uniqueValues(at) if time)
+    return min(one.secsTo(other) for one, other in zip(times, times[1:])) / 60 if len(times) > 1 else None

@@ -24,22 +24,29 @@ from qgis.core import (  # noqa: E402
     QgsCategorizedSymbolRenderer,
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
+    QgsDateTimeRange,
+    QgsExpressionContext,
+    QgsExpressionContextUtils,
     QgsFeature,
     QgsGeometry,
     QgsGraduatedSymbolRenderer,
+    QgsLayerDefinition,
     QgsMapRendererParallelJob,
     QgsMapSettings,
     QgsPalettedRasterRenderer,
     QgsProcessingContext,
     QgsProcessingException,
     QgsProcessingFeedback,
+    QgsProcessingOutputLayerDefinition,
+    QgsProcessingUtils,
     QgsProject,
     QgsRasterLayer,
+    QgsRenderContext,
     QgsSingleBandPseudoColorRenderer,
     QgsVectorFileWriter,
     QgsVectorLayer,
 )
-from qgis.PyQt.QtCore import QSize  # noqa: E402
+from qgis.PyQt.QtCore import QDateTime, QSize  # noqa: E402
 from qgis.PyQt.QtGui import QColor  # noqa: E402
 
 
@@ -61,7 +68,8 @@ def geojson(name, shapes, crs="EPSG:28992"):
 
 def run(algorithm, **parameters):
     """Runs an algorithm in a process of its own; its exit status and what it printed."""
-    typed = [f"{name}={value}" for name, value in parameters.items()]
+    # several files are given one by one
+    typed = [f"{name}={one}" for name, value in parameters.items() for one in (value if isinstance(value, list) else [value])]
     done = subprocess.run([PROCESS, "run", f"belvedere:{algorithm}", "--", *typed], capture_output=True, text=True, check=False)
     return done.returncode, done.stdout + done.stderr
 
@@ -85,6 +93,10 @@ def draw(name, *layers):
     extent = layers[-1].extent()
     extent.scale(1.04)
     settings.setExtent(extent)
+    # as the canvas of QGIS does
+    scopes = QgsExpressionContext()
+    scopes.appendScope(QgsExpressionContextUtils.mapSettingsScope(settings))
+    settings.setExpressionContext(scopes)
     job = QgsMapRendererParallelJob(settings)
     job.start()
     job.waitForFinished()
@@ -210,7 +222,12 @@ def check_algorithms():
             "OUTPUT": "covered.tif",
             "OUTPUT_AREAS": "cameras.gpkg",
         },
-        "shadow": {"TIME": "2026-06-21T18:00+02:00", "SURFACE": "true", "OUTPUT": "shadow.tif"},
+        "shadow": {
+            "TIME": "2026-06-21T18:00+02:00; 2026-06-21T19:00+02:00; 2026-06-21T20:00+02:00",
+            "SURFACE": "true",
+            "OUTPUT": "shadow.tif",
+            "OUTLINES": "outlines.gpkg",
+        },
         "sun_hours": {"DATE": "2026-03-21", "CELL": 2, "OUTPUT": "sun_hours.tif"},
         "sky_view": {"CELL": 2, "DIRECTIONS": 145, "OUTPUT": "sky_view.tif"},
         "irradiance": {
@@ -246,10 +263,60 @@ def check_algorithms():
     }
     for algorithm, given in runs.items():
         start = time.monotonic()
-        files = {key: FOLDER / value if key.startswith(("OUTPUT", "PLANES")) else value for key, value in given.items()}
+        files = {key: FOLDER / value if key.startswith(("OUTPUT", "PLANES", "OUTLINES")) else value for key, value in given.items()}
         status, printed = run(algorithm, **scene, **files)
         assert status == 0, f"{algorithm}: {printed}"
         print(f"{algorithm}: {time.monotonic() - start:.1f} s")
+
+
+def check_further_algorithms():
+    """What needs results of others, or writes no layer. The scene that the first runs kept is found again."""
+    scene = {"CLOUDS": str(DATA), "CRS": "EPSG:28992"}
+    place = "85036,447527 [EPSG:28992]"
+    building = "POLYGON((85015 447465, 85045 447465, 85045 447500, 85015 447500, 85015 447465))"
+    day = {"DATE": "2026-06-21", "ZONE": "Europe/Amsterdam"}
+    for algorithm, given in (
+        ("info", {**scene, "PAGE": FOLDER / "info.html"}),
+        ("cache", {"PAGE": FOLDER / "cache.html"}),
+        ("sun_position", {"TIME": "2026-06-21T15:00+02:00; 2026-12-21T12:00+01:00", "LOCATION": place, "OUTPUT": FOLDER / "suns.gpkg"}),
+        ("sun_calendar", {**scene, **day, "AT": place, "OUTPUT": FOLDER / "calendar.gpkg"}),
+        ("trajectory", {**scene, "OUTPUT": FOLDER / "flight.gpkg"}),
+        ("normals", {**scene, "OUTPUT": FOLDER / "normals.laz"}),
+        ("balls", {**scene, "OUTPUT": FOLDER / "balls.npz"}),
+        ("calibrate", {**scene, "PAGE": FOLDER / "reliability.html"}),
+        ("simulate", {"EXTENT": 60, "DENSITY": 2, "OUTPUT": FOLDER / "town"}),
+        ("sun_hours", {**scene, "DATE": "2026-03-21", "CELL": 2, "CLEAR": geojson("gone", [building], "EPSG:4326"), "OUTPUT": FOLDER / "after.tif"}),
+        ("difference", {"BEFORE": FOLDER / "sun_hours.tif", "AFTER": FOLDER / "after.tif", "OUTPUT": FOLDER / "change.tif"}),
+    ):
+        start = time.monotonic()
+        status, printed = run(algorithm, **given)
+        assert status == 0, f"{algorithm}: {printed}"
+        print(f"{algorithm}: {time.monotonic() - start:.1f} s")
+        if algorithm == "sun_calendar":
+            assert "scene: found" in printed, printed
+
+    page = (FOLDER / "info.html").read_text(encoding="utf-8")
+    assert "208,432 points" in page and "class 6" in page and "--" not in page, page
+    assert "pulses" in (FOLDER / "reliability.html").read_text(encoding="utf-8")
+    assert "scenes are kept" in (FOLDER / "cache.html").read_text(encoding="utf-8")
+    # NOAA solar calculator, Delft: true noon of the shortest day stands 14.6 degrees high
+    suns = list(QgsVectorLayer(str(FOLDER / "suns.gpkg"), "suns", "ogr").getFeatures())
+    assert len(suns) == 2 and 55 < suns[0]["elevation_deg"] < 60 and 13 < suns[1]["elevation_deg"] < 15, suns
+    # a day of sun and shade has no gaps, and the longest day of Delft has 16 h 45 min
+    stretches = list(QgsVectorLayer(str(FOLDER / "calendar.gpkg"), "calendar", "ogr").getFeatures())
+    assert {"sun", "building"} <= {one["state"] for one in stretches}
+    assert 16.3 < sum(one["hours"] for one in stretches) < 17.2, [one["hours"] for one in stretches]
+    # the aircraft flew 447 m above the ground
+    flight = [one.geometry().constGet().z() for one in loaded("flight.gpkg").getFeatures()]
+    assert len(flight) > 5 and all(430 < height < 460 for height in flight), flight
+    for name in ("normals.laz", "balls.npz", "town/cloud.laz", "town/mesh.obj"):
+        assert (FOLDER / name).stat().st_size > 1000, name
+    # without the building its surroundings have more sun, and no place less
+    change = loaded("change.tif")
+    assert isinstance(change.renderer(), QgsSingleBandPseudoColorRenderer)
+    changes = [value for value in values(change) if value is not None]
+    assert sum(value > 0.5 for value in changes) > 20 and min(changes) > -0.6, (max(changes), min(changes))
+    draw("change", change)
 
 
 def check_results():
@@ -274,6 +341,7 @@ def check_results():
         "roofs.gpkg": QgsGraduatedSymbolRenderer,
         "cameras.gpkg": QgsGraduatedSymbolRenderer,
         "walk_sun.gpkg": QgsGraduatedSymbolRenderer,
+        "outlines.gpkg": QgsCategorizedSymbolRenderer,
     }
     layers = {}
     for name, renderer in {**rasters, **vectors}.items():
@@ -281,6 +349,13 @@ def check_results():
         assert isinstance(layers[name].renderer(), renderer), (name, layers[name].renderer())
         draw(name.split(".")[0], layers[name])
     draw("visibility", layers["sights.gpkg"], layers["viewshed.tif"])
+    # a single point has no extent to draw
+    layers["windows.gpkg"] = loaded("windows.gpkg")
+    draw("sectors", layers["cameras.gpkg"], layers["windows.gpkg"], layers["covered.tif"])
+    # a camera is drawn with the sector that it sees
+    for name in ("cameras.gpkg", "windows.gpkg"):
+        symbol = layers[name].renderer().symbols(QgsRenderContext())[0]
+        assert "wedge_buffer" in symbol.symbolLayer(0).geometryExpression(), name
 
     # lines keep their order, and their ends are where they were drawn, on the ground and 1.7 m above it
     sights = list(layers["sights.gpkg"].getFeatures())
@@ -305,8 +380,25 @@ def check_results():
     direct = FOLDER / "direct.tif"
     typed = ["viewshed", str(DATA), "--crs=EPSG:28992", "--observer=85036,447527", "--cell=1", "-o", str(direct)]
     subprocess.run([PROGRAM, *typed], check=True, capture_output=True)
-    bands = [gdal.Open(str(file)).ReadAsArray().tobytes() for file in (direct, FOLDER / "viewshed.tif")]
-    assert bands[0] == bands[1]
+    bands = [gdal.Open(str(file)).ReadAsArray() for file in (direct, FOLDER / "viewshed.tif")]
+    assert len(bands[1]) == 3 and (bands[0] == bands[1][:2]).all()
+    assert gdal.Open(str(FOLDER / "viewshed.tif")).GetMetadataItem("TIFFTAG_SOFTWARE").startswith("belvedere")
+
+    # a third band is drawn, with unproven cells in their own colour
+    drawn = layers["viewshed.tif"].renderer()
+    assert drawn.band() == 3 and {entry.value: entry.label for entry in drawn.classes()}[2] == "unproven"
+    assert {0, 1, 2} <= set(bands[1][2].ravel())
+    assert ((bands[1][2] == 2) == ((bands[0][0] == 1) & (bands[0][1] == 1))).all()
+
+    # of many observers, cells are the fainter the more of their number is unproven
+    status, printed = run("viewshed", CLOUDS=DATA, CRS="EPSG:28992", SPREAD=20, CELL=2, OUTPUT=FOLDER / "total.tif")
+    assert status == 0, printed
+    total = loaded("total.tif")
+    assert total.renderer().alphaBand() == 3 and isinstance(total.renderer(), QgsSingleBandPseudoColorRenderer)
+    draw("total", total)
+    shares = [(opacity, count, unproven) for count, unproven, opacity in zip(*(values(total, band) for band in (1, 2, 3))) if count]
+    assert {opacity == 254 for opacity, _, unproven in shares if not unproven} == {True}
+    assert {opacity == 80 for opacity, count, unproven in shares if unproven == count} == {True}
 
     # areas lie on the visible cells of the raster that its second band does not call unproven: brought back from
     # longitude and latitude they may be off by the rounding of degrees
@@ -335,10 +427,64 @@ def check_results():
     assert abs(len(heights) * 0.25 - 331) < 25 and 0 < min(heights) <= max(heights) <= 25, (len(heights), min(heights))
 
 
+def check_times():
+    """Shadows of three hours are three layers for the temporal controller, and their outlines one; they look so wherever their definition is opened."""
+    project = QgsProject()
+    for name, count in (("shadow.tif", 3), ("outlines.gpkg", 1)):
+        root = project.layerTreeRoot()
+        before = len(root.findLayers())
+        done, error = QgsLayerDefinition.loadLayerDefinition(str(FOLDER / f"{name}.qlr"), project, root)
+        assert done, error
+        assert len(root.findLayers()) - before == count, (name, [node.name() for node in root.findLayers()])
+    layers = [node.layer() for node in project.layerTreeRoot().findLayers()]
+    assert all(layer.isValid() and layer.temporalProperties().isActive() for layer in layers), layers
+    hours = sorted(
+        (layer.temporalProperties().fixedTemporalRange().begin().toString("yyyy-MM-dd hh:mm"), layer.renderer().band(), layer.name())
+        for layer in layers
+        if isinstance(layer, QgsRasterLayer)
+    )
+    assert hours == [(f"2026-06-21 {hour}:00", hour - 17, f"2026-06-21 {hour}:00") for hour in (18, 19, 20)], hours
+    outlines = next(layer for layer in layers if isinstance(layer, QgsVectorLayer))
+    assert outlines.temporalProperties().startField() == "time" and outlines.temporalProperties().fixedDuration() == 60
+    # at half past seven only the shadow of seven is drawn
+    at = QgsDateTimeRange(QDateTime(2026, 6, 21, 19, 20), QDateTime(2026, 6, 21, 19, 30))
+    shown = [layer.name() for layer in layers if isinstance(layer, QgsRasterLayer) and layer.temporalProperties().isVisibleInTemporalRange(at)]
+    assert shown == ["2026-06-21 19:00"], shown
+
+
+def check_tutorial():
+    """The runs of the tutorial say what its page quotes, with numbers within a tenth: answers change from version to version."""
+    page = (ROOT / "docs/tutorials/plan_in_qgis.md").read_text(encoding="utf-8").replace("\n", " ")
+    clouds = [str(DATA.with_name(f"ahn3_cropped_{number}.laz")) for number in (1, 2)]
+    scene = {"CLOUDS": clouds, "CRS": "EPSG:28992", "CELL": 0.5}
+    building = "POLYGON((85015 447465, 85045 447465, 85045 447500, 85015 447500, 85015 447465))"
+    day = {"DATE": "2026-03-21", "ZONE": "Europe/Amsterdam"}
+    for quoted, steps in (
+        ('visible [^"]* unproven [0-9.]*', [("viewshed", {**scene, "OBSERVER": "85036,447527 [EPSG:28992]", "MAX_DISTANCE": 200, "OUTPUT": "quay.tif"})]),
+        (
+            'gain on [^",]*,[^",]*',
+            [
+                ("sun_hours", {**scene, **day, "OUTPUT": "with.tif"}),
+                ("sun_hours", {**scene, **day, "CLEAR": geojson("plan", [building]), "OUTPUT": "without.tif"}),
+                ("difference", {"BEFORE": FOLDER / "with.tif", "AFTER": FOLDER / "without.tif", "OUTPUT": "gain.tif"}),
+            ],
+        ),
+    ):
+        for algorithm, given in steps:
+            status, printed = run(algorithm, **{**given, "OUTPUT": FOLDER / given["OUTPUT"]})
+            assert status == 0, printed
+        told = [numbers(re.search(quoted, text)[0]) for text in (page, printed)]
+        assert all(abs(one - other) <= 1 + 0.1 * abs(one) for one, other in zip(*told)), told
+
+
+def numbers(text):
+    return [float(number.replace(",", "")) for number in re.findall(r"\d[\d,]*(?:\.\d+)?", text)]
+
+
 def check_errors():
     given = {"CLOUDS": DATA, "OUTPUT": FOLDER / "x.tif"}
     status, printed = run("shadow", TIME="2026-06-21T18:00", **given)
-    assert status != 0 and "zone" in printed, printed
+    assert status != 0 and '"Time zone of times and days"' in printed and "--zone" not in printed, printed
     assert not (FOLDER / "x.tif").exists()
     os.environ["BELVEDERE_PROGRAM"] = "/nowhere/belvedere"
     status, printed = run("shadow", TIME="2026-06-21T18:00+02:00", **given)
@@ -347,15 +493,45 @@ def check_errors():
     os.environ["BELVEDERE_PROGRAM"] = PROGRAM
 
 
-def check_cancelling():
+def provider():
+    """The plugin in this process."""
     sys.path[:0] = [PLUGINS, "/usr/share/qgis/python/plugins"]
     from processing.core.Processing import Processing
 
     from belvedere_qgis.provider import BelvedereProvider
 
     Processing.initialize()
-    provider = BelvedereProvider()
-    QgsApplication.processingRegistry().addProvider(provider)
+    made = BelvedereProvider()
+    QgsApplication.processingRegistry().addProvider(made)
+    return made
+
+
+def check_loading(plugin):
+    """What a run in a project loads has its style, and results of several times come as their layers."""
+    project, context = QgsProject(), QgsProcessingContext()
+    context.setProject(project)
+    scene = {"CLOUDS": [str(DATA)], "CRS": QgsCoordinateReferenceSystem("EPSG:28992"), "CELL": 2}
+
+    def loads(algorithm, **given):
+        outputs = {key: QgsProcessingOutputLayerDefinition(str(FOLDER / name), project) for key, name in given.pop("outputs").items()}
+        _, done = plugin.algorithm(algorithm).create().run({**scene, **given, **outputs}, context, QgsProcessingFeedback())
+        assert done
+
+    loads("viewshed", OBSERVER="85036,447527 [EPSG:28992]", outputs={"OUTPUT": "loaded.tif", "OUTPUT_AREAS": "loaded.gpkg"})
+    for name, renderer in (("loaded.tif", QgsPalettedRasterRenderer), ("loaded.gpkg", QgsCategorizedSymbolRenderer)):
+        details = context.layersToLoadOnCompletion()[str(FOLDER / name)]
+        assert details.name.startswith("Viewshed: "), details.name
+        layer = QgsProcessingUtils.mapLayerFromString(str(FOLDER / name), context)
+        # what Processing does before it adds a layer to the project
+        details.postProcessor().postProcessLayer(layer, context, QgsProcessingFeedback())
+        assert isinstance(layer.renderer(), renderer), layer.renderer()
+    loads("shadow", TIME="2026-06-21T09:00+02:00; 2026-06-21T10:00+02:00", outputs={"OUTPUT": "hours.tif"})
+    assert str(FOLDER / "hours.tif") not in context.layersToLoadOnCompletion()
+    groups = project.layerTreeRoot().findGroups()
+    assert [(group.name(), len(group.findLayers())) for group in groups] == [("Shadow", 2)], groups
+
+
+def check_cancelling(plugin):
     algorithm = QgsApplication.processingRegistry().createAlgorithmById("belvedere:sky_view")
 
     class Impatient(QgsProcessingFeedback):
@@ -382,7 +558,7 @@ def check_cancelling():
         results = {"error": str(error)}
     assert feedback.steps > 3 and "OUTPUT" not in results, results
     assert not out.exists() and time.monotonic() - start < 60
-    texts = [provider.algorithm(name).shortHelpString() for name in ("viewshed", "envelope")]
+    texts = [plugin.algorithm(name).shortHelpString() for name in ("viewshed", "envelope")]
     assert all("<b>Input</b>" in text for text in texts), texts[0]
 
 
@@ -392,8 +568,12 @@ def main():
         return
     application = QgsApplication([], False)
     application.initQgis()
-    for check in (check_fetch, check_algorithms, check_results, check_errors, check_cancelling):
+    for check in (check_fetch, check_algorithms, check_further_algorithms, check_results, check_times, check_tutorial, check_errors):
         check()
+        print(f"{check.__name__.replace('_', ' ')}: passed")
+    plugin = provider()
+    for check in (check_loading, check_cancelling):
+        check(plugin)
         print(f"{check.__name__.replace('_', ' ')}: passed")
 
 

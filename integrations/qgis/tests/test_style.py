@@ -46,6 +46,12 @@ def test_a_ramp_covers_the_values_in_order(command, key):
         assert (values[0], values[-1]) == (0.0, 1.0)
 
 
+def test_no_change_is_the_middle_of_its_ramp():
+    items = parse(style.raster("difference", "OUTPUT", -1.0, 4.0, is_bytes=False)).findall(".//item")
+    assert [float(item.get("value")) for item in (items[0], items[3], items[-1])] == [-4.0, 0.0, 4.0]
+    assert items[3].get("color") == "#f7f7f7"
+
+
 def test_a_raster_of_one_value_still_has_a_ramp():
     values = {float(item.get("value")) for item in parse(style.raster("sun-hours", "OUTPUT", 0.0, 0.0, False)).findall(".//item")}
     assert len(values) > 2
