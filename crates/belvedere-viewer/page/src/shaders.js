@@ -99,8 +99,9 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy), most = textureSize(far24, 0) - 1
   if (!isAnswer && wide < 1.5) return;
   vec2 from = vec2(p) - 0.5 * vec2(most); float kind[8] = float[8](0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0); kind[min(int(own.a * 255.0 + 0.5), 7)] = 1.0;
   vec3 sum = said(own.a), light = own.rgb; float whole = 1.0, near = 1.0, depths = d;
-  for (int i = 0; i < taps; i++) {
-    float a = float(i) * 2.3999632, r = sqrt((float(i) + 0.5) / float(taps)) * wide; ivec2 q = clamp(p + ivec2(round(r * vec2(cos(a), sin(a)))), ivec2(0), most);
+  int count = isAnswer ? taps : taps / 2;
+  for (int i = 0; i < count; i++) {
+    float a = float(i) * 2.3999632, r = sqrt((float(i) + 0.5) / float(count)) * wide; ivec2 q = clamp(p + ivec2(round(r * vec2(cos(a), sin(a)))), ivec2(0), most);
     vec4 other = texelFetch(shown, q, 0), z = texelFetch(far24, q, 0); if ((other.a < 0.998) != isAnswer || z.a < 0.5) continue;
     float e = at(z); vec3 to = vec3(((vec2(q) - 0.5 * vec2(most)) * e - from * d) / pixels, e - d); float apart = dot(to, to), w = exp(-2.0 * apart / (span * span)), v = exp(-9.0 * apart / (reach * reach));
     kind[min(int(other.a * 255.0 + 0.5), 7)] += w; sum += w * said(other.a); whole += w; light += v * other.rgb; depths += v * e; near += v; }
