@@ -12,6 +12,7 @@ import { de } from "./src/words/de.js";
 import { fr } from "./src/words/fr.js";
 import { nl } from "./src/words/nl.js";
 import { clockOf, zoneOf } from "./src/zones.js";
+import { unfitting } from "./fits.mjs";
 import { holes, sourcesOfRust, texts } from "./texts.mjs";
 
 const [program, executablePath] = process.argv.slice(2);
@@ -163,6 +164,9 @@ async function main() {
     const seen = await page.evaluate(() => belvedere.cloud.chunks.flatMap(({ low, step, places, count }) => Array.from({ length: count }, (_, i) => belvedere.onScreen([0, 1, 2].map((k) => low[k] + places[4 * i + k] * step[k])))));
     const [tools, card, timebar] = panels;
     assert.ok(seen.every(([x, y]) => x >= tools.right && x <= card.left && y >= 46 && y <= timebar.top), "the scene is shown whole beside the panels");
+    const share = (axis, room) => (seen.reduce((v, at) => Math.max(v, at[axis]), 0) - seen.reduce((v, at) => Math.min(v, at[axis]), 1e4)) / room;
+    const [across, upright] = [share(0, card.left - tools.right), share(1, timebar.top - 46)];
+    assert.ok(Math.max(across, upright) > 0.9 && Math.min(across, upright) > 0.6, `the scene fills ${across} by ${upright} of the free place`);
   });
   await step("the first picture is that of the stored one", async () => {
     await settled(page);
@@ -187,6 +191,28 @@ async function main() {
     }, [shown, `data:image/png;base64,${readFileSync(expected).toString("base64")}`]);
     // steps of 8 bits: other drivers round points to other pixels, which is little beside an empty picture
     assert.ok(ofEmpty > 3 && difference < 0.2 * ofEmpty, `the picture differs by ${difference}, an empty one by ${ofEmpty}`);
+  });
+  await step("colours of an answer are those of its legend", async () => {
+    await settled(page);
+    const strange = await page.evaluate(() => {
+      // shares of red, green and blue: light and shade change all of them alike
+      const shares = ([r, g, b]) => { const sum = Math.max(r + g + b, 1); return [r / sum, g / sum, b / sum]; };
+      const keys = belvedere.legend.keys.map(({ color }) => shares([1, 3, 5].map((i) => parseInt(color.slice(i, i + 2), 16))));
+      const from = document.getElementById("view");
+      const context = Object.assign(document.createElement("canvas"), { width: from.width, height: from.height }).getContext("2d");
+      context.drawImage(from, 0, 0);
+      const { data } = context.getImageData(0, 0, from.width, from.height);
+      let [points, others] = [0, 0];
+      for (let y = 100; y < 560; y += 4) for (let x = 300; x < 860; x += 4) {
+        if (belvedere.cloud.depthAt(x, y, 0) === null) continue;
+        const own = shares(data.subarray(4 * (y * from.width + x)));
+        points += 1;
+        if (keys.every((key) => Math.hypot(...key.map((v, i) => own[i] - v)) > 0.05)) others += 1;
+      }
+      return others / points;
+    });
+    // edges between lit and shadow are mixed
+    assert.ok(strange < 0.04, `${strange} of the picture has colours of no answer`);
   });
   await step("a click asks, the address keeps what is shown, and back goes to the question before", async () => {
     await page.mouse.click(...await pixelOf(page, 2, 20));
@@ -287,7 +313,8 @@ async function main() {
     const [download] = await Promise.all([page.waitForEvent("download"), page.click("[data-save=csv]")]);
     assert.match(readFileSync(await download.path(), "utf8"), /^answer,points\nvisible,\d+\n/);
     const [map] = await Promise.all([page.waitForEvent("download"), page.click("[data-save=geojson]")]);
-    assert.equal(JSON.parse(readFileSync(await map.path(), "utf8")).features[0].geometry.type, "Point");
+    const { features: [{ geometry }], crs } = JSON.parse(readFileSync(await map.path(), "utf8"));
+    assert.deepEqual([geometry.type, crs], ["Point", { type: "name", properties: { name: "urn:ogc:def:crs:EPSG::7415" } }]);
     const [picture] = await Promise.all([page.waitForEvent("download"), page.click("#picture")]);
     assert.equal(readFileSync(await picture.path()).subarray(1, 4).toString(), "PNG");
   });
@@ -307,7 +334,7 @@ async function main() {
     assert.equal(await page.evaluate(() => document.querySelectorAll("#card figure svg").length), 1);
     await page.waitForFunction(() => document.querySelectorAll("#marks path").length >= 1);
   });
-  await step("sun here", () => ask("sun", [roof], /\d+\.\d hours of sun[\s\S]*In nine of ten cases\s*\d+\.\d to \d+\.\d h[\s\S]*First light/));
+  await step("sun here", () => ask("sun", [roof], /\d+\.\d hours of sun[\s\S]*In nine of ten cases\s*\d+\.\d to \d+\.\d h[\s\S]*First light\s*\d\d:\d\d \(UTC\+2\)/));
   await step("shadow at a time", async () => {
     await ask("shadow", [], /% is lit/);
     const noon = await page.evaluate(() => belvedere.last.lit_share);
@@ -394,7 +421,7 @@ async function main() {
     await page.click("#home");
   });
   await step("sky and space here", async () => {
-    await ask("around", [ground], /Sky view factor 0\.\d\d/);
+    await ask("around", [ground], /Sky view factor 0\.\d\d[\s\S]*Visible volume up to obstacles\s*[\d,]+ m³\s*With open directions, up to 100 m\s*[\d,]+ m³/);
     assert.equal(await page.evaluate(() => document.querySelectorAll("#card canvas").length), 1);
   });
   await step("who sees this", async () => {
@@ -507,6 +534,15 @@ async function main() {
     await answered(dutch);
     assert.equal(await dutch.evaluate(() => document.querySelector("#tools h2").textContent), fr.texts.Questions);
     await dutch.close();
+  });
+  await step("nothing is cut off, in four languages on three screens", async () => {
+    for (const locale of ["en-GB", "nl-NL", "de-DE", "fr-FR"]) {
+      const shown = await open(browser, url, { ...DESK, locale });
+      await ready(shown);
+      await answered(shown);
+      assert.deepEqual(await unfitting(shown, answered), [], locale);
+      await shown.close();
+    }
   });
   await step("a tablet: fingers turn, zoom and ask, and controls are large", async () => {
     const tablet = await open(browser, url, { viewport: { width: 1024, height: 768 }, hasTouch: true, isMobile: true });
@@ -739,23 +775,78 @@ async function main() {
     await shown.waitForFunction(() => window.belvedere?.reading?.up === "y");
     await ready(shown);
     assert.ok(Math.abs(await height() - 300) < 0.1, "y is up");
-    const seen = async (expected) => {
+    const seen = async (file, expected) => {
       await shown.click("#tools [data-tool=seen]");
-      await settled(shown);
-      const there = await shown.evaluate(() => {
-        for (let y = 400; y < 560; y += 3) for (let x = 400; x < 860; x += 3) if (belvedere.placeAt(x, y)) return [x, y];
-        return null;
-      });
-      await shown.mouse.click(...there);
+      await shown.evaluate((file) => belvedere.pick(file.map((v, i) => v * belvedere.scene.metres_per_unit[i] - belvedere.scene.origin[i])), file);
       await shown.waitForFunction((words) => new RegExp(words).test(document.getElementById("card").innerText), expected);
     };
-    // points are 20 m apart, so that the ground between them is unknown
-    await seen("No answer[\\s\\S]*Read it with z up[\\s\\S]*Unit, which the files do not name");
+    // remarks go along in one file, no folder does
+    execFileSync(program, ["view", join(folder, "turned.xyz"), "--export", "turned.html"], { cwd: folder, stdio: "ignore" });
+    const sent = readFileSync(join(folder, "turned.html"), "utf8");
+    assert.match(sent, /"key":"y-looks-up"/);
+    assert.ok(!sent.includes(folder), "the folder of the sender stays out");
+    // points are 20 m apart, so that the ground beside the block is unknown
+    await seen([380, 600, 0], "No answer[\\s\\S]*Read it with z up[\\s\\S]*Unit, which the files do not name");
     await shown.selectOption("#unit", "centimetre");
     await shown.waitForFunction(() => window.belvedere?.reading?.unit === "centimetre");
     await ready(shown);
     assert.ok(Math.abs(await height() - 3) < 0.001, "in metres");
-    await seen("is visible[\\s\\S]*belvedere viewshed turned\\.xyz --up y --crs 'LOCAL_CS");
+    await seen([60, 440, 0], "is visible[\\s\\S]*belvedere viewshed turned\\.xyz --up y --crs 'LOCAL_CS");
+    await shown.close();
+  });
+  await step("who walks stands on the ground before walls without holes", async () => {
+    // ground of 20 by 20 m with a hole in its middle, and a wall of which a third of the points is missing
+    const rows = [];
+    for (let i = 0; i < 80; i++) for (let k = 0; k < 80; k++) {
+      const [x, y] = [i / 4 - 10, k / 4 - 10];
+      if (Math.max(Math.abs(x), Math.abs(y)) > 2) rows.push(`${155000 + x} ${463000 + y} 0`);
+      if (k < 24 && (i * 7919 + k * 104729) % 97 % 3) rows.push(`${155000 + x} 463009.8 ${k / 4}`);
+    }
+    writeFileSync(join(folder, "wall.xyz"), `${rows.join("\n")}\n`);
+    const { url: other } = await serve("wall.xyz", "--crs", "EPSG:28992");
+    const shown = await open(browser, other);
+    await ready(shown);
+    await shown.evaluate(() => belvedere.choose("look"));
+    await shown.selectOption("#motion", "walk");
+    const eye = await shown.evaluate(() => belvedere.toFile(belvedere.mover.camera.position.toArray()));
+    assert.ok(Math.abs(eye[2] - 1.7) < 0.05, `the eye is ${eye[2]} m above the ground`);
+    // dark below, where no sky is
+    await shown.selectOption("#color", "height");
+    const holes = await shown.evaluate(async () => {
+      const { camera } = belvedere.mover;
+      const local = ([x, y, z]) => [155000 + x, 463000 + y, z].map((v, i) => v - belvedere.scene.origin[i]);
+      camera.position.set(...local([0, 2.5, 1.7]));
+      camera.lookAt(...local([0, 9.8, 1.7]));
+      belvedere.mover.changed();
+      await belvedere.complete(60_000);
+      const [[left, top], [right, bottom]] = [[-3, 9.8, 3.5], [3, 9.8, 1]].map((place) => belvedere.onScreen(local(place)).map(Math.round));
+      const from = document.getElementById("view");
+      const context = Object.assign(document.createElement("canvas"), { width: from.width, height: from.height }).getContext("2d");
+      context.drawImage(from, 0, 0);
+      const { data } = context.getImageData(left, top, right - left, bottom - top);
+      let sky = 0;
+      for (let i = 0; i < data.length; i += 4) if (data[i] > 190) sky += 1;
+      return sky / (data.length / 4);
+    });
+    assert.ok(holes < 0.002, `${holes} of the wall are holes`);
+    await shown.close();
+  });
+  await step("the reference system is chosen in the card of the cloud", async () => {
+    const { url: other } = await serve("wall.xyz");
+    const shown = await open(browser, other);
+    await ready(shown);
+    await shown.click("#crs");
+    assert.match(await text(shown), /Reference system\s*no reference system[\s\S]*Size\s*19\.8 m/);
+    await shown.fill("#system-typed", "EPSG:1");
+    await shown.click("#system button");
+    await shown.waitForFunction(() => /EPSG:1/.test(document.getElementById("message").innerText));
+    await shown.fill("#system-typed", "EPSG:28992");
+    await shown.click("#system button");
+    await shown.waitForFunction(() => window.belvedere?.reading?.crs === "EPSG:28992");
+    await ready(shown);
+    await shown.click("#tools [data-tool=shadow]");
+    await answered(shown);
+    assert.match(await text(shown), /belvedere shadow wall\.xyz --crs EPSG:28992/);
     await shown.close();
   });
   await step("a bad file is in words", async () => {

@@ -7,7 +7,7 @@ use crate::scene::{PageScene, ShownCloud};
 use crate::scene_text::{SceneText, typed};
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use belvedere::apps::ask::{self, HowSure, Places, ShadowQuestion, SunPlace, ThroughTrees, UNPROVEN};
+use belvedere::apps::ask::{self, HowSure, Places, ShadowQuestion, SunPlace, ThroughTrees, UNPROVEN, remarks_on_model};
 use belvedere::apps::eyes::fault_of;
 use belvedere::apps::sun::{Date, Refraction, Zone, sun_position_with};
 use belvedere::apps::targets::{Targets, set_on_ground};
@@ -35,6 +35,8 @@ pub struct ExportParams {
     pub day: Option<(Date, Zone)>,
     /// Eyes whose views are in the file, in the coordinates of the cloud's file; 1.7 m above the ground where z is NaN.
     pub viewpoints: Vec<[f64; 3]>,
+    /// Remarks on the files and the scene, shown beside every answer.
+    pub remarks: Vec<Value>,
 }
 
 /// Counts of the content of a file.
@@ -62,6 +64,9 @@ pub fn export(
     control: &Control<'_>,
 ) -> Result<(String, ExportReport)> {
     let chunks = Chunks::new(cloud).sample(MAX_POINTS);
+    let mut remarks = params.remarks.clone();
+    // remarks are maps of texts and numbers, which JSON holds
+    remarks.extend(remarks_on_model(&model).iter().filter_map(|remark| serde_json::to_value(remark).ok()));
     let shown = Arc::new(ShownCloud::of(Arc::clone(cloud), chunks));
     let scene = PageScene::new(model, Arc::clone(&shown));
     let mut sent = PointCloud::in_frame(scene.model().frame().clone());
@@ -81,7 +86,7 @@ pub fn export(
     let mut description = shown.description.clone();
     description["point_count"] = points.into();
     let data = json!({
-        "state": { "title": params.title, "stage": "", "total": 0, "done": 0, "failure": null, "shown": description, "scene": scene.describe() },
+        "state": { "title": params.title, "stage": "", "total": 0, "done": 0, "failure": null, "remarks": remarks, "shown": description, "scene": scene.describe() },
         "date": params.day.as_ref().map(|(date, _)| date.to_string()),
         "zone": params.day.as_ref().map(|(_, zone)| zone.name()),
         "points": of_chunks(&|number| shown.chunks.points(number, cloud)),

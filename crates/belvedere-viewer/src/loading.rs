@@ -37,7 +37,7 @@ pub(crate) struct LoadingState {
     /// Remarks on the files and the scene, shown beside every answer.
     pub(crate) remarks: Vec<Value>,
     pub(crate) failure: Option<String>,
-    /// Up axis and unit of the cloud, if the page may choose others.
+    /// Up axis, unit and reference system of the cloud, if the page may choose others.
     pub(crate) reading: Option<ReadingChoice>,
     /// A choice of the page that is not read yet.
     requested: Option<ReadingChoice>,
@@ -109,13 +109,13 @@ impl Loading {
         self.state().reading = Some(reading);
     }
 
-    /// Forgets what there is, for a cloud that is to be read in another way; `false` where that cannot be.
-    pub(crate) fn read_again(&self, choice: ReadingChoice) -> bool {
+    /// Forgets all data, for a cloud to be read in another way. Returns false where that is not offered.
+    pub fn read_again(&self, choice: ReadingChoice) -> bool {
         let mut state = self.state();
         if state.reading.is_none() {
             return false;
         }
-        *state = LoadingState { reading: Some(choice), requested: Some(choice), ..LoadingState::default() };
+        *state = LoadingState { reading: Some(choice.clone()), requested: Some(choice), ..LoadingState::default() };
         true
     }
 

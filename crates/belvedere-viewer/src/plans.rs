@@ -2,7 +2,7 @@
 
 use crate::replies::Refusal;
 use crate::scene::PageScene;
-use crate::scene_text::SceneText;
+use crate::scene_text::{SceneText, named_for_maps};
 use crate::shell_words::quoted;
 use belvedere::control::Control;
 use belvedere::io::{Source, read_mesh_in};
@@ -231,11 +231,9 @@ fn geojson(areas: &[Vec<[f64; 2]>], frame: &Frame) -> String {
         let ring: Vec<&[f64; 2]> = corners.iter().chain(corners.first()).collect();
         json!({ "type": "Feature", "properties": {}, "geometry": { "type": "Polygon", "coordinates": [ring] } })
     };
-    let mut file = json!({ "type": "FeatureCollection", "features": areas.iter().map(feature).collect::<Vec<_>>() });
-    if let Some(code) = frame.crs.epsg {
-        file["crs"] = json!({ "type": "name", "properties": { "name": format!("urn:ogc:def:crs:EPSG::{code}") } });
-    }
-    file.to_string()
+    let crs = json!({ "type": "name", "properties": { "name": named_for_maps(&frame.crs) } });
+    let features = areas.iter().map(feature).collect::<Vec<_>>();
+    json!({ "type": "FeatureCollection", "crs": crs, "features": features }).to_string()
 }
 
 /// Buildings as an OBJ file: floor, roof and walls.

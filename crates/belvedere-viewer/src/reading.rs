@@ -1,17 +1,19 @@
-//! Choice of the up axis and the unit of a cloud that does not name them, made on the page.
+//! Choice of the up axis, the reference system and the unit of a cloud, made on the page.
 
 use crate::shell_words::quoted;
 use serde::{Deserialize, Serialize};
 
-/// The choice for files that name neither. By default z is up, and the unit is that of the files, or metres.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+/// The choice for files that name them not or wrongly. By default z is up, and all else is that of the files.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
 pub struct ReadingChoice {
     /// The axis that is up.
     pub up: UpAxisChoice,
-    /// The unit of all three axes of files that name none.
+    /// The unit of all three axes of files that name none; without effect beside a reference system.
     pub unit: Option<LengthUnit>,
+    /// The reference system, such as `EPSG:7415`.
+    pub crs: Option<String>,
 }
 
 /// An axis that may be up.
@@ -52,9 +54,13 @@ impl LengthUnit {
 }
 
 impl ReadingChoice {
-    /// The local reference system that has nothing but the unit; `None` where none was chosen.
+    /// The reference system: the chosen one, or a local one that has nothing but the unit. `None` where neither was
+    /// chosen.
     #[must_use]
     pub fn crs(&self) -> Option<String> {
+        if self.crs.is_some() {
+            return self.crs.clone();
+        }
         let (name, metres) = self.unit?.in_metres();
         Some(format!("LOCAL_CS[\"site\",UNIT[\"{name}\",{metres}]]"))
     }
@@ -79,6 +85,8 @@ mod tests {
             let crs = Crs::parse(&choice.crs().unwrap()).unwrap();
             assert_eq!(crs.metres_per_unit_xyz(), [metres; 3], "{unit}");
         }
+        let placed: ReadingChoice = serde_json::from_str(r#"{"unit":"foot","crs":"EPSG:7415"}"#).unwrap();
+        assert_eq!(placed.flags(), " --crs EPSG:7415");
         let turned: ReadingChoice = serde_json::from_str(r#"{"up":"y"}"#).unwrap();
         assert_eq!((turned.flags(), ReadingChoice::default().flags()), (" --up y".to_owned(), String::new()));
     }

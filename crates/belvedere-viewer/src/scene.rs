@@ -2,6 +2,7 @@
 
 use crate::chunks::Chunks;
 use crate::roof_planes::RoofPlanes;
+use crate::scene_text::named_for_maps;
 use crate::target_points::{SAMPLE, TargetPoints};
 use belvedere::apps::ask::scene::KnownGround;
 use belvedere::apps::ask::{self, GridCells, North, SunPlace};
@@ -87,7 +88,7 @@ impl ShownCloud {
             "origin": frame.origin,
             "metres_per_unit": frame.crs.metres_per_unit_xyz(),
             "crs": frame.crs.describe(),
-            "crs_epsg": frame.crs.epsg,
+            "crs_name": named_for_maps(&frame.crs),
             "tells_unit": frame.crs.kind != CrsKind::Unknown,
             "low": bounds.low,
             "high": bounds.high,

@@ -2,6 +2,7 @@
 
 use crate::reading::ReadingChoice;
 use belvedere::apps::ask::{HowSure, ThroughTrees};
+use belvedere::crs::Crs;
 
 /// The scene as it is typed on the command line.
 #[derive(Clone, Debug, Default)]
@@ -14,7 +15,7 @@ pub struct SceneText {
 
 impl SceneText {
     /// This where somebody chose how the cloud is read.
-    pub(crate) fn read_as(&self, choice: ReadingChoice) -> Self {
+    pub(crate) fn read_as(&self, choice: &ReadingChoice) -> Self {
         Self { input: format!("{}{}", self.input, choice.flags()), ..self.clone() }
     }
 
@@ -42,6 +43,15 @@ impl SceneText {
     pub(crate) fn seen_points(&self, eye: &[f64], how_sure: HowSure) -> String {
         let sure = sure_in_words(how_sure);
         self.command_on_ground("viewshed", &format!("--observer {}{sure} -o seen.laz", typed(eye)))
+    }
+}
+
+/// Returns the name of a reference system in GeoJSON of 2008, as GDAL and QGIS read it: the code, else the well-known
+/// text. Without a name they would take coordinates for longitude and latitude.
+pub(crate) fn named_for_maps(crs: &Crs) -> String {
+    match crs.epsg {
+        Some(code) => format!("urn:ogc:def:crs:EPSG::{code}"),
+        None => crs.definition().unwrap_or_else(|| "LOCAL_CS[\"site\",UNIT[\"metre\",1]]".to_owned()),
     }
 }
 

@@ -8,6 +8,7 @@ use crate::reading::ReadingChoice;
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::SceneText;
 use belvedere::control::Control;
+use belvedere::crs::Crs;
 use belvedere::io::{Output, write_kept_model};
 use belvedere::model::DerivedParts;
 use serde_json::json;
@@ -96,7 +97,7 @@ impl Session {
     pub fn ask(&self, path: &str, body: &[u8], control: &Control<'_>) -> Result<Vec<u8>, Refusal> {
         let now = self.loading.now();
         let scene = now.scene.ok_or(Refusal::NotReady)?;
-        let text = self.text.read_as(now.reading.unwrap_or_default());
+        let text = self.text.read_as(&now.reading.unwrap_or_default());
         let (kind, rest) = path.split_once('/').unwrap_or((path, ""));
         let reply = match kind {
             "ask" => {
@@ -121,6 +122,8 @@ impl Session {
             "reading" => {
                 let refused = |error: serde_json::Error| Refusal::Unanswerable(error.to_string());
                 let choice: ReadingChoice = serde_json::from_slice(body).map_err(refused)?;
+                // one that cannot be used would end in a cloud that is not shown
+                choice.crs().map(|crs| Crs::parse(&crs)).transpose()?;
                 if !self.loading.read_again(choice) {
                     return Err(NO_SUCH_QUESTION);
                 }

@@ -294,13 +294,13 @@ function tilesOf(url) {
   if (call("tiles", JSON.stringify({ name: url, id: 0, size: source.size })) !== 0) throw new Error(replied());
   postMessage({ tiles: JSON.parse(replied()) });
 }
-async function open({ files: chosen, crs = null, reading = {}, window = null, max_points: maxPoints }) {
+async function open({ files: chosen, reading = {}, window = null, max_points: maxPoints }) {
   const opened = chosen.map(({ name, file, url }, id) => {
     const source = file ? new LocalFile(file) : new WebFile(url);
     files.set(id, source);
     return { name, id, size: source.size };
   });
-  const request = { files: opened, crs, reading, window, max_points: maxPoints };
+  const request = { files: opened, reading, window, max_points: maxPoints };
   call("announced", JSON.stringify(opened));
   const announced = JSON.parse(replied());
   if (!window && announced?.points > request.max_points) {

@@ -46,10 +46,7 @@ pub struct OpenedFile {
 pub struct OpenRequest {
     /// Clouds, which are read as one, and meshes and results of commands, which are shown beside it.
     pub files: Vec<OpenedFile>,
-    /// Reference system of files that name none, such as `EPSG:7415`.
-    #[serde(default)]
-    pub crs: Option<String>,
-    /// Up axis and unit of files that do not name them.
+    /// Up axis, unit and reference system of files that do not name them.
     #[serde(default)]
     pub reading: ReadingChoice,
     /// Only points between these corners of the map are read: west, south, east, north in the coordinates of the file,
@@ -81,19 +78,17 @@ impl Engine {
         if request.window.is_none() {
             refuse_too_many(Announced::of(&request.files, host).map(|announced| announced.points), request)?;
         }
-        let names = chosen.clouds.iter().map(|file| quoted(&file.name)).collect::<Vec<_>>().join(" ");
-        let crs = request.crs.as_ref().map(|crs| format!(" --crs {}", quoted(crs))).unwrap_or_default();
-        let text = SceneText { input: names + &crs, cloud_beside: None };
+        let input = chosen.clouds.iter().map(|file| quoted(&file.name)).collect::<Vec<_>>().join(" ");
+        let text = SceneText { input, cloud_beside: None };
         let session = Session::new(first.name.clone(), text);
         let sources = chosen.clouds.iter().map(|file| source(file, host));
         let mut options = ReadOptions::new();
-        let mut reading = request.reading;
-        reading.unit = reading.unit.filter(|_| request.crs.is_none());
-        options.crs = request.crs.clone().or_else(|| reading.crs());
+        let reading = &request.reading;
+        options.crs = reading.crs();
         if reading.up == UpAxisChoice::Y {
             options.up = UpAxis::Y;
         }
-        session.loading().offer_reading(reading);
+        session.loading().offer_reading(reading.clone());
         let far = f64::INFINITY;
         // of the axes that files have
         options.within = request.window.map(|[west, south, east, north]| match request.reading.up {
@@ -341,8 +336,8 @@ mod tests {
 
     fn request(max_points: u64) -> OpenRequest {
         let file = OpenedFile { name: "block.xyz".to_owned(), id: 0, size: 0 };
-        let reading = ReadingChoice::default();
-        OpenRequest { files: vec![file], crs: Some("EPSG:7415".to_owned()), reading, window: None, max_points }
+        let reading = serde_json::from_value(json!({ "crs": "EPSG:7415" })).unwrap();
+        OpenRequest { files: vec![file], reading, window: None, max_points }
     }
 
     fn head(reply: &[u8]) -> Value {
@@ -426,7 +421,7 @@ mod tests {
         });
         host.files.push(format!("x y z\n{}", turned.collect::<String>()).into_bytes());
         let state = |engine: &Engine| -> Value { serde_json::from_slice(&engine.session().state()).unwrap() };
-        let request = OpenRequest { crs: None, ..request(10_000) };
+        let request = OpenRequest { reading: ReadingChoice::default(), ..request(10_000) };
         let mut engine = Engine::open(&request, &host).unwrap();
         engine.build(&host).unwrap();
         let said = state(&engine);

@@ -21,6 +21,7 @@ use belvedere_viewer::{
     ExportParams, Loading, PageServer, PointsOf, ReadingChoice, SceneText, UpAxisChoice, ViewerParams, are_results,
     export, quoted,
 };
+use serde_json::Value;
 use std::borrow::Cow;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -63,13 +64,19 @@ pub(crate) fn run(arguments: &ViewPage, global: &Global) -> Result<Summary> {
     let mut run = CommandContext::watched(global, loading.clone());
     show(&arguments.scene, &files, &loading, &mut run, global)?;
     note("ready; Ctrl-C ends it");
+    let mut before = ReadingChoice::default();
     while !interrupt::is_requested() {
         std::thread::sleep(POLL);
         if let Some(choice) = loading.take_requested_reading() {
             let mut scene = arguments.scene.clone();
             scene.input.up = if choice.up == UpAxisChoice::Y { UpChoice::Y } else { UpChoice::Z };
             scene.input.crs = choice.crs().or(scene.input.crs);
-            show(&scene, &files, &loading, &mut CommandContext::watched(global, loading.clone()), global)?;
+            match show(&scene, &files, &loading, &mut CommandContext::watched(global, loading.clone()), global) {
+                Ok(()) => before = choice,
+                Err(error) if choice == before => return Err(error),
+                // the page says why, and shows the cloud as before when it is loaded again
+                Err(_) => _ = loading.read_again(before.clone()),
+            }
         }
     }
     drop(viewer);
@@ -190,6 +197,7 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
         title: title(&arguments.scene.input.clouds),
         scene: SceneText { input: files.typed(Folders::Hidden), cloud_beside: files.cloud_beside(Folders::Hidden) },
         day,
+        remarks: without_folders(run.summary.remarks_so_far(), &arguments.scene.input.clouds),
         viewpoints: arguments.observer.iter().map(|&MapPosition([x, y], z)| [x, y, z.unwrap_or(f64::NAN)]).collect(),
     };
     let (page, report) = run.stage("making the page", 0, |control| export(&cloud, model, &params, control))?;
@@ -201,6 +209,19 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
         .add("written", output.display().to_string())
         .headline("a page with <points> points, <suns> suns and <viewpoints> viewpoints");
     Ok(run.finish())
+}
+
+/// Returns remarks in which files have no folders: a page that is sent says nothing of the disk of its sender.
+fn without_folders(remarks: &[Value], files: &[PathBuf]) -> Vec<Value> {
+    let folders = files.iter().filter_map(|path| path.parent()).filter(|folder| !folder.as_os_str().is_empty());
+    let folders: Vec<String> = folders.map(|folder| folder.join("").display().to_string()).collect();
+    let mut remarks = remarks.to_vec();
+    for text in remarks.iter_mut().filter_map(|remark| remark.get_mut("text")) {
+        if let Value::String(text) = text {
+            *text = folders.iter().fold(std::mem::take(text), |text, folder| text.replace(folder, ""));
+        }
+    }
+    remarks
 }
 
 /// Folders of files on command lines.

@@ -138,7 +138,7 @@ fn of_shapefile(source: &Source<'_>) -> Result<RawFeatures> {
 /// The system of a code, or of well-known text.
 #[cfg(feature = "gpkg")]
 fn system_of_text(text: &str, path: &Path) -> Result<Crs> {
-    system_of_name(text).or_else(|| Crs::parse(text).ok()).ok_or_else(|| Error::UnusableCrs {
+    system_of_name(text).ok_or_else(|| Error::UnusableCrs {
         path: path.to_owned(),
         what: format!("its reference system is unknown; {OTHER_ADVICE}"),
     })
@@ -279,7 +279,7 @@ fn position(numbers: &Position, path: &Path) -> Result<[f64; 3]> {
 }
 
 /// The system of a name such as `urn:ogc:def:crs:EPSG::4258`, `EPSG:28992`, `urn:ogc:def:crs:OGC:1.3:CRS84` or the
-/// address `http://www.opengis.net/def/crs/EPSG/0/4258`. Longitude comes first whatever the authority says, as all
+/// address `http://www.opengis.net/def/crs/EPSG/0/4258`, or of well-known text. Longitude comes first whatever the authority says, as all
 /// programs write it.
 fn system_of_name(name: &str) -> Option<Crs> {
     let code = name.trim().rsplit([':', '/', '#']).next().unwrap_or(name);
@@ -287,7 +287,7 @@ fn system_of_name(name: &str) -> Option<Crs> {
         "CRS84" | "CRS84H" | "84" => Some(Crs::wgs_84()),
         "CRS83" | "83" => Crs::from_epsg(4269),
         "CRS27" | "27" => Crs::from_epsg(4267),
-        _ => Crs::parse(&format!("EPSG:{code}")).ok(),
+        _ => Crs::parse(&format!("EPSG:{code}")).or_else(|_| Crs::parse(name)).ok(),
     }
 }
 

@@ -20,7 +20,7 @@ export const result = (number) => engine.result(number);
 
 // Asks a question of the scene, or of that with a plan: named values, and a byte for each of many places as `body`.
 export const ask = (question, values, signal, plan = null) => engine.ask(`${plan === null ? "" : `plans/${plan}/`}ask/${question}`, values, signal);
-// Reads the cloud again: `{ up, unit }`, where it does not say these itself.
+// Reads the cloud again: `{ up, unit, crs }`, where it does not say these itself.
 export const readAgain = (choice) => engine.readAgain(choice);
 // Hands over a mesh file for plans.
 export const loadMesh = (file) => engine.loadMesh(file);

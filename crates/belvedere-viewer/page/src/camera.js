@@ -4,6 +4,10 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 const EYE = 1.7;
 const STEP = 4;
+const RADIAN = Math.PI / 180;
+// Ways to look at a whole scene, from the south and from above: the first one unless another fills more of the picture.
+const WAYS = [35, 50].flatMap((up) => [25, -25, 50, -50, 75, -75].map((aside) => [-Math.sin(aside * RADIAN) * Math.cos(up * RADIAN), -Math.cos(aside * RADIAN) * Math.cos(up * RADIAN), Math.sin(up * RADIAN)]));
+const BETTER = 1.05;
 
 export class Mover {
   constructor(canvas, changed) {
@@ -15,7 +19,7 @@ export class Mover {
     this.changed = changed;
     this.kind = "orbit";
     this.keys = new Set();
-    this.groundAt = () => undefined;
+    this.groundAt = () => null;
     let last = null;
     canvas.addEventListener("pointermove", (event) => {
       if (this.kind === "orbit" || !event.isPrimary || !(event.buttons & 1)) { last = null; return; }
@@ -32,18 +36,37 @@ export class Mover {
     const high = [0, 1, 2].map((axis) => boxes.reduce((v, box) => Math.max(v, box[1][axis]), -Infinity));
     const size = Math.hypot(...low.map((v, i) => high[i] - v)) || 10;
     this.size = size;
-    this.camera.position.set(...(flat ? [0, -0.001, 1] : [-0.4, -0.62, 0.56]));
-    this.camera.lookAt(0, 0, 0);
+    const corners = boxes.flatMap((box) => [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => [0, 1, 2].map((axis) => box[(corner >> axis) & 1][axis])));
     const slope = Math.tan((this.camera.fov * Math.PI) / 360);
-    const axes = [0, 1, 2].map((axis) => new Vector3().setComponent(axis, 1).applyQuaternion(this.camera.quaternion));
-    const corners = boxes.flatMap((box) => [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => new Vector3(...[0, 1, 2].map((axis) => box[(corner >> axis) & 1][axis]))));
-    // along right, up and back of the camera: the part of the picture is a pyramid whose apex, the camera, goes as near
-    // as no corner is outside of one of its four sides
-    const seen = corners.map((corner) => axes.map((axis) => corner.dot(axis)));
     const sides = [[left * slope * this.camera.aspect, right * slope * this.camera.aspect], [bottom * slope, top * slope]];
-    const bounds = sides.map(([from, to], axis) => [Math.max(...seen.map((v) => v[axis] + to * v[2])), Math.min(...seen.map((v) => v[axis] + from * v[2]))]);
-    const back = Math.max(...sides.map(([from, to], axis) => (bounds[axis][0] - bounds[axis][1]) / (to - from)), Math.max(...seen.map((v) => v[2])) + 0.05 * size);
-    const place = sides.map(([from, to], axis) => (bounds[axis][0] - to * back + bounds[axis][1] - from * back) / 2);
+    const from = (way) => {
+      this.camera.position.set(...way);
+      this.camera.lookAt(0, 0, 0);
+      const axes = [0, 1, 2].map((axis) => new Vector3().setComponent(axis, 1).applyQuaternion(this.camera.quaternion));
+      // along right, up and back of the camera: the part of the picture is a pyramid whose apex, the camera, goes as near
+      // as no corner is outside of one of its four sides
+      const bounds = [-Infinity, Infinity, -Infinity, Infinity];
+      let nearest = -Infinity;
+      const seen = corners.map(([x, y, z]) => axes.map((axis) => x * axis.x + y * axis.y + z * axis.z));
+      for (const v of seen) {
+        sides.forEach(([least, most], axis) => {
+          bounds[2 * axis] = Math.max(bounds[2 * axis], v[axis] + most * v[2]);
+          bounds[2 * axis + 1] = Math.min(bounds[2 * axis + 1], v[axis] + least * v[2]);
+        });
+        nearest = Math.max(nearest, v[2]);
+      }
+      const back = Math.max(...sides.map(([least, most], axis) => (bounds[2 * axis] - bounds[2 * axis + 1]) / (most - least)), nearest + 0.05 * size);
+      const place = sides.map(([least, most], axis) => (bounds[2 * axis] - most * back + bounds[2 * axis + 1] - least * back) / 2);
+      const filled = sides.map(([least, most], axis) => {
+        const shown = seen.map((v) => (v[axis] - place[axis]) / (back - v[2]));
+        return (shown.reduce((a, b) => Math.max(a, b)) - shown.reduce((a, b) => Math.min(a, b))) / (most - least);
+      });
+      return { way, axes, back, place, filled: filled[0] * filled[1] };
+    };
+    const ways = flat ? [[0, -0.001, 1]] : WAYS;
+    const { way, axes, back, place } = ways.map(from).reduce((best, one) => (one.filled > BETTER * best.filled ? one : best));
+    this.camera.position.set(...way);
+    this.camera.lookAt(0, 0, 0);
     this.camera.position.set(0, 0, 0).addScaledVector(axes[0], place[0]).addScaledVector(axes[1], place[1]).addScaledVector(axes[2], back);
     // turning goes around what the middle of the picture shows
     const middle = new Vector3(...low.map((v, i) => (v + high[i]) / 2));
@@ -69,7 +92,8 @@ export class Mover {
     } else if (kind === "walk") {
       // from the whole scene into its middle, which need not be that of the picture
       const { x, y } = this.shown?.from.equals(this.camera.position) ? this.shown.middle : this.orbit.target;
-      this.camera.position.set(x, y, (this.groundAt(x, y) ?? this.orbit.target.z) + EYE);
+      const [east, north, ground] = this.groundAt(x, y) ?? [x, y, this.orbit.target.z];
+      this.camera.position.set(east, north, ground + EYE);
       forward.z = 0;
       this.camera.lookAt(this.camera.position.clone().add(forward.lengthSq() > 1e-6 ? forward : new Vector3(0, 1, 0)));
     }
@@ -111,7 +135,7 @@ export class Mover {
     if (this.kind === "walk") {
       const { x, y, z } = this.camera.position;
       const ground = this.groundAt(x, y);
-      if (ground !== undefined) this.camera.position.z = z + (ground + EYE - z) * 0.5;
+      if (ground) this.camera.position.z = z + (ground[2] + EYE - z) * 0.5;
     }
     if (this.kind === "orbit") this.orbit.update();
     this.changed();

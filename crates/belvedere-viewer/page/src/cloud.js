@@ -2,16 +2,19 @@
 import {
   BufferAttribute, BufferGeometry, Color, DataTexture, DoubleSide, Frustum, GLSL3, Matrix4, Mesh, Points, RawShaderMaterial, RGBAFormat, Scene, Sphere, UnsignedByteType, Vector2, Vector3,
 } from "three";
-import { classTable } from "./colors.js";
 import { Screen, target, uniforms } from "./screen.js";
 import { BALL_FRAGMENT, BALL_VERTEX, LINE_FRAGMENT, LINE_VERTEX, MESH_FRAGMENT, MESH_VERTEX, POINT_FRAGMENT, POINT_VERTEX } from "./shaders.js";
 import { measure, unknown } from "./surface.js";
 
+// Classes that people walk on: ground, roads, bridges.
+const GROUND = [2, 11, 17];
 // Value of a point that a plan clears: it is not drawn.
 const CLEARED = 254;
 const integers = (array, size) => Object.assign(new BufferAttribute(array, size), { gpuType: 1013 });
 // A hole of the picture lies so many sizes of a point behind what is around it.
 const GAP = 2;
+// Widest hole between points that is closed, in sizes of a point.
+const WIDEST = 1.6;
 // How far answers of points reach in a layer of them, in sizes of a point.
 const SPREAD = 1.3;
 // Side of the squares of the map that chunks lie in, metres.
@@ -38,9 +41,7 @@ export class Cloud {
     // most points that one frame draws
     this.budget = 1e6;
     this.table = new DataTexture(new Uint8Array(1024), 256, 1, RGBAFormat, UnsignedByteType);
-    const classes = new DataTexture(new Uint8Array(classTable().flatMap((color) => [...color, 255])), 256, 1, RGBAFormat, UnsignedByteType);
-    classes.needsUpdate = true;
-    this.own = uniforms({ table: this.table, classes, tint: 0, mode: 2, layered: 0, heights: new Vector2(), size: 0.3, pixels: 1, far: 1000, most: 40, cleared: CLEARED, light: 1, sun: DAYLIGHT.clone(), cutLow: new Vector3(...ALL.low), cutHigh: new Vector3(...ALL.high) });
+    this.own = uniforms({ table: this.table, mode: 2, layered: 0, heights: new Vector2(), size: 0.3, pixels: 1, far: 1000, most: 40, cleared: CLEARED, light: 1, sun: DAYLIGHT.clone(), cutLow: new Vector3(...ALL.low), cutHigh: new Vector3(...ALL.high) });
     // what lines need to be as wide on every screen
     Object.assign(this, { lineScreen: { value: new Vector2(1, 1) }, lineWidth: { value: LINE } });
     this.target = target();
@@ -146,10 +147,9 @@ export class Cloud {
   }
 
   // Answers of points are drawn as layers, those of cells are some.
-  paint({ mode, table, legend, light = LIGHTS[mode], tint = 0 }, own = this.own) {
+  paint({ mode, table, legend, light = LIGHTS[mode] }, own = this.own) {
     own.layered.value = mode === 4 && legend && own === this.own ? 1 : 0;
     if (own === this.own) this.isOfKinds = Boolean(legend?.keys);
-    own.tint.value = tint;
     table.forEach((color, i) => own.table.value.image.data.set([...color.map(Math.round), 255], 4 * i));
     own.table.value.needsUpdate = true;
     own.mode.value = mode;
@@ -160,7 +160,7 @@ export class Cloud {
   layer(low, step, places, values, size, paint, none = -1) {
     this.clearLayer();
     const table = new DataTexture(new Uint8Array(1024), 256, 1, RGBAFormat, UnsignedByteType);
-    const shared = { ...this.own, ...uniforms({ table, mode: 4, layered: 0, size, cleared: none, light: 0, tint: 0 }) };
+    const shared = { ...this.own, ...uniforms({ table, mode: 4, layered: 0, size, cleared: none, light: 0 }) };
     this.add(low, step, places, values, 0, shared, this.extra);
     this.paint({ ...paint, light: 0 }, shared);
     this.layerOwn = shared;
@@ -269,8 +269,8 @@ export class Cloud {
     renderer.render(this.scene, camera);
     if (isNew) renderer.render(this.extra, camera);
     this.isRough = !this.isQuick && (isMoving || this.left > 0);
-    const layer = own.layered.value ? { table: this.table, reach: SPREAD * own.size.value, pixels: own.pixels.value, kinds: this.isOfKinds } : null;
-    this.screen.show(target, camera, { layer, isRough: this.isRough, theme, gap: GAP * own.size.value, sun: own.sun.value, glow: this.isSunny && own.sun.value.z > 0 ? 1 : 0 });
+    const smooth = { table: this.table, reach: SPREAD * own.size.value, kinds: this.isOfKinds };
+    this.screen.show(target, camera, { smooth, isLayer: own.layered.value === 1, isRough: this.isRough, theme, pixels: own.pixels.value, gap: GAP * own.size.value, widest: WIDEST * own.size.value, sun: own.sun.value, glow: this.isSunny && own.sun.value.z > 0 ? 1 : 0 });
     renderer.autoClear = true;
   }
 
@@ -329,22 +329,39 @@ export class Cloud {
     return best;
   }
 
-  // The lowest point around a place on the map: what a person who walks stands on.
+  // The boxes that points lie in, low and high corner each: an eighth of a chunk long, or those of many chunks.
+  boxes() {
+    const FEW = 40;
+    return this.chunks.flatMap(({ low, step, places, count }) => {
+      const side = this.chunks.length > FEW ? 65536 : 8192;
+      const cells = new Set();
+      for (let i = 0; i < 4 * count; i += 4) cells.add((Math.floor(places[i] / side) * 8 + Math.floor(places[i + 1] / side)) * 8 + Math.floor(places[i + 2] / side));
+      return [...cells].map((cell) => [cell >> 6, (cell >> 3) & 7, cell & 7]).map((cell) => [0, 1].map((end) => low.map((v, k) => v + (cell[k] + end) * side * step[k])));
+    });
+  }
+
+  // A place on the ground near one on the map, on which a person who walks stands: the lowest point within a metre, or
+  // within some more where there is none. Where points are classified as ground, one of them.
   groundAt(x, y) {
-    const REACH = 1;
     // the first points of a chunk are a fair sample of it
     const MOST = 40_000;
-    let lowest;
-    for (const { low, step, places, count } of this.chunks) {
-      const [left, right] = [x - REACH - low[0], x + REACH - low[0]].map((v) => v / step[0]);
-      const [south, north] = [y - REACH - low[1], y + REACH - low[1]].map((v) => v / step[1]);
-      if (right < 0 || left > 65535 || north < 0 || south > 65535) continue;
-      for (let i = 0; i < 4 * Math.min(count, MOST); i += 4) {
-        if (places[i] < left || places[i] > right || places[i + 1] < south || places[i + 1] > north) continue;
-        const z = low[2] + places[i + 2] * step[2];
-        if (!(lowest <= z)) lowest = z;
+    const isGround = ({ places, count }, i) => i < 4 * Math.min(count, MOST) && GROUND.includes(places[i + 3] & 255);
+    this.hasGround ??= this.chunks.some((chunk) => chunk.places.some((_, i) => i % 4 === 0 && isGround(chunk, i)));
+    for (const reach of [1, 3, 9, 27]) {
+      let lowest = null;
+      for (const chunk of this.chunks) {
+        const { low, step, places, count } = chunk;
+        const [left, right] = [x - reach - low[0], x + reach - low[0]].map((v) => v / step[0]);
+        const [south, north] = [y - reach - low[1], y + reach - low[1]].map((v) => v / step[1]);
+        if (right < 0 || left > 65535 || north < 0 || south > 65535) continue;
+        for (let i = 0; i < 4 * Math.min(count, MOST); i += 4) {
+          if (places[i] < left || places[i] > right || places[i + 1] < south || places[i + 1] > north || (this.hasGround && !isGround(chunk, i))) continue;
+          const z = low[2] + places[i + 2] * step[2];
+          if (!lowest || z < lowest[2]) lowest = reach > 1 ? [low[0] + places[i] * step[0], low[1] + places[i + 1] * step[1], z] : [x, y, z];
+        }
       }
+      if (lowest) return lowest;
     }
-    return lowest;
+    return null;
   }
 }

@@ -72,13 +72,13 @@ export const ofAnswers = (counts, title = t`From the clicked place`) => {
   const codes = [1, ...(counts.tells_unproven ? [2] : []), 0];
   return { mode: 4, table: named(names, "#30343a"), legend: { title, keys: keys(names, codes) } };
 };
-export const ofLight = (answer) => ({ mode: 4, table: named(LIGHT, "#777777"), tint: 1, legend: { title: t`Sun`, keys: keys(LIGHT, [1, ...(answer?.tells_unproven ? [2] : []), 0]) } });
+export const ofLight = (answer) => ({ mode: 4, table: named(LIGHT, "#777777"), legend: { title: t`Sun`, keys: keys(LIGHT, [1, ...(answer?.tells_unproven ? [2] : []), 0]) } });
 const SURE = ["#33406f", "#8d93ad", "#efece4", "#f7cf74", "#ffb000"].map(rgb);
 // Probabilities, of which bytes up to 200 tell: what is not known pales.
 export const ofProbability = (title, ends) => {
   const table = ramp(SURE);
   const of = (i) => (i <= 200 ? table[Math.round((i / 200) * 255)] : rgb("#777777"));
-  return { mode: 4, table: table.map((_, i) => of(i)), tint: 0.6, legend: { title, gradient: gradient(SURE), ends } };
+  return { mode: 4, table: table.map((_, i) => of(i)), legend: { title, gradient: gradient(SURE), ends } };
 };
 export const ofHours = (low, high) => ({
   mode: 4, table: ramp(SUN), legend: { title: t`Hours of sun on the day`, gradient: gradient(SUN), ends: [low, high].map((v) => `${fixed(v, 1)} h`) },

@@ -19,7 +19,7 @@ async function load(shown) {
   const { scene } = page;
   showAll();
   cloud.own.size.value = Math.min(Math.max(scene.spacing * 1.7, 0.02), 5);
-  cloud.own.most.value = 120 * renderer.getPixelRatio();
+  cloud.own.most.value = 180 * renderer.getPixelRatio();
   cloud.own.heights.value.set(scene.low[2], scene.high[2]);
   let next = 0;
   const one = async () => {
@@ -35,6 +35,7 @@ async function load(shown) {
   await Promise.all([one(), one(), one()]);
   await cloud.measure(scene.spacing);
   scaleHeights();
+  if (!page.isMoved) showAll();
   page.isLoaded = true;
   drawNext();
 }

@@ -73,7 +73,7 @@ function listen() {
   $("top").onclick = () => { $("motion").value = "orbit"; showAll(true); showSteps(); };
   $("theme").onclick = () => theme(root.dataset.theme === "dark" ? "light" : "dark");
   $("picture").onclick = async () => save(`${page.scene.title.replace(/\..*$/, "")}.png`, await snapshot());
-  for (const { name } of ASIDES) $(name).onclick = () => page.choose(page.tool.name === name ? TOOLS[0].name : name);
+  for (const { name } of ASIDES) $(name).onclick = () => page.scene && page.choose(page.tool.name === name ? TOOLS[0].name : name);
   $("balls").onclick = toggleBalls;
   $("outlines").onclick = toggleOutlines;
   $("meshes").onclick = () => {

@@ -8,7 +8,7 @@ import { measurePanel } from "./measure.js";
 import { hint, lost, report } from "./messages.js";
 import { finish, isChange, outline, panel, planInUse } from "./plan.js";
 import { setColor } from "./paint.js";
-import { listenToReading, readingChoices } from "./reading.js";
+import { cloudPanel, listenToReading, readingChoices } from "./reading.js";
 import { csv, diagram, geojson, picture, save } from "./save.js";
 import { $, canvas, page, toolOf, TOOLS } from "./state.js";
 import { changed } from "./change.js";
@@ -45,6 +45,7 @@ export function choose(tool) {
   if (tool.name === "plan") panel();
   else if (tool.name === "measure") measurePanel();
   else if (tool.name === "cut") cutPanel();
+  else if (tool.name === "crs") cloudPanel();
   else if (tool.places === 0) ask();
   // where the names of the questions are short, nothing else says what to do
   else if (tool.height || (tool.name !== "look" && !$("tools").querySelector("p").offsetHeight)) card(`<p class="note">${escape(tool.hint)}</p>`);

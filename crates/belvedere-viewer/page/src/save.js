@@ -17,7 +17,7 @@ export const csv = (rows) => rows.map((row) => row.map((cell) => {
 // promises another.
 export const geojson = (name, features, scene) => JSON.stringify({
   type: "FeatureCollection", name, coordinate_reference_system: scene.crs,
-  ...(scene.crs_epsg ? { crs: { type: "name", properties: { name: `urn:ogc:def:crs:EPSG::${scene.crs_epsg}` } } } : {}),
+  crs: { type: "name", properties: { name: scene.crs_name } },
   features: features.map(([kind, coordinates, properties]) => ({ type: "Feature", geometry: { type: kind, coordinates }, properties })),
 }, null, 1);
 

@@ -1,10 +1,11 @@
-// From colours and depths of points to the picture: answers become layers, holes between points are closed, edges
-// shaded, the sky painted.
+// From colours and depths of points to the picture: holes between points are closed, what is near is smoothed,
+// answers become layers, edges are shaded, the sky painted.
 import { BufferAttribute, BufferGeometry, Color, GLSL3, Matrix4, Mesh, NearestFilter, OrthographicCamera, RawShaderMaterial, Vector2, Vector3, WebGLRenderTarget } from "three";
-import { FILL, LAYER, SCREEN_VERTEX, SHADE } from "./shaders.js";
+import { FILL, SCREEN_VERTEX, SHADE, SMOOTH } from "./shaders.js";
 
-// Distances to the pixels around one from which holes are closed, wide ones first.
-const REACHES = [3, 2, 1];
+// Distances to the pixels around one from which holes are closed, wide ones first. Those up to the second number are
+// as wide as pixels, whatever lies there.
+const [REACHES, FREE] = [[24, 12, 6, 3, 2, 1], 3];
 // Places of a picture whose answers make that of one, and how many pixels they lie around it at least.
 const [TAPS, LEAST] = [28, 3];
 const SKIES = {
@@ -22,8 +23,8 @@ export class Screen {
       const own = { glslVersion: GLSL3, depthTest: false, depthWrite: false, vertexShader: SCREEN_VERTEX, fragmentShader, uniforms: uniforms({ shown: null, far24: null, far: 1000, ...values }) };
       return new RawShaderMaterial(own);
     };
-    this.layer = pass(LAYER, { table: null, reach: 1, pixels: 1, least: 1, kinds: false, taps: 0 });
-    this.fill = pass(FILL, { gap: 1, reach: 1 });
+    this.smooth = pass(SMOOTH, { table: null, reach: 1, pixels: 1, least: 1, kinds: false, taps: 0 });
+    this.fill = pass(FILL, { gap: 1, widest: 1, pixels: 1, reach: 1, free: 1 });
     this.shade = pass(SHADE, {
       texel: new Vector2(), slopes: new Vector2(), zenith: new Color(), horizon: new Color(), below: new Color(), sun: new Vector3(), turned: new Matrix4(), strength: 8, ratio: 1, glow: 0, rings: 2,
     });
@@ -46,22 +47,22 @@ export class Screen {
     return to;
   }
 
-  // Shows what a target holds under the sky of a theme, answers as a layer if there are any. What lies `gap` metres
-  // behind its surroundings is a hole; a rough picture keeps its holes.
-  show(from, camera, { theme, gap, sun, glow, isRough, layer }) {
+  // Shows what a target holds under the sky of a theme, smooth, and answers as a layer if there are any. What lies `gap`
+  // metres behind its surroundings is a hole; a rough picture is neither smooth nor without holes.
+  show(from, camera, { theme, gap, widest, pixels, sun, glow, isRough, smooth, isLayer }) {
     const { shade, fill } = this;
     const ratio = this.renderer.getPixelRatio();
-    fill.uniforms.gap.value = gap;
+    for (const [name, value] of Object.entries({ gap, widest, pixels, free: FREE * ratio })) fill.uniforms[name].value = value;
     fill.uniforms.far.value = shade.uniforms.far.value = camera.far;
     let last = from;
-    if (layer) {
-      for (const [name, value] of Object.entries({ ...layer, far: camera.far, least: LEAST * ratio, taps: isRough ? 0 : TAPS })) this.layer.uniforms[name].value = value;
-      last = this.pass(this.layer, last, this.filled[1]);
-    }
     (isRough ? [] : REACHES).forEach((reach, i) => {
       fill.uniforms.reach.value = Math.max(Math.round(reach * ratio), 1);
       last = this.pass(fill, last, this.filled[i % 2]);
     });
+    if (isLayer || !isRough) {
+      for (const [name, value] of Object.entries({ ...smooth, pixels, far: camera.far, least: LEAST * ratio, taps: isRough ? 0 : TAPS })) this.smooth.uniforms[name].value = value;
+      last = this.pass(this.smooth, last, this.filled[last === this.filled[0] ? 1 : 0]);
+    }
     for (const [name, color] of Object.entries(SKIES[theme])) shade.uniforms[name].value.setStyle(color, "");
     const slope = Math.tan((camera.fov * Math.PI) / 360);
     shade.uniforms.slopes.value.set(slope * camera.aspect, slope);

@@ -5,8 +5,11 @@ vec4 packed(float d) { float v = clamp(d, 0.0, 0.9999999) * 16777215.0; float h 
   return vec4(h, m, v - h * 65536.0 - m * 256.0, 255.0) / 255.0; }`;
 
 // Discs lie in the surface at their point. It faces who sees it, is brighter the more it faces the sky and the sun, and
-// so walls, roofs and ground differ.
+// so walls, roofs and ground differ. Points of no surface, such as leaves, are small balls.
+// Size of points of no surface, in that of others.
+const LOOSE = 0.6;
 export const POINT_VERTEX = `precision highp float; precision highp int;
+#define LOOSE ${LOOSE}
 in uvec4 place; in uint value; in uvec4 shape;
 #ifdef COLORED
 in uint rgb565;
@@ -14,17 +17,17 @@ in uint rgb565;
 const uint rgb565 = 0u;
 #endif
 uniform mat4 modelViewMatrix, projectionMatrix; uniform vec3 low, step3, sun, cutLow, cutHigh; uniform vec2 heights; uniform int mode, cleared, layered; uniform float size, pixels, most, light;
-uniform sampler2D table, classes; uniform float tint; flat out vec4 color; flat out vec2 slope; flat out vec2 range;
+uniform sampler2D table; flat out vec4 color; flat out vec2 slope; flat out vec3 range;
 void main() {
   vec3 local = low + vec3(place.xyz) * step3;
   vec4 view = modelViewMatrix * vec4(local, 1.0);
   bool isCut = any(lessThan(local, cutLow)) || any(greaterThan(local, cutHigh));
   gl_Position = int(value) == cleared || isCut ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * view;
-  float wide = size * float(shape.x) / 64.0 * pixels / max(-view.z, 0.01);
   bool isSurface = shape.y + shape.z + shape.w > 0u;
-  // single points would stand before all else as large balls
-  gl_PointSize = clamp(wide, 1.6, isSurface ? most : 0.2 * most);
-  range = vec2(-view.z, 0.5 * gl_PointSize * max(-view.z, 0.01) / pixels);
+  float wide = size * float(shape.x) / 64.0 * pixels / max(-view.z, 0.01);
+  // single points near the eye would stand before all else
+  gl_PointSize = isSurface ? clamp(wide, 1.6, most) : clamp(LOOSE * wide, min(max(wide, 1.6), 6.0), 0.1 * most);
+  range = vec3(-view.z, 0.5 * gl_PointSize * max(-view.z, 0.01) / pixels, isSurface ? 0.0 : smoothstep(2.5, 6.0, gl_PointSize));
   slope = vec2(0.0);
   float shine = 0.9;
   if (isSurface) {
@@ -39,18 +42,17 @@ void main() {
   float index = 0.0;
   if (mode == 0) index = float(place.w & 255u); else if (mode == 1) index = float(place.w >> 8u);
   else if (mode == 2) index = clamp((local.z - heights.x) / max(heights.y - heights.x, 0.001), 0.0, 1.0) * 255.0; else index = float(value);
-  // an answer on what is there: roofs, trees and ground stay known
-  vec3 own = mix(vec3(1.0), 0.35 + 0.9 * texture(classes, vec2((float(place.w & 255u) + 0.5) / 256.0, 0.5)).rgb, tint) * mix(1.0, shine, light);
+  float own = mix(1.0, shine, light);
   vec3 said = mode == 3 ? vec3(float(rgb565 >> 11u) / 31.0, float((rgb565 >> 5u) & 63u) / 63.0, float(rgb565 & 31u) / 31.0)
     : texture(table, vec2((index + 0.5) / 256.0, 0.5)).rgb;
-  // answers become layers, for which what is there and the answer stay apart: half of one, the place of the other in
-  // the table
-  color = layered == 1 && value < 255u ? vec4(0.5 * own, index / 255.0) : vec4(said * own, 1.0);
+  // answers become layers, for which light and answer stay apart: half of one, the place of the other in the table
+  color = layered == 1 && value < 255u ? vec4(vec3(0.5 * own), index / 255.0) : vec4(said * own, 1.0);
 }`;
-export const POINT_FRAGMENT = `precision highp float; flat in vec4 color; flat in vec2 slope; flat in vec2 range; uniform mat4 projectionMatrix; uniform float far;
+export const POINT_FRAGMENT = `precision highp float; flat in vec4 color; flat in vec2 slope; flat in vec3 range; uniform mat4 projectionMatrix; uniform float far;
 layout(location = 0) out vec4 shown; layout(location = 1) out vec4 far24;${PACK}
 void main() { vec2 o = gl_PointCoord * 2.0 - 1.0; o.y = -o.y; float rise = dot(slope, o); float q = dot(o, o) + rise * rise; if (q > 1.05) discard;
-  float d = range.x + range.y * rise; shown = color; far24 = packed(d / far);
+  float ball = range.z * sqrt(max(1.0 - q, 0.0)), d = range.x + range.y * (rise - 0.7 * ball);
+  shown = vec4(color.rgb * mix(1.0, 0.72 + 0.26 * ball + 0.12 * o.y, range.z), color.a); far24 = packed(d / far);
   // discs that touch part their surface between them
   gl_FragDepth = clamp(0.5 - 0.5 * projectionMatrix[2][2] + 0.5 * projectionMatrix[3][2] / max(d + 0.3 * range.y * q, 1e-4), 0.0, 1.0); }`;
 
@@ -83,40 +85,46 @@ void main() { shown = vec4(tint, 1.0); far24 = packed(-at.z / far); }`;
 
 export const SCREEN_VERTEX = "precision highp float; in vec3 position; out vec2 uv; void main() { uv = position.xy * 0.5 + 0.5; gl_Position = vec4(position.xy, 0.0, 1.0); }";
 
-// Makes layers of answers: of kinds, that of most of what lies within `reach` metres or `least` pixels, nearer places
-// counting more; of measures, the mean. Points alone are steps and spots as wide as they lie apart.
-export const LAYER = `precision highp float; precision highp int; uniform sampler2D shown, far24, table; uniform float far, reach, pixels, least; uniform bool kinds; uniform int taps;
-layout(location = 0) out vec4 color; layout(location = 1) out vec4 depth;
+// Smooths over the places within `reach` metres, nearer ones counting more: colours and depths over a third of it, for
+// points near the eye are large. Answers become layers, over `least` pixels or more: of kinds, that of most places, of
+// measures, the mean. Points alone are steps and spots as wide as they lie apart.
+export const SMOOTH = `precision highp float; precision highp int; uniform sampler2D shown, far24, table; uniform float far, reach, pixels, least; uniform bool kinds; uniform int taps;
+layout(location = 0) out vec4 color; layout(location = 1) out vec4 depth;${PACK}
 float at(vec4 t) { return dot(t.rgb, vec3(65536.0, 256.0, 1.0)) * 255.0 / 16777215.0 * far; }
 vec3 said(float index) { return texture(table, vec2((index * 255.0 + 0.5) / 256.0, 0.5)).rgb; }
 void main() { ivec2 p = ivec2(gl_FragCoord.xy), most = textureSize(far24, 0) - 1; vec4 own = texelFetch(shown, p, 0); depth = texelFetch(far24, p, 0);
-  color = own; if (own.a > 0.998 || depth.a < 0.5) return;
-  float d = at(depth), span = max(reach, least * d / pixels), wide = min(span * pixels / max(d, 0.01), 60.0);
-  vec2 from = vec2(p) - 0.5 * vec2(most); float kind[8] = float[8](0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0); kind[min(int(own.a * 255.0 + 0.5), 7)] = 1.0; vec3 sum = said(own.a); float whole = 1.0;
-  for (int i = 0; i < taps; i++) {
-    float a = float(i) * 2.3999632, r = sqrt((float(i) + 0.5) / float(taps)) * wide; ivec2 q = clamp(p + ivec2(round(r * vec2(cos(a), sin(a)))), ivec2(0), most);
-    vec4 other = texelFetch(shown, q, 0), z = texelFetch(far24, q, 0); if (other.a > 0.998 || z.a < 0.5) continue;
-    float e = at(z); vec3 to = vec3(((vec2(q) - 0.5 * vec2(most)) * e - from * d) / pixels, e - d) / span; float w = exp(-2.0 * dot(to, to));
-    kind[min(int(other.a * 255.0 + 0.5), 7)] += w; sum += w * said(other.a); whole += w; }
+  color = own; if (depth.a < 0.5) return;
+  bool isAnswer = own.a < 0.998;
+  float d = at(depth), span = isAnswer ? max(reach, least * d / pixels) : 0.5 * reach, wide = min(span * pixels / max(d, 0.01), 60.0);
+  if (!isAnswer && wide < 1.5) return;
+  vec2 from = vec2(p) - 0.5 * vec2(most); float kind[8] = float[8](0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0); kind[min(int(own.a * 255.0 + 0.5), 7)] = 1.0;
+  vec3 sum = said(own.a), light = own.rgb; float whole = 1.0, near = 1.0, depths = d;
+  int count = isAnswer ? taps : taps / 2;
+  for (int i = 0; i < count; i++) {
+    float a = float(i) * 2.3999632, r = sqrt((float(i) + 0.5) / float(count)) * wide; ivec2 q = clamp(p + ivec2(round(r * vec2(cos(a), sin(a)))), ivec2(0), most);
+    vec4 other = texelFetch(shown, q, 0), z = texelFetch(far24, q, 0); if ((other.a < 0.998) != isAnswer || z.a < 0.5) continue;
+    float e = at(z); vec3 to = vec3(((vec2(q) - 0.5 * vec2(most)) * e - from * d) / pixels, e - d); float apart = dot(to, to), w = exp(-2.0 * apart / (span * span)), v = exp(-9.0 * apart / (reach * reach));
+    kind[min(int(other.a * 255.0 + 0.5), 7)] += w; sum += w * said(other.a); whole += w; light += v * other.rgb; depths += v * e; near += v; }
+  light /= near; depth = packed(depths / near / far); color = vec4(light, 1.0); if (!isAnswer) return;
   vec3 answer = sum / whole;
   if (kinds) { int first = 0, second = -1; for (int k = 1; k < 8; k++) if (kind[k] > kind[first]) first = k;
     for (int k = 0; k < 8; k++) if (k != first && (second < 0 || kind[k] > kind[second])) second = k;
     // a line of a pixel or two between both
     answer = mix(said(float(second) / 255.0), said(float(first) / 255.0), 0.5 + 0.5 * smoothstep(0.0, 0.2, (kind[first] - kind[second]) / whole)); }
-  color = vec4(2.0 * own.rgb * answer, 1.0); }`;
+  color = vec4(2.0 * light * answer, 1.0); }`;
 
-// Closes holes: where most pixels around one are nearer than it by `gap` metres or more, it takes their mean.
-export const FILL = `precision highp float; precision highp int; uniform sampler2D shown, far24; uniform float far, gap; uniform int reach;
-layout(location = 0) out vec4 color; layout(location = 1) out vec4 depth;${PACK}
+// Closes holes: where most pixels around one are nearer than it by `gap` metres or more, it takes the furthest of them.
+// Of pixels that lie more than `free` from it, those within `widest` metres count.
+export const FILL = `precision highp float; precision highp int; uniform sampler2D shown, far24; uniform float far, gap, widest, pixels; uniform int reach, free;
+layout(location = 0) out vec4 color; layout(location = 1) out vec4 depth;
 float at(ivec2 p) { vec4 t = texelFetch(far24, p, 0); return t.a < 0.5 ? 1e9 : dot(t.rgb, vec3(65536.0, 256.0, 1.0)) * 255.0 / 16777215.0 * far; }
 void main() { ivec2 p = ivec2(gl_FragCoord.xy), most = textureSize(far24, 0) - 1; float own = at(p);
-  float limit = own - gap - 0.004 * min(own, 1e6); vec3 sum = vec3(0.0); float depths = 0.0; int count = 0;
+  float limit = own - gap - 0.004 * min(own, 1e6); float furthest = 0.0; int count = 0; ivec2 taken = p;
   // without any at the corners there are no five
   for (int i = 0; i < 8; i++) { if (i == 4 && count == 0) break;
     ivec2 q = clamp(p + reach * (i < 4 ? ivec2(2 * (i & 1) - 1, (i & 2) - 1) : i < 6 ? ivec2(2 * (i & 1) - 1, 0) : ivec2(0, 2 * (i & 1) - 1)), ivec2(0), most); float d = at(q);
-    if (d < limit) { count++; depths += d; sum += texelFetch(shown, q, 0).rgb; } }
-  bool isHole = count >= 5;
-  color = isHole ? vec4(sum / float(count), 1.0) : texelFetch(shown, p, 0); depth = isHole ? packed(depths / float(count) / far) : texelFetch(far24, p, 0); }`;
+    if (d < limit && (reach <= free || float(reach) * d < widest * pixels)) { count++; if (d > furthest) { furthest = d; taken = q; } } }
+  if (count < 5) taken = p; color = texelFetch(shown, taken, 0); depth = texelFetch(far24, taken, 0); }`;
 
 // Darkens what lies behind its surroundings, softly at two distances (eye-dome lighting), and paints the sky where
 // nothing is.

@@ -80,8 +80,8 @@ function begin(files, whenOpen) {
   $("start").hidden = true;
   $("progress").hidden = false;
   page.failure = null;
-  const reading = { up: $("up-chosen").value || "z", unit: $("unit-chosen").value || null };
-  const options = { max_points: maxPoints(), reading, ...(crs ? { crs } : {}), ...(corners.length ? { window: corners } : {}) };
+  const reading = { up: $("up-chosen").value || "z", unit: $("unit-chosen").value || null, crs: crs || null };
+  const options = { max_points: maxPoints(), reading, ...(corners.length ? { window: corners } : {}) };
   if (files.length === 1 && files[0].url && isCatalogue(files[0].url)) return beginCatalogue(files[0].url, options, whenOpen);
   const openPart = (window) => {
     open(files, { ...options, window }, () => {});
@@ -193,7 +193,7 @@ export function startScreen(whenOpen) {
   $("window-typed").value = words.get("window") ?? "";
   if (words.get("up") === "y") $("up-chosen").value = "y";
   $("unit-chosen").value = words.get("unit") ?? "";
-  const isChosen = $("up-chosen").value || $("unit-chosen").value;
+  const isChosen = $("up-chosen").value || $("unit-chosen").value || $("crs-typed").value;
   if (isChosen && !words.get("open")) {
     $("address").parentElement.open = true;
     hint(t`Choose the files again: they are read as chosen below.`);

@@ -75,11 +75,18 @@ export async function showNow(now = new Date()) {
   const why = isNight ? t`It is ${clockText(clock.minutes)} there now, and the sun is down or near the horizon: this is noon, when it stands highest.` : t`This is now, by the clocks of the place.`;
   time.said = { date: time.date, minutes: time.minutes, zone: time.zone, why };
 }
+// How far the clocks of the zone are ahead of UTC at noon of the day, such as UTC+2.
+page.ahead = () => {
+  const { ahead } = clockOf(page.time.zone, new Date(`${page.time.date}T12:00Z`)) ?? {};
+  if (ahead === undefined) return page.time.zone;
+  const [hours, minutes] = [Math.floor(Math.abs(ahead) / 60), Math.abs(ahead) % 60];
+  return `UTC${ahead < 0 ? "−" : "+"}${hours}${minutes ? `:${String(minutes).padStart(2, "0")}` : ""}`;
+};
 // What is to be said of the time that is shown: why it is this one, and where its zone is from.
 page.ofTime = () => {
   const { date, minutes, zone, said, zoneOf: from } = page.time;
   const isSaid = page.tool.time === "hour" && said && said.date === date && said.minutes === minutes && said.zone === zone;
-  return [...(isSaid ? [said.why] : []), ...(from?.zone === zone ? [t`Times are those of ${zone}: ${word(from.why)}.`] : [])].join(" ");
+  return [...(isSaid ? [said.why] : []), from?.zone === zone ? t`Times are those of ${zone}: ${word(from.why)}.` : t`Times are those of ${zone}.`].join(" ");
 };
 export const again = () => { if (page.last || page.tool.places === 0) page.ask(); };
 export const isPlaying = () => playing !== null;

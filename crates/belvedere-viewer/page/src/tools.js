@@ -10,6 +10,8 @@ const SUN = '<circle cx="12" cy="12" r="4"/><path d="M12 2v3M12 19v3M2 12h3M19 1
 const percent = (part, whole) => `${fixed((100 * part) / Math.max(whole, 1), 1)} %`;
 // A row of the numbers between which the truth lies nine times in ten, where they are known.
 const interval = (ends, shown, unit) => (ends ? [[t`In nine of ten cases`, `${t`${shown(ends[0])} to ${shown(ends[1])}`} ${unit}`]] : []);
+// A time of day, with the zone that it is in.
+const clock = (value, page) => (value === null ? hours(value) : `${hours(value)} (${page.ahead()})`);
 const list = (rows) => `<dl>${rows.map(([name, value]) => `<dt>${escape(name)}</dt><dd>${escape(value)}</dd>`).join("")}</dl>`;
 
 // A first answer is one for a sample: its shares are about right, and its counts are those of the sample times the
@@ -92,7 +94,7 @@ export const TOOLS = [
     ask: ([place], { date, zone, trees }) => ["sun", { place, date, zone, trees }],
     show: (answer, page) => `<p class="verdict">${t`${fixed(answer.sun_hours, 1)} hours of sun`}</p><p class="note">${t`on ${escape(page.time.date)}, of ${fixed(answer.possible_hours, 1)} hours between sunrise and sunset.`}</p>`
       + `<figure>${charts.sunPaths(answer, page.time.date)}<figcaption><i class="swatch" style="background:#f5a300"></i>${t`lit`} <i class="swatch" style="background:#2f3d73;margin-left:10px"></i>${t`in shadow`} <i class="swatch" style="background:#5f6b78;margin-left:10px"></i>${t`horizon; dashed: 21 June, March, December`}</figcaption></figure>`
-      + list([...interval(answer.interval_hours, (v) => fixed(v, 1), "h"), [t`First light`, hours(answer.first_light)], [t`Last light`, hours(answer.last_light)], [t`Longest stretch`, `${fixed(answer.longest, 1)} h`], [t`Share of possible sun`, percent(answer.sun_share ?? 0, 1)]])
+      + list([...interval(answer.interval_hours, (v) => fixed(v, 1), "h"), [t`First light`, clock(answer.first_light, page)], [t`Last light`, clock(answer.last_light, page)], [t`Longest stretch`, `${fixed(answer.longest, 1)} h`], [t`Share of possible sun`, percent(answer.sun_share ?? 0, 1)]])
       + `<h3>${t`Hours of sun on the 21st of each month`}</h3><figure>${charts.months(answer)}</figure>`,
     rows: (answer) => [["hour", "azimuth_deg", "elevation_deg", "lit"], ...answer.path.map((p, i) => [...p, answer.lit[i] ? 1 : 0])],
     properties: (answer) => ({ sun_hours: answer.sun_hours, first_light: answer.first_light, last_light: answer.last_light, possible_hours: answer.possible_hours }),
@@ -124,7 +126,7 @@ export const TOOLS = [
       const { isovist: v } = answer;
       return { html: `<p class="verdict">${t`Sky view factor ${fixed(answer.sky_view_factor, 2)}`}</p><p class="note">${t`1 under a free sky, 0 without any sky.`}</p><figure id="panorama"><figcaption>${t`Panorama from north to north: sky blue, near dark, far light`}</figcaption></figure>`
         + `<figure>${charts.plan(answer)}<figcaption>${t`Plan of the visible space at the height of the eye`}</figcaption></figure>`
-        + list([[t`Sky openness`, fixed(answer.sky_openness, 3)], [t`Visible area in plan`, `${count(Math.round(v.plan_area_m2))} m²`], [t`Visible volume`, `${count(Math.round(v.volume_m3))} m³`], [t`Of it before something`, `${count(Math.round(v.blocked_volume_m3))} m³`], [t`Farthest view in plan`, metres(v.plan_range_max_m, 1)], [t`Nearest obstacle in plan`, metres(v.plan_range_min_m, 1)]]),
+        + list([[t`Sky openness`, fixed(answer.sky_openness, 3)], [t`Visible area in plan`, `${count(Math.round(v.plan_area_m2))} m²`], [t`Visible volume up to obstacles`, `${count(Math.round(v.blocked_volume_m3))} m³`], ...(v.openness > 0 ? [[t`With open directions, up to ${fixed(v.range_max_m, 0)} m`, `${count(Math.round(v.volume_m3))} m³`], [t`Share of open directions`, percent(v.openness, 1)]] : []), [t`Farthest view in plan`, metres(v.plan_range_max_m, 1)], [t`Nearest obstacle in plan`, metres(v.plan_range_min_m, 1)]]),
         after: (card) => card.querySelector("#panorama").prepend(charts.panorama(new Uint8Array(answer.body), answer.panorama)) };
     },
     rows: (answer) => [["measure", "value"], ["sky_view_factor", answer.sky_view_factor], ["sky_openness", answer.sky_openness], ...Object.entries(answer.isovist)],
@@ -184,4 +186,5 @@ export const TOOLS = [
 export const ASIDES = [
   { name: "measure", title: t`Measure`, places: Infinity, hint: t`Click places to measure between them.` },
   { name: "cut", title: t`Show a part`, places: 2, hint: t`Click two corners, or move the heights.` },
+  { name: "crs", title: t`The cloud, and how it is read`, places: 0, hint: "" },
 ];

@@ -105,16 +105,16 @@ function free() {
   return area;
 }
 // Air around the scene, share of the picture.
-const AIR = 0.03;
+const AIR = 0.015;
 // All of the scene where no panel covers it.
 export function showAll(flat = false) {
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
   const [left, top, right, bottom] = free();
   const across = [left, right].map((x) => (2 * x) / width - 1), upright = [bottom, top].map((y) => 1 - (2 * y) / height);
   const inner = [across, upright].flatMap(([from, to]) => { const air = Math.min(AIR * 2, (to - from) / 4); return [from + air, to - air]; });
-  // a tower fills the box of its own square of the map only
-  const squares = (page.scene.chunks ?? []).map(({ low, step }) => [low, low.map((v, i) => v + 65535 * step[i])]);
-  mover.show(squares.length ? squares : [[page.scene.low, page.scene.high]], flat, inner);
+  // a tower fills the boxes of its own place on the map only
+  const boxes = cloud.boxes();
+  mover.show(boxes.length ? boxes : [[page.scene.low, page.scene.high]], flat, inner);
   page.isMoved = false;
 }
 

@@ -120,13 +120,8 @@ fn files_read_through_the_border_are_those_read_without_it() {
     let file = || OpenedFile { name: "floor.xyz".to_owned(), id: 0, size: floor().len() as u64 };
     *FILES.lock().unwrap() = vec![floor(), Vec::new()];
     let host = InMemory(vec![floor()]);
-    let request = OpenRequest {
-        files: vec![file()],
-        crs: None,
-        reading: ReadingChoice::default(),
-        window: None,
-        max_points: 10_000,
-    };
+    let request =
+        OpenRequest { files: vec![file()], reading: ReadingChoice::default(), window: None, max_points: 10_000 };
     let mut twin = Engine::open(&request, &host).unwrap();
     let wanted = json!({ "files": [{ "name": "floor.xyz", "id": 0, "size": floor().len() }], "max_points": 10_000 });
     let state = |bytes: &[u8]| serde_json::from_slice::<serde_json::Value>(bytes).unwrap();

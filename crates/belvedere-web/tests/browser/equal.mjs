@@ -28,7 +28,7 @@ for (const named of clouds) {
   const native = await ofProgram(program, cloud, crs);
   const from = performance.now();
   const own = await moduleOf(engine);
-  const opened = own.json("open", JSON.stringify({ files: [own.add(cloud)], crs, max_points: 1e7 }));
+  const opened = own.json("open", JSON.stringify({ files: [own.add(cloud)], reading: { crs }, max_points: 1e7 }));
   const read = performance.now();
   const state = own.json("build");
   const built = performance.now();

@@ -103,8 +103,8 @@ export const inBrowser = {
   ask: async (path, values, signal) => split(await send(path, JSON.stringify(values), signal)),
   // files of this computer are forgotten with the page, and are chosen again
   readAgain: async (choice) => {
-    const { files: [{ url }], crs, window: corners } = opened;
-    const words = { open: url, crs, window: corners?.join(","), ...choice };
+    const { files: [{ url }], window: corners } = opened;
+    const words = { open: url, window: corners?.join(","), ...choice };
     location.hash = new URLSearchParams(Object.entries(words).filter(([, value]) => value));
     location.reload();
   },
