@@ -7,7 +7,7 @@ use crate::target_points::{SAMPLE, TargetPoints};
 use belvedere::apps::ask::scene::KnownGround;
 use belvedere::apps::ask::{self, GridCells, North, SunPlace};
 use belvedere::apps::eyes::fault_of;
-use belvedere::apps::sun::Site;
+use belvedere::apps::sun::{Site, ZoneOfPlace};
 use belvedere::control::Control;
 use belvedere::crs::CrsKind;
 use belvedere::ground::{Ground, GroundPoints};
@@ -192,6 +192,9 @@ impl PageScene {
     pub(crate) fn describe(&self) -> Value {
         let bounds: Bounds = self.model().bounds();
         let site = self.site().ok();
+        let of_place = site.as_ref().and_then(ZoneOfPlace::of);
+        let zones = of_place.map(|found| [found.zone].into_iter().chain(found.others));
+        let zones: Vec<String> = zones.into_iter().flatten().map(|zone| zone.name().to_owned()).collect();
         json!({
             "ball_count": self.model().balls().len(),
             "low": bounds.low,
@@ -200,6 +203,7 @@ impl PageScene {
             "roof_count": self.model().outlines().planes.len(),
             "has_vegetation": self.model().vegetation().contains(&true),
             "latitude_deg": site.map(|site| site.latitude.to_degrees()),
+            "zones": zones,
             "longitude_deg": site.map(|site| site.longitude.to_degrees()),
             "grid_north_deg": self.grid_north(None).to_degrees(),
         })

@@ -49,7 +49,7 @@ export function startTime() {
   const { longitude_deg: longitude, latitude_deg: latitude } = page.scene;
   const own = Intl.DateTimeFormat().resolvedOptions().timeZone;
   const isKnown = longitude !== null && longitude !== undefined;
-  const { zone, why } = isKnown ? zoneOf(longitude, latitude, own) : { zone: own, why: t`this computer's` };
+  const { zone, why } = isKnown ? zoneOf(page.scene.zones, longitude, latitude, own) : { zone: own, why: t`this computer's` };
   page.time.zone = zone;
   page.time.zoneOf = { zone, why };
   page.time.date ||= clockOf(zone)?.date ?? new Date().toISOString().slice(0, 10);
