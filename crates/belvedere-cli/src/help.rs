@@ -1,7 +1,7 @@
 //! The command line with its long texts, one file for each command.
 
 use crate::arguments::Cli;
-use clap::{Command, CommandFactory};
+use clap::{Arg, Command, CommandFactory};
 
 /// Flags of how balls are built, by their names with underscores. They are also the keys of `--scene-config`.
 pub(crate) const BALL_FLAGS: [&str; 15] = [
@@ -229,17 +229,19 @@ pub(crate) fn command() -> Command {
     });
     let command = command.mut_subcommand("heat", |sub| {
         sub.mut_arg("height", |height| {
-            height.help("Height above the ground or above --surface, in metres [default: 1.1]")
+            with_help(height, "Height above the ground or above --surface, in metres [default: 1.1]")
         })
     });
     let command = command.mut_subcommand("sun-calendar", |sub| {
-        sub.mut_arg("step", |step| step.help("Time between two sun positions in minutes, 1/6 to 60 [default: 2]"))
+        sub.mut_arg("step", |step| with_help(step, "Time between two suns in minutes, 1/6 to 60 [default: 2]"))
     });
     let command = command.mut_subcommand("glare", |sub| {
-        sub.mut_arg("step", |step| step.help("Time between two sun positions in minutes, 1/6 to 60 [default: 1]"))
-            .mut_arg("year", |year| year.help("Year of days that are given without a year; without days, all of it"))
+        sub.mut_arg("step", |step| with_help(step, "Time between two suns in minutes, 1/6 to 60 [default: 1]"))
+            .mut_arg("year", |year| {
+                with_help(year, "Year of days that are given without a year; without days, all of it")
+            })
             .mut_arg("min_elevation", |least| {
-                least.help("Minimum elevation of the sun in degrees; lower suns are ignored [default: 0]")
+                with_help(least, "Minimum elevation of the sun in degrees; lower suns are ignored [default: 0]")
             })
     });
     let template = overview(&command);
@@ -283,6 +285,11 @@ pub(crate) fn examples(text: &str) -> Vec<String> {
     lines.map(|line| line.split("  ").next().unwrap_or(line).trim().to_owned()).collect()
 }
 
+/// Gives an argument that commands share a help of its own, also where the long help is shown.
+fn with_help(argument: Arg, text: &'static str) -> Arg {
+    argument.help(text).long_help(None)
+}
+
 fn described(command: Command, text: &'static str) -> Command {
     let (description, examples) = parts(text);
     let first = first_examples(command.get_name(), examples);
@@ -324,7 +331,7 @@ mod tests {
     fn each_rare_flag_exists() {
         let program = Cli::command();
         let steps = program.get_subcommands().flat_map(|command| command.get_subcommands().chain([command]));
-        let flags: Vec<&str> = steps.flat_map(|step| step.get_arguments().filter_map(clap::Arg::get_long)).collect();
+        let flags: Vec<&str> = steps.flat_map(|step| step.get_arguments().filter_map(Arg::get_long)).collect();
         let rare = RARE_IN.iter().flat_map(|(_, flags)| flags.iter()).chain(RARE);
         rare.for_each(|rare| assert!(flags.contains(rare), "{rare}"));
     }

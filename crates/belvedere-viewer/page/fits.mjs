@@ -33,7 +33,7 @@ export function cutOff() {
   return [...new Set(found)];
 }
 
-// Places that questions are asked about: on the ground in the middle of the scene, and below the ridge of a high roof.
+// Places of the questions: on the ground in the middle of the scene, and below the ridge of a high roof.
 const places = () => {
   const [GROUND, BUILDING] = [2, 6];
   const points = belvedere.cloud.chunks.flatMap(({ low, step, places, count }) => Array.from({ length: count }, (_, i) => [places[4 * i + 3] & 255, ...[0, 1, 2].map((k) => low[k] + step[k] * places[4 * i + k])]));

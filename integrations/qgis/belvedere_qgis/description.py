@@ -130,8 +130,8 @@ class Command:
 
     def sentences(self, summary):
         """What a summary says in sentences, but for those on the command line."""
-        told = (wording.help_text(one, self.labels, TITLES) for one in summary.get("headline", []))
-        return [one for one in told if one]
+        said = (wording.help_text(one, self.labels, TITLES) for one in summary.get("headline", []))
+        return [one for one in said if one]
 
     @property
     def outputs(self):

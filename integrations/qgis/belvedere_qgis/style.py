@@ -91,7 +91,7 @@ FIELDS = {
     ("irradiance", "PLANES"): ("kwh_m2", INFERNO),
     ("shadow", "OUTLINES"): ("caster", CASTERS),
 }
-# Views of points, by the field of their direction: the field, and the angle of view in degrees. Cameras that turn have no heading.
+# Views of points: the field of their direction, and the angle in degrees. Cameras that turn have no heading.
 SECTORS = {"heading": ("heading", 'if("heading" is null, 360, "fov")'), "azimuth": ("azimuth", "90")}
 HEAD = "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n"
 

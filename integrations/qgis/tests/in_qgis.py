@@ -473,8 +473,8 @@ def check_tutorial():
         for algorithm, given in steps:
             status, printed = run(algorithm, **{**given, "OUTPUT": FOLDER / given["OUTPUT"]})
             assert status == 0, printed
-        told = [numbers(re.search(quoted, text)[0]) for text in (page, printed)]
-        assert all(abs(one - other) <= 1 + 0.1 * abs(one) for one, other in zip(*told)), told
+        said = [numbers(re.search(quoted, text)[0]) for text in (page, printed)]
+        assert all(abs(one - other) <= 1 + 0.1 * abs(one) for one, other in zip(*said)), said
 
 
 def numbers(text):

@@ -109,7 +109,7 @@ def test_units_are_in_the_labels(commands):
     assert parameter(commands, "viewshed", "--observer-height").label == "Height of observers above the ground in metres"
     assert parameter(commands, "sun-hours", "--min-sun-elevation").label.endswith("in degrees")
     assert parameter(commands, "shadow", "--frame-duration-s").label == "Duration of a frame in seconds"
-    assert parameter(commands, "shadow", "--time").label == "An instant: 2026-06-21T15:00+02:00 (separate several with ;)"
+    assert parameter(commands, "shadow", "--time").label == "An instant: 2026-06-21T15:00, or 2026-06-21T15:00+02:00 (separate several with ;)"
 
 
 def test_no_text_of_a_dialog_speaks_of_a_command_line(commands):
@@ -131,5 +131,5 @@ def test_texts_keep_minus_signs_and_name_fields_of_other_dialogs(commands):
 
 
 def test_an_empty_field_says_what_the_program_does_then(commands):
-    assert "If empty: that of a given time, else mean solar time." in parameter(commands, "shadow", "--zone").help
+    assert "If empty: that of a given time, else of the place." in parameter(commands, "shadow", "--zone").help
     assert "If empty" not in parameter(commands, "viewshed", "--observer-height").help

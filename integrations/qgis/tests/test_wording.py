@@ -25,10 +25,10 @@ def test_an_error_has_the_labels_of_the_fields(commands, binary, tmp_path, comma
     out = [f"--output={tmp_path / ('x.csv' if command == 'sun-calendar' else 'x.tif')}"]
     with pytest.raises(program.ProgramError) as caught:
         program.run(binary, [command, *typed, *out, "--", CLOUD])
-    told = commands[command].reworded(str(caught.value))
-    assert told.startswith(expected) and "--" not in told and "Usage" not in told, told
+    said = commands[command].reworded(str(caught.value))
+    assert said.startswith(expected) and "--" not in said and "Usage" not in said, said
 
 
 def test_what_the_dialog_has_not_stays_in_an_error(commands):
-    told = commands["viewshed"].reworded("the folder is full: use --no-cache, or another --cell; see `belvedere cache`")
-    assert told == 'the folder is full: use --no-cache, or another "Side of a cell"; see "Kept scenes"'
+    said = commands["viewshed"].reworded("the folder is full: use --no-cache, or another --cell; see `belvedere cache`")
+    assert said == 'the folder is full: use --no-cache, or another "Side of a cell"; see "Kept scenes"'

@@ -55,7 +55,9 @@ pub(crate) struct CityPlan {
     /// See --grid-north.
     #[arg(long = "sun", value_name = "AZ,EL", allow_hyphen_values = true, help_heading = "Questions")]
     pub(crate) suns: Vec<Numbers<2>>,
-    /// An instant for a shadow map: 2026-06-21T15:00 on the clocks of the place; repeatable
+    /// An instant for a shadow map: 2026-06-21T15:00, or 2026-06-21T15:00+02:00; repeatable
+    ///
+    /// Without an offset it is on the clocks of the place, or of --zone.
     #[arg(long = "time", value_name = "TIME", help_heading = "Questions")]
     pub(crate) times: Vec<String>,
     /// Map the hours of sun a day, for --date, or --from and --to

@@ -59,10 +59,10 @@ pub(crate) struct ShadowArguments {
 #[derive(Args)]
 #[command(next_help_heading = "Period")]
 pub(crate) struct SunsArguments {
-    /// An instant: 2026-06-21T15:00 on the clocks of the place, or 2026-06-21T15:00Z; repeatable
+    /// An instant: 2026-06-21T15:00, or 2026-06-21T15:00+02:00; repeatable
     ///
-    /// 2026-06-21T15:00[Europe/Amsterdam] works as well. For several instants in equal steps use --date, or --from and
-    /// --to.
+    /// Without an offset it is on the clocks of the place, or of --zone. For instants in equal steps use --date, or --from
+    /// and --to.
     #[arg(long, value_name = "TIME", conflicts_with_all = ["date", "from", "to"])]
     pub(crate) time: Vec<String>,
     /// A sun direction: azimuth clockwise from true north and elevation, in degrees; repeatable

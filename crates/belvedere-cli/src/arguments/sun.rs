@@ -31,7 +31,9 @@ pub(crate) struct SunPlaceArguments {
 
 #[derive(Args)]
 pub(crate) struct SunPositionArguments {
-    /// An instant: 2026-06-21T15:00 on the clocks of the place, or 2026-06-21T15:00Z; repeatable
+    /// An instant: 2026-06-21T15:00, or 2026-06-21T15:00+02:00; repeatable
+    ///
+    /// Without an offset it is on the clocks of the place, or of --zone.
     #[arg(long = "time", value_name = "TIME", required = true, help_heading = "Sun")]
     pub(crate) times: Vec<String>,
     #[command(flatten)]
@@ -66,7 +68,7 @@ pub(crate) struct SunPeriod {
     /// Last day of a period (included), or its end time
     #[arg(long, value_name = "TIME", requires = "from")]
     pub(crate) to: Option<String>,
-    /// Minutes between suns, 1/6 to 60 [default: 10, sun-calendar 2, glare 1]
+    /// Time between two suns in minutes, 1/6 to 60 [default: 10]
     ///
     /// Each sun position represents its whole step, so shadow edges are accurate to half a step.
     #[arg(long = "time-step-min", value_name = "MIN", value_parser = above_zero::<f64>, allow_negative_numbers = true)]

@@ -357,6 +357,7 @@ fn areas_have_the_means_of_their_cells() {
         "parcels.geojson",
         format!(r#"{{"type":"FeatureCollection",{crs},"features":[{}]}}"#, features.join(",")),
     );
+    write_places(&place, "places.csv", &[[0.0, 8.0, 0.5]]);
     let shadow = format!("shadow {HOUSE} --sun 180,35 --cell 0.5 --areas parcels.geojson");
     let run = place.run(&format!("{shadow} -o cells.csv --by-area parcels.csv"));
     assert!(run.status == 0 && run.stderr.contains("1 of 3 areas (33.33 %) hold no cell"), "{run:?}");

@@ -350,7 +350,7 @@ class Sunlight:
         targets, normals, cell, target_height, surface, ground, through_trees, leaves, location
             As for `shadow`.
         zone : str or tzinfo, optional
-            How clocks run; mean solar time if not given.
+            How clocks run; the zone of the place if not given; ``"solar"`` for mean solar time.
         sun_elevation : {'apparent', 'geometric'}
             Whether the air lifts the sun.
         air : array_like, shape (2,), optional

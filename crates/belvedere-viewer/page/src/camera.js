@@ -43,8 +43,8 @@ export class Mover {
       this.camera.position.set(...way);
       this.camera.lookAt(0, 0, 0);
       const axes = [0, 1, 2].map((axis) => new Vector3().setComponent(axis, 1).applyQuaternion(this.camera.quaternion));
-      // along right, up and back of the camera: the part of the picture is a pyramid whose apex, the camera, goes as near
-      // as no corner is outside of one of its four sides
+      // along right, up and back of the camera: the part of the picture is a pyramid whose apex, the camera, goes as
+      // near as no corner is outside of one of its four sides
       const bounds = [-Infinity, Infinity, -Infinity, Infinity];
       let nearest = -Infinity;
       const seen = corners.map(([x, y, z]) => axes.map((axis) => x * axis.x + y * axis.y + z * axis.z));

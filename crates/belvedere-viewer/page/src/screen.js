@@ -47,8 +47,8 @@ export class Screen {
     return to;
   }
 
-  // Shows what a target holds under the sky of a theme, smooth, and answers as a layer if there are any. What lies `gap`
-  // metres behind its surroundings is a hole; a rough picture is neither smooth nor without holes.
+  // Shows what a target holds under the sky of a theme, smooth, and answers as a layer if there are any. What lies
+  // `gap` metres behind its surroundings is a hole; a rough picture is neither smooth nor without holes.
   show(from, camera, { theme, gap, widest, pixels, sun, glow, isRough, smooth, isLayer }) {
     const { shade, fill } = this;
     const ratio = this.renderer.getPixelRatio();

@@ -30,8 +30,8 @@ export function clockOf(zone, instant = new Date()) {
 
 // Texts that stay English here: time.js puts them into the language of the page.
 const t = ([text]) => text;
-// The zone of a place, and in words where it is from. `near` are zones of the place, the first of most of it, the others
-// with other clocks; `own` is that of this computer.
+// The zone of a place, and in words where it is from. `near` are zones of the place, the first of most of it, the
+// others with other clocks; `own` is that of this computer.
 export function zoneOf(near, longitude, latitude, own, instant = new Date()) {
   if (near.length) {
     const isBorder = near.length > 1;
