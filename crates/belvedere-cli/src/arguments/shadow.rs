@@ -61,8 +61,8 @@ pub(crate) struct ShadowArguments {
 pub(crate) struct SunsArguments {
     /// An instant: 2026-06-21T15:00, or 2026-06-21T15:00+02:00; repeatable
     ///
-    /// Without an offset it is on the clocks of the place, or of --zone. For instants in equal steps use --date, or --from
-    /// and --to.
+    /// Without an offset it is on the clocks of the place, or of --zone. For instants in equal steps use --date, or
+    /// --from and --to.
     #[arg(long, value_name = "TIME", conflicts_with_all = ["date", "from", "to"])]
     pub(crate) time: Vec<String>,
     /// A sun direction: azimuth clockwise from true north and elevation, in degrees; repeatable

@@ -100,11 +100,6 @@ fn check(arguments: &LineOfSightArguments, question: &LinesOfSightQuestion) -> R
         check_output("--profile-out", profile, &["csv", "png"])?;
     }
     question.check()?;
-    if question.frequency_ghz.is_some() && arguments.terrain.is_some() {
-        let what = "--frequency-ghz cannot be used with --terrain: Fresnel zones are not tested over the terrain beyond the cloud. \
-                    Test the line of sight with --terrain, and the zone within the cloud without it";
-        return Err(Usage(what.to_owned()).into());
-    }
     Ok(())
 }
 

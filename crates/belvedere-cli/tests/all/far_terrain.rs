@@ -201,7 +201,10 @@ fn lines_of_sight_reach_the_terrain_beyond_the_cloud() {
     let [ground, blocked] = ["ground", "blocked"].map(|name| column(&place, "profile.csv", name));
     assert_eq!((ground.len(), ground[0], ground[29], ground[30], ground[31]), (181, 400.0, 400.0, 200.0, 0.0));
     assert!(blocked[0] == 0.0 && blocked[1..30].iter().all(|v| *v == 1.0) && blocked[31..60] == [0.0; 29]);
-    place.refusal(2, &format!("{flags} {ends} --frequency-ghz 5.8"), &["--frequency-ghz", "--terrain"]);
+    // zones of radio links over terrain: none of a blocked link, and no answer outside
+    place.run(&format!("{flags} --pairs pairs.csv --frequency-ghz 5.8 -o zones.csv"));
+    let free = column(&place, "zones.csv", "fresnel_free_percent");
+    assert!(free[0] == 0.0 && (0.0..=100.0).contains(&free[1]) && free[1] > 0.0 && free[3].is_nan(), "{free:?}");
     place.refusal(1, &format!("line-of-sight {HOUSE} --terrain missing.tif {ends}"), &["missing.tif"]);
 }
 

@@ -69,12 +69,13 @@ struct Link {
 }
 
 impl Link {
-    fn new(ends: [[f64; 3]; 2], wave: RadioWave, earth: &EarthParams) -> Option<Self> {
+    /// The link between two ends; over far terrain it is bent however short it is.
+    fn new(ends: [[f64; 3]; 2], wave: RadioWave, earth: &EarthParams, is_far: bool) -> Option<Self> {
         let [start, end] = ends;
         let along = sub(end, start);
         let axis = unit(along).filter(|_| ends.as_flattened().iter().all(|v| v.is_finite()))?;
         let span = along[0].hypot(along[1]);
-        let is_bent = earth.bends(start, end);
+        let is_bent = is_far || earth.bends(start, end);
         Some(Self { start, axis, length: length(along), span, earth: *earth, is_bent, wave })
     }
 
@@ -207,12 +208,23 @@ impl MedialScene {
     /// P.530). NaN for points that are not finite, or coincide.
     ///
     /// Balls that hold an end are left out and balls near an end give way to it, as to a target; so do triangles on
-    /// which an end lies. Whether the line of sight is proven is another question, and far terrain is not
-    /// considered. On a curved line the sag is that at the middle of each ball.
+    /// which an end lies. Whether the line of sight is proven is another question. On a curved line the sag is that at
+    /// the middle of each ball.
+    ///
+    /// A link that leaves the cloud must clear the terrain beyond it too: four triangles for each patch of the raster,
+    /// which meet its bilinear surface at the nodes and in the middle.
     #[must_use]
     pub fn fresnel_clearance(&self, ends: [[f64; 3]; 2], wave: RadioWave, earth: &EarthParams, max: f64) -> f64 {
-        let Some(link) = Link::new(ends, wave, earth) else { return f64::NAN };
+        let is_far = self.leaves_cloud(ends);
+        let Some(link) = Link::new(ends, wave, earth, is_far) else { return f64::NAN };
         let mut clearance = max;
+        for [low, high] in link.boxes(max).filter(|_| is_far) {
+            self.far_terrain().each_triangle_near([low, high].map(|[x, y, _]| [x, y]), |corners| {
+                if clearance > 0.0 {
+                    clearance = clearance.min(link.share_before(corners, clearance));
+                }
+            });
+        }
         for [low, high] in link.boxes(max) {
             self.tree().index().visit_near(low, high, |number| {
                 let Ball { center, radius } = self.ball(number);
@@ -244,8 +256,7 @@ impl MedialScene {
     /// one with an end outside the cloud, or without a line, is NaN. Progress counts pairs.
     ///
     /// # Errors
-    /// [`Error::LengthMismatch`] for another number of lines of sight; [`Error::InvalidParameter`] for a link over far
-    /// terrain, of which it is not known how far it reaches into the zone; and [`Error::Cancelled`].
+    /// [`Error::LengthMismatch`] for another number of lines of sight, and [`Error::Cancelled`].
     pub fn fresnel_clearances(
         &self,
         pairs: &[[[f64; 3]; 2]],
@@ -257,13 +268,6 @@ impl MedialScene {
         let (expected, found) = (pairs.len(), sights.len());
         if expected != found {
             return Err(Error::LengthMismatch { what: "lines of sight of the links", expected, found });
-        }
-        if let Some(row) = pairs.iter().position(|&ends| self.leaves_cloud(ends)) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Frequency,
-                value: format!("a link over far terrain, number {}", row + 1),
-                expected: "links within the cloud: Fresnel zones are not tested over far terrain",
-            });
         }
         let of_pair = |(&ends, sight): (&[[f64; 3]; 2], &Option<LineOfSight>)| {
             control.check()?;

@@ -186,8 +186,7 @@ class Sights:
         refraction : float, optional
             Share of the curvature that light follows, 0 to below 1; 1/7 if not given.
         frequency_ghz : float, optional
-            Frequency of a radio link, 0.001 to 1000: also tests its first Fresnel zone. Not for places on the terrain
-            beyond the cloud.
+            Frequency of a radio link, 0.001 to 1000: also tests its first Fresnel zone.
         progress : bool or callable, optional
 
         Returns

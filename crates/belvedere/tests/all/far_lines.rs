@@ -156,15 +156,36 @@ fn places_without_terrain_below_the_cloud_or_above_each_other_have_no_line() {
     // a scene of which nobody knows where its cloud lies has no terrain beyond it
     let unknown = MedialScene::new(&Default::default(), &Default::default()).unwrap();
     assert!(!unknown.is_on_far_terrain(far) && !unknown.is_outside(far));
-    // zones of radio links are not tested over terrain
+}
+
+#[test]
+fn zones_of_radio_links_clear_the_terrain() {
     let wave = RadioWave::of_frequency(5.8).unwrap();
-    let zones = |pairs: &[[[f64; 3]; 2]]| {
-        let sights = scene.lines_of_sight(pairs, &earth, &Control::none())?;
-        scene.fresnel_clearances(pairs, &sights, wave, &earth, &Control::none())
+    let earth = EarthParams::default();
+    let cloud: MapBox = ([4000.0, -4600.0], [4600.0, -4000.0]);
+    let plain = open_scene(grid(401, 20.0, |_, _| 0.0), cloud);
+    let link = |height: f64| [[500.0, -1007.0, height], [7500.0, -1007.0, height]];
+    // over a plain the middle is narrowest: there the earth bulges most and the zone is widest
+    let middle = wave.zone_radius([3500.0, 3500.0]);
+    let expected = |height: f64| (height - earth.sag(7000.0, 0.5)) / middle;
+    for height in [3.0, 6.0, 40.0] {
+        let found = plain.fresnel_clearance(link(height), wave, &earth, 9.0);
+        assert!((found - expected(height)).abs() < 1e-3, "{height}: {found} {}", expected(height));
+    }
+    // a ridge along x = 2000, 100 m high, steep enough that its crest is nearest
+    let ridge = open_scene(grid(401, 20.0, |x, _| if x == 2000.0 { 100.0 } else { 0.0 }), cloud);
+    let found = ridge.fresnel_clearance(link(104.0), wave, &earth, 9.0);
+    let gap = 104.0 - 100.0 - earth.sag(7000.0, 1500.0 / 7000.0);
+    assert!((found - gap / wave.zone_radius([1500.0, 5500.0])).abs() < 2e-3, "{found}");
+    // within the cloud terrain does not count, and a link that the ridge blocks has no zone
+    let zones = |scene: &MedialScene, pairs: &[[[f64; 3]; 2]]| {
+        let sights = scene.lines_of_sight(pairs, &earth, &Control::none()).unwrap();
+        scene.fresnel_clearances(pairs, &sights, wave, &earth, &Control::none()).unwrap()
     };
-    assert_eq!(zones(&[[inside, [4400.0, -4400.0, 20.0]]]).unwrap(), [1.0]);
-    let error = zones(&[[inside, [4400.0, -4400.0, 20.0]], [inside, far]]).unwrap_err().to_string();
-    assert!(error.contains("number 2") && error.contains("within the cloud"), "{error}");
+    let inside = [[4300.0, -4300.0, 20.0], [4400.0, -4400.0, 20.0]];
+    assert_eq!(zones(&ridge, &[inside, link(90.0)]), [1.0, 0.0]);
+    let low = zones(&plain, &[link(6.0)])[0];
+    assert!((low - expected(6.0)).abs() < 1e-3 && low < 0.6, "{low}");
 }
 
 #[test]

@@ -8,6 +8,7 @@ mod visible;
 use super::EarthParams;
 use super::coverage::CEILING;
 use super::far_line::FarLine;
+use crate::triangle_tree::Corners;
 use belvedere_data::ElevationGrid;
 use belvedere_data::horizon::HorizonProfile;
 use belvedere_data::vector::piece_in_box;
@@ -67,6 +68,32 @@ impl FarTerrain {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.profile.is_none() && self.relief.is_none()
+    }
+
+    /// Visits the triangles of the terrain beyond the cloud in a box on the map, from its low to its high corner, local
+    /// metres: four for each patch, around its middle.
+    pub(super) fn each_triangle_near(&self, [low, high]: [[f64; 2]; 2], mut visit: impl FnMut(&Corners)) {
+        let Some(relief) = self.relief.as_deref() else { return };
+        let (grid, [box_low, box_high]) = (relief.grid(), relief.within());
+        let [west, north] = grid.north_west();
+        let patches = |from: f64, to: f64, cell: f64, nodes: usize| {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturated casts in the grid")]
+            let [from, to] = [from, to].map(|end| (end / cell).floor().max(-1.0) as i64 + 1).map(|end| end as usize);
+            from.saturating_sub(1)..to.min(nodes - 1)
+        };
+        let columns = patches(low[0] - west, high[0] - west, grid.cell()[0], grid.heights().width());
+        let rows = patches(north - high[1], north - low[1], grid.cell()[1], grid.heights().height());
+        for (row, column) in rows.flat_map(|row| columns.clone().map(move |column| (row, column))) {
+            let nodes = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(right, down)| grid.node(column + right, row + down));
+            let [Some(a), Some(b), Some(c), Some(d)] = nodes else { continue };
+            let middle: [f64; 3] = std::array::from_fn(|axis| (a[axis] + b[axis] + c[axis] + d[axis]) / 4.0);
+            if (0..2).all(|axis| (box_low[axis]..=box_high[axis]).contains(&middle[axis])) {
+                continue;
+            }
+            for [from, to] in [[a, b], [b, c], [c, d], [d, a]] {
+                visit(&[from, to, middle]);
+            }
+        }
     }
 
     /// Returns true if the unit vector `direction` points below the horizon of `place`, local metres.
