@@ -11,12 +11,14 @@ pub struct TextRows {
 }
 
 impl TextRows {
-    pub(crate) fn new(names: Vec<String>) -> Self {
+    /// Rows of columns with these names, none yet.
+    #[must_use]
+    pub fn new(names: Vec<String>) -> Self {
         Self { names, ..Self::default() }
     }
 
     /// Appends a row. Cells that it lacks are empty; those beyond the last name are left out.
-    pub(crate) fn push<T: AsRef<str>>(&mut self, cells: impl IntoIterator<Item = T>) {
+    pub fn push<T: AsRef<str>>(&mut self, cells: impl IntoIterator<Item = T>) {
         let mut cells = cells.into_iter();
         for _ in 0..self.names.len() {
             self.text.push_str(cells.next().as_ref().map_or("", T::as_ref));

@@ -439,7 +439,10 @@ impl LineSection {
             context.headline(format!("first obstacle at {x}, {y}, {z}"));
         }
         if let Some(length) = self.unproven_m.filter(|_| self.first_block_range_m.is_none()) {
-            context.headline(format!("no pulse came near to {length} m of it"));
+            context.headline(match length {
+                0.0 => "pulses came near to all of it".to_owned(),
+                length => format!("no pulse came near to {length} m of it"),
+            });
         }
         if let Some(free) = self.fresnel_free_percent {
             context.headline(format!("first Fresnel zone: {free} % free"));

@@ -6,6 +6,7 @@ use super::scene::Scene;
 use super::shadow::{CASTER, UNPROVEN, caster_name};
 use super::{Context, Remark};
 use crate::shadow::LIT;
+use crate::sum_errors::INTERVAL_MEASURES;
 use crate::targets::{CellLevel, CellParams, Measure, Targets, grid_around, set_on_terrain};
 use belvedere_core::ground::{Ground, GroundPoints};
 use belvedere_data::control::Control;
@@ -314,11 +315,20 @@ fn sentence(place: &PlaceSection, measures: &[Measure], row: usize) -> String {
                 .filter_map(|measure| Some((measure, value(measure)?)))
                 .collect();
             let has_several_suns = of_suns.len() > 1;
-            let others = measures.iter().filter(|measure| !has_several_suns || measure.description != LIT);
+            let is_end =
+                |measure: &Measure| INTERVAL_MEASURES[1..].iter().any(|(_, text)| *text == measure.description);
+            let ends: Vec<String> = measures
+                .iter()
+                .filter(|measure| is_end(measure))
+                .filter_map(|end| Some(format!("{:.*}", end.decimals.min(3), value(end)?)))
+                .collect();
+            let others =
+                measures.iter().filter(|measure| !is_end(measure) && !(has_several_suns && measure.description == LIT));
             let words = others.filter_map(|measure| Some(figure(measure, value(measure)?)));
             let light = has_several_suns.then(|| light_of_suns(&of_suns));
             let figures = light.into_iter().chain(words).filter(|text| !text.is_empty());
-            let figures: Vec<String> = figures.take(MAX_FIGURES).collect();
+            let interval = <[String; 2]>::try_from(ends).ok().map(|[low, high]| format!("with 90 % {low} to {high}"));
+            let figures: Vec<String> = figures.take(MAX_FIGURES).chain(interval).collect();
             if figures.is_empty() { "no answer".to_owned() } else { figures.join(", ") }
         }
     };
@@ -446,6 +456,14 @@ mod tests {
             sentences(&[place], &day)[0]
                 .ends_with(": 2026-03-21 07:00 in shadow, 08:00 to 09:00 lit, 10:00 25 % of the sun, 11:00 in shadow")
         );
+        let sky = |name, description, value| Measure::new(name, vec![value]).with_description(description);
+        let view = [
+            sky("sky_view", "sky view factor", 0.5),
+            sky("sky_low", INTERVAL_MEASURES[1].1, 0.25),
+            sky("sky_high", INTERVAL_MEASURES[2].1, 0.75),
+        ];
+        let sentence = &sentences(&[place], &view)[0];
+        assert!(sentence.contains("sky view factor 0.5") && sentence.contains(", with 90 % 0.25"), "{sentence}");
         let nothing = [Measure::new("sky", vec![f32::NAN])];
         assert!(sentences(&[place], &nothing)[0].ends_with("no answer"));
     }

@@ -273,8 +273,8 @@ impl SurveyPlanSection {
             let StationSection { position: [x, y, z], settled_lines, expected_lines, .. } = station;
             let who = if number == 1 { "it" } else { "it and those before" };
             format!(
-                "station {number} at {x}, {y}, {z}: {who} should prove about {expected_lines} of {total} unproven lines, \
-                 {settled_lines} if nothing stands where no pulse was"
+                "station {number} at {x}, {y}, {z}: {who} should prove about {expected_lines:.0} of {total} unproven \
+                 lines, and {settled_lines} at best (if nothing stands where no pulse was)"
             )
         };
         if self.stations.is_empty() {

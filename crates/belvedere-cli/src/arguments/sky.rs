@@ -28,7 +28,7 @@ pub(crate) struct SkyPlaces {
     pub(crate) ground: GroundChoice,
     /// Maximum side of the triangles that a mesh is cut into, in metres [default: 0.5]
     ///
-    /// Each triangle has one sample point.
+    /// Each triangle has one sample point. Along lines of a file of --targets: distance of places [2].
     #[arg(long, value_name = "M", value_parser = above_zero::<f64>, allow_negative_numbers = true, help_heading = "Targets")]
     pub(crate) spacing: Option<f64>,
     /// Orientation of surfaces: level, or their normals [default: normals for a mesh, else level]
@@ -82,7 +82,7 @@ pub(crate) struct SkyPlacesChoice {
     /// Query points of a file, or a mesh (.obj .json .ply with faces), in the coordinates of the scene
     ///
     /// Points of a table without z, and of .geojson .gpkg .shp, are --target-height above the ground, or above what
-    /// covers it, unless a column height says how far.
+    /// covers it, unless a column height says how far. Lines, such as walks, have a place each --spacing.
     #[arg(long, value_name = "FILE")]
     pub(crate) targets: Option<PathBuf>,
     /// Query a single place: X,Y[,Z] in file coordinates, or LATITUDE,LONGITUDE in degrees; repeatable

@@ -65,7 +65,7 @@ pub(crate) fn run(arguments: &ShadowArguments, global: &Global) -> Result<Summar
         let shapes = ShadowShapes { suns: maps.measures, casters: &casters, meshes };
         run.stage("writing", 0, |_| shapes.write(output, &answers.found.on.targets))?;
     }
-    films(arguments, &shown, &maps, &run)?;
+    films(arguments, &shown, &maps, &mut run)?;
     Ok(run.finish())
 }
 
@@ -246,7 +246,12 @@ impl<'a> Maps<'a> {
 }
 
 /// Writes a picture of each sun, after each other or apart.
-fn films(arguments: &ShadowArguments, shown: &TargetOutput<'_>, maps: &Maps<'_>, run: &CommandContext) -> Result<()> {
+fn films(
+    arguments: &ShadowArguments,
+    shown: &TargetOutput<'_>,
+    maps: &Maps<'_>,
+    run: &mut CommandContext,
+) -> Result<()> {
     let Some(relief) = shown.relief() else { return Ok(()) };
     if let Some(folder) = &arguments.frames {
         atomic::make_folder(folder)?;
@@ -259,6 +264,7 @@ fn films(arguments: &ShadowArguments, shown: &TargetOutput<'_>, maps: &Maps<'_>,
         let frames: belvedere::Result<Vec<Picture>> =
             (0..maps.suns.len()).map(|number| maps.draw(number, &relief)).collect();
         run.stage("writing film", 0, |_| write_apng(film, &frames?, arguments.seconds))?;
+        run.summary.add("film_written", film.display().to_string());
     }
     Ok(())
 }

@@ -15,11 +15,12 @@ use anyhow::Result;
 use belvedere::apps::ask::{
     GridCells, OnTargets, Places, Reach, Remark, Scene, Standing, Turned, position_on_map, standing_on_map,
 };
-use belvedere::apps::targets::{CellLevel, Facing, Measure, MeshParams};
+use belvedere::apps::targets::{CellLevel, Facing, Measure, MeshParams, Route};
+use belvedere::apps::viewshed::places_along;
 use belvedere::figures::{Picture, write_png};
 use belvedere::ground::GroundPoints;
 use belvedere::io::{
-    FEATURE_EXTENSIONS, Georeference, MetadataTag, ObserverRow, ReadOptions, RowsAre, atomic, is_mesh, read_features,
+    FEATURE_EXTENSIONS, Georeference, MetadataTag, ReadOptions, RowsAre, TextRows, atomic, is_mesh, read_features,
     write_tif_u8,
 };
 use belvedere::raster::Raster;
@@ -33,6 +34,8 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// Distance of places along lines of a file, metres.
+const ALONG_LINES: f64 = 2.0;
 /// Bytes of the header of a table that are looked at.
 const LONGEST_HEADER: u64 = 1 << 16;
 
@@ -45,8 +48,8 @@ pub(crate) enum TargetSource {
     Own,
     /// Points with their attributes, and the file they were read from.
     File(Arc<PointCloud>, PathBuf),
-    /// Places without heights, and the file they were read from.
-    Places(PathBuf),
+    /// Places without heights, and their rows in tables.
+    Places(TextRows),
     Mesh(Arc<Mesh>),
 }
 
@@ -80,7 +83,8 @@ impl SkyPlaces {
     pub(crate) fn check(&self, outputs: &SkyOutputs) -> Result<()> {
         let mesh = self.places.targets.as_deref().is_some_and(is_mesh);
         let points = self.places.own || self.places.targets.is_some() && !mesh || !self.places.at.is_empty();
-        let on_ground = !self.places.at.is_empty() || self.places.targets.as_deref().is_some_and(lacks_heights);
+        let in_file = self.places.targets.as_deref().is_some_and(lacks_heights);
+        let on_ground = !self.places.at.is_empty() || in_file;
         MapPosition::refuse_twice("--at", &self.places.at)?;
         let known: &[&str] = match (mesh, points) {
             (true, _) => &["csv", "ply"],
@@ -107,7 +111,7 @@ impl SkyPlaces {
                 mesh || points && !on_ground,
                 "a grid, and places without heights",
             ),
-            ("--spacing", self.spacing.is_some(), !mesh, "a mesh"),
+            ("--spacing", self.spacing.is_some(), !mesh && !in_file, "a mesh, and lines of a file"),
         ];
         if let Some((flag, .., what)) = refused.into_iter().find(|(_, given, wrong, _)| *given && *wrong) {
             return Err(Usage(format!("{flag} applies only to targets on {what}")).into());
@@ -183,8 +187,8 @@ impl SkyPlaces {
             return Ok((Places::Mesh(Arc::clone(&mesh), params), TargetSource::Mesh(mesh)));
         }
         if lacks_heights(path) {
-            let places = self.places_of_file(path, scene, run)?;
-            return Ok((Places::At(places, self.ground.points()), TargetSource::Places(path.clone())));
+            let (places, rows) = self.places_of_file(path, scene, run)?;
+            return Ok((Places::At(places, self.ground.points()), TargetSource::Places(rows)));
         }
         let cloud = Arc::new(points_of_file(path, &ReadOptions::new(), scene.frame(), run)?);
         let normals = match (self.facing, &cloud.attributes.normals) {
@@ -198,18 +202,33 @@ impl SkyPlaces {
         Ok((Places::Cloud(Arc::clone(&cloud), normals), TargetSource::File(cloud, path.clone())))
     }
 
-    /// The places of a file without heights, `--target-height` or their own height above the ground.
-    fn places_of_file(&self, path: &Path, scene: &Scene, run: &mut CommandContext) -> Result<Vec<Standing>> {
+    /// The places of a file without heights, `--target-height` or their own height above the ground, and their rows in
+    /// tables. Lines have a place each `--spacing`.
+    fn places_of_file(
+        &self,
+        path: &Path,
+        scene: &Scene,
+        run: &mut CommandContext,
+    ) -> Result<(Vec<Standing>, TextRows)> {
         let frame = scene.frame();
         let rows = observer_rows(path, frame, RowsAre::Places, ObserverUse::Places, run)?;
-        let standing = |row: &ObserverRow| match row.corners[..] {
-            [place] => Ok(Standing {
-                place: [0, 1, 2].map(|axis| place[axis] - frame.origin[axis]),
-                height: row.height.or(self.height.map(f64::from)),
-            }),
-            _ => Err(Usage(format!("{}: targets are points; it has lines or polygons", path.display())).into()),
-        };
-        rows.iter().map(standing).collect()
+        let as_given = rows_as_given(Some(path))?;
+        let names = ["name", "distance_m", "x", "y"].map(str::to_owned).into();
+        let (mut places, mut listed) = (Vec::new(), TextRows::new(names));
+        for row in &rows {
+            let local = |corner: &[f64; 3]| [0, 1, 2].map(|axis| corner[axis] - frame.origin[axis]);
+            let corners: Vec<[f64; 3]> = row.corners.iter().map(local).collect();
+            let height = row.height.or(self.height.map(f64::from));
+            let along = places_along(&corners, self.spacing.unwrap_or(ALONG_LINES))?;
+            let distances = Route { places: along.clone() }.distances();
+            for (place, distance) in along.into_iter().zip(distances) {
+                let [x, y, _] = frame.file_from_local(place).map(|v| format!("{v:.3}"));
+                let distance = if corners.len() > 1 { format!("{distance:.2}") } else { String::new() };
+                listed.push([&row.name, &distance, &x, &y]);
+                places.push(Standing { place, height });
+            }
+        }
+        Ok((places, if as_given.row_count() > 0 { as_given } else { listed }))
     }
 }
 
@@ -334,15 +353,13 @@ impl<'a> TargetOutput<'a> {
         }
         let rows = match &self.source {
             TargetSource::File(_, file) => text_rows_for(file, output)?,
-            TargetSource::Places(file) if extension(output) == "csv" => {
-                Some(rows_as_given(Some(file))?).filter(|rows| rows.row_count() > 0)
-            }
             _ => None,
         };
         let from = match &self.source {
             TargetSource::Cells | TargetSource::Single => TakenFrom::Nothing,
             TargetSource::Own => TakenFrom::Cloud(self.scene.cloud()),
-            TargetSource::Places(_) => rows.as_ref().map_or(TakenFrom::Nothing, TakenFrom::Rows),
+            TargetSource::Places(rows) if extension(output) == "csv" => TakenFrom::Rows(rows),
+            TargetSource::Places(_) => TakenFrom::Nothing,
             TargetSource::File(cloud, _) => rows.as_ref().map_or(TakenFrom::Cloud(cloud), TakenFrom::Rows),
             TargetSource::Mesh(mesh) => TakenFrom::Mesh(mesh),
         };

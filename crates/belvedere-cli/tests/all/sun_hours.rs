@@ -270,6 +270,16 @@ fn places_of_a_file_without_heights_stand_on_the_ground() {
     assert!(high != low);
     assert_eq!(hours("--targets flat.csv --target-height 1.5"), high);
     assert_eq!(hours("--targets places.geojson"), high);
+    // a walk has a place each two metres, or each --spacing
+    let [[west, south, _], [east, ..]] = [at(-6.0, 10.7, 0.0), at(6.0, 10.7, 0.0)];
+    let line = format!(r#"{{"type":"LineString","coordinates":[[{west},{south}],[{east},{south}]]}}"#);
+    let walk = format!(r#"{{"type":"Feature","properties":{{"name":"lane"}},"geometry":{line}}}"#);
+    place.write("walk.geojson", format!(r#"{{"type":"FeatureCollection",{crs},"features":[{walk}]}}"#));
+    let along = hours("--targets walk.geojson");
+    assert_eq!(column(&place, "found.csv", "distance_m"), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0]);
+    assert_eq!((along.len(), along[3]), (7, low[0]));
+    assert!(place.text("found.csv").lines().nth(1).unwrap().starts_with("lane,0.00,"), "{}", place.text("found.csv"));
+    assert_eq!(hours("--targets walk.geojson --spacing 4").len(), 4);
     let refused = format!("{question} --targets places.csv --target-height 1.5 -o no.csv");
     place.refusal(2, &refused, &["--target-height", "places without heights"]);
 }

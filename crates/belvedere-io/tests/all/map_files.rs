@@ -42,7 +42,11 @@ fn areas() -> Vec<PolygonArea> {
 fn difference(a: &MapFeature, b: &MapFeature) -> f64 {
     let [a, b] = [a, b].map(|feature| feature.shape.corners().copied().collect::<Vec<_>>());
     assert_eq!(a.len(), b.len());
-    a.iter().zip(&b).flat_map(|(a, b)| (0..2).map(|i| (a[i] - b[i]).abs())).fold(0.0, f64::max)
+    a.iter()
+        .zip(&b)
+        .flat_map(|(a, b)| (0..2).map(|i| (a[i] - b[i]).abs()))
+        .inspect(|difference| assert!(!difference.is_nan()))
+        .fold(0.0, f64::max)
 }
 
 #[test]

@@ -24,7 +24,9 @@ fn climb(start: [f64; 3], start_time: f64) -> Trajectory {
 fn greatest_difference(a: &Trajectory, b: &Trajectory) -> f64 {
     assert_eq!(a.positions.len(), b.positions.len());
     let rows = a.positions.iter().zip(&b.positions);
-    rows.flat_map(|(a, b)| (0..3).map(|i| (a[i] - b[i]).abs())).fold(0.0, f64::max)
+    rows.flat_map(|(a, b)| (0..3).map(|i| (a[i] - b[i]).abs()))
+        .inspect(|difference| assert!(!difference.is_nan()))
+        .fold(0.0, f64::max)
 }
 
 fn sbet_records(path: &std::path::Path) -> Vec<[f64; 17]> {
