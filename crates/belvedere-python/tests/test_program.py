@@ -511,8 +511,11 @@ def test_plans(scene, run_program, folder):
     assert answers == [False, True]
     table = mountains.line_of_sight([top, (float(x), float(y))], eye, observer_height=900)
     assert table["block_terrain"].dtype == bool and not table["block_terrain"].any()
-    with pytest.raises(belvedere.BelvedereError, match="within the cloud"):
-        mountains.line_of_sight(top, eye, frequency_ghz=5.8)
+    zone = mountains.line_of_sight(top, eye, observer_height=900, frequency_ghz=5.8)
+    run_program("line-of-sight", "tile.laz", *line, "--frequency-ghz", "5.8")
+    with (folder / "line.csv").open() as file:
+        (row,) = csv.DictReader(file)
+    assert abs(float(row["fresnel_free_percent"]) - zone.fresnel_free_percent) < 0.1 and zone.fresnel_free_percent > 0
 
 
 def test_plans_are_not_lost_without_a_word(scene, folder):

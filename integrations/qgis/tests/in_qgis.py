@@ -484,7 +484,7 @@ def numbers(text):
 def check_errors():
     given = {"CLOUDS": DATA, "OUTPUT": FOLDER / "x.tif"}
     status, printed = run("shadow", TIME="2026-06-21T18:00", **given)
-    assert status != 0 and '"Time zone of times and days"' in printed and "--zone" not in printed, printed
+    assert status != 0 and '"Place of the scene"' in printed and "--location" not in printed, printed
     assert not (FOLDER / "x.tif").exists()
     os.environ["BELVEDERE_PROGRAM"] = "/nowhere/belvedere"
     status, printed = run("shadow", TIME="2026-06-21T18:00+02:00", **given)

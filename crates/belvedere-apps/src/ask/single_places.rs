@@ -323,7 +323,7 @@ fn sentence(place: &PlaceSection, measures: &[Measure], row: usize) -> String {
                 .filter_map(|end| Some(format!("{:.*}", end.decimals.min(3), value(end)?)))
                 .collect();
             let others =
-                measures.iter().filter(|measure| !is_end(measure) && !(has_several_suns && measure.description == LIT));
+                measures.iter().filter(|measure| !(is_end(measure) || has_several_suns && measure.description == LIT));
             let words = others.filter_map(|measure| Some(figure(measure, value(measure)?)));
             let light = has_several_suns.then(|| light_of_suns(&of_suns));
             let figures = light.into_iter().chain(words).filter(|text| !text.is_empty());

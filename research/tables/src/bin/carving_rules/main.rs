@@ -5,11 +5,11 @@
 //!     [SCANNER] [unclassified] [water] [blame]
 //! ```
 //!
-//! prints the table of docs/methods/carving.md. With a scanner of `cargo research compare -- --regimes`, such as `leaves` or
-//! `bare`, the town and its survey are those of the comparison, and `unclassified` takes away the classes of
-//! vegetation. With `water` pulses do not return from the ground in strips of 12 m. With `blame` it says which surfaces
-//! hide what is called visible, at which surfaces the balls sit that hide what is visible, and what share of these
-//! errors lies at edges or in space that no pulse came near. `-- figures FOLDER` draws its pictures.
+//! prints the table of docs/methods/carving.md. With a scanner of `cargo research compare -- --regimes`, such as
+//! `leaves` or `bare`, the town and its survey are those of the comparison, and `unclassified` takes away the classes
+//! of vegetation. With `water` pulses do not return from the ground in strips of 12 m. With `blame` it says which
+//! surfaces hide what is called visible, at which surfaces the balls sit that hide what is visible, and what share of
+//! these errors lies at edges or in space that no pulse came near. `-- figures FOLDER` draws its pictures.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
 mod figures;
