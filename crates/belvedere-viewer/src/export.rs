@@ -7,7 +7,9 @@ use crate::scene::{PageScene, ShownCloud};
 use crate::scene_text::{SceneText, typed};
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use belvedere::apps::ask::{self, HowSure, Places, ShadowQuestion, SunPlace, ThroughTrees, UNPROVEN, remarks_on_model};
+use belvedere::apps::ask::{
+    self, HowSure, Places, SOLAR, ShadowQuestion, SunPlace, ThroughTrees, UNPROVEN, remarks_on_model,
+};
 use belvedere::apps::eyes::fault_of;
 use belvedere::apps::sun::{Date, Refraction, Zone, sun_position_with};
 use belvedere::apps::targets::{Targets, set_on_ground};
@@ -107,9 +109,7 @@ fn suns(
     control: &Control<'_>,
 ) -> Result<Vec<Value>> {
     let site = scene.site()?;
-    // solar time has no name that can be typed
-    let utc = Zone::utc();
-    let typed_zone = if Zone::parse(zone.name()).is_ok() { zone } else { &utc };
+    let typed_zone = if zone.is_mean_solar() { SOLAR } else { zone.name() };
     let targets = Places::Targets(Arc::new(Targets::of_points(sent, None)));
     let mut found = Vec::new();
     for hour in 0..24 {
@@ -119,9 +119,9 @@ fn suns(
         if position.elevation <= 0.0 {
             continue;
         }
-        let time = typed_zone.display(instant);
+        let time = zone.display(instant);
         let question = ShadowQuestion {
-            place: SunPlace { zone: Some(typed_zone.name().to_owned()), ..SunPlace::default() },
+            place: SunPlace { zone: Some(typed_zone.to_owned()), ..SunPlace::default() },
             ..ShadowQuestion::of_times(vec![time.clone()])
         };
         let answers = ask::ask(&scene.inner, &question, &targets, control)?;
@@ -151,7 +151,7 @@ fn suns(
             "unproven": unproven.map(|_| count(&[2])),
             "tells_unproven": unproven.is_some(),
             "remarks": answers.remarks,
-            "command": text.shadow(&typed_time, typed_zone.name(), ThroughTrees::Opaque, HowSure::default()),
+            "command": text.shadow(&typed_time, typed_zone, ThroughTrees::Opaque, HowSure::default()),
             "answers": BASE64_STANDARD.encode(packed(&codes, 2, |&code| code)),
         }));
     }

@@ -2,8 +2,9 @@
 
 use super::places::test_edge;
 use super::sections::{LinesSection, NamedValues, PeriodSection};
-use super::sun::{Days, SunPlace, sun_days_above};
+use super::sun::{Days, sun_days_above};
 use super::sun_hours::days_in_words;
+use super::sun_place::SunPlace;
 use super::windows::{GivenWindows, WindowTargets};
 use super::{Answers, Ask, Context, Places, Remark, Scene, SkyParts};
 use crate::exposure::{Exposure, ROUTE_STEP, ShadeAtEachSun, WALKER_HEIGHT, scene_exposure};
@@ -147,8 +148,7 @@ impl ComfortQuestion {
 
     fn schedule(&self, scene: &Scene, context: &mut Context) -> Result<(SunSchedule, Zone)> {
         let site = self.place.site(scene, context, None)?;
-        let zone = self.place.zone_at(&site, self.days.times())?;
-        context.add(self.place.remark_on_border(&site, self.days.times())?);
+        let zone = self.place.clock(&site, self.days.times(), context)?;
         let params = self.days.params(&self.place);
         let Some(period) = self.days.period(&self.place, &site, &zone)? else { return missing_period() };
         let binning = match self.shade {

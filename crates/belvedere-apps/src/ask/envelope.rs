@@ -2,7 +2,8 @@
 
 use super::scene::KnownGround;
 use super::sections::{LinesSection, PeriodSection};
-use super::sun::{Days, SunPlace, SunRange, check_min_elevation, check_sun, remark_on_solar_hours, remark_on_sun};
+use super::sun::{Days, SunRange, check_min_elevation, check_sun, remark_on_sun};
+use super::sun_place::{SunPlace, remark_on_solar_hours};
 use super::{Answers, Ask, Context, Places, Remark, Scene, SharedObject};
 use crate::solar_envelope::{
     EnvelopeParams, Parcel, ProtectedPiece, SolarEnvelope, check_fence, check_hours, envelope_suns, existing_shade,
@@ -185,8 +186,7 @@ impl EnvelopeQuestion {
             }
             ProtectedSuns::Days { days, hours } => {
                 let site = self.place.site(scene, context, None)?;
-                let zone = self.place.zone_at(&site, days.times())?;
-                context.add(self.place.remark_on_border(&site, days.times())?);
+                let zone = self.place.clock(&site, days.times(), context)?;
                 context.add(remark_on_solar_hours("the sun is protected", *hours, &zone));
                 let dates = self.dates(days, &site, &zone)?;
                 let params = days.params(&self.place);

@@ -2,7 +2,8 @@
 
 use super::observers::{Eyes, Observers, check_height};
 use super::sections::{LinesSection, PeriodSection};
-use super::sun::{Days, SunPlace, remark_on_solar_hours, sun_days_above};
+use super::sun::{Days, sun_days_above};
+use super::sun_place::{SunPlace, remark_on_solar_hours};
 use super::windows::{GivenWindow, with_number};
 use super::{Answers, Ask, Context, Places, Remark, Scene};
 use crate::eyes::{EyeFault, fault_of};
@@ -136,8 +137,7 @@ impl GlareQuestion {
     fn schedule(&self, scene: &Scene, context: &mut Context) -> Result<(SunSchedule, Zone, Site)> {
         let days = self.stepped();
         let site = self.place.site(scene, context, None)?;
-        let zone = self.place.zone_at(&site, days.times())?;
-        context.add(self.place.remark_on_border(&site, days.times())?);
+        let zone = self.place.clock(&site, days.times(), context)?;
         let params = days.params(&self.place);
         let Some(period) = days.period(&self.place, &site, &zone)? else { return missing_days() };
         let schedule = SunSchedule::new(&sun_days_above(&site, &zone, &period, &params)?, Binning::Exact)?;

@@ -2,8 +2,9 @@
 
 use super::irradiance::remark_on_place_of;
 use super::sections::{MeasuresSection, PlacesReport};
-use super::sun::{Days, SunPlace, moment, remark_on_solar_hours};
+use super::sun::{Days, moment};
 use super::sun_and_sky::{Light, OnTargets};
+use super::sun_place::{SunPlace, remark_on_solar_hours};
 use super::trees::remark_on_leaves;
 use super::window_views::kinds_of_balls;
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
@@ -224,8 +225,7 @@ impl HeatQuestion {
     /// The rows of the days with their suns and surfaces, and the clock.
     fn days(&self, site: &Site, context: &mut Context) -> Result<(HeatDays, Zone)> {
         let weather = self.weather()?;
-        let zone = self.place.zone_at(site, self.days.times())?;
-        context.add(self.place.remark_on_border(site, self.days.times())?);
+        let zone = self.place.clock(site, self.days.times(), context)?;
         let Some(period) = self.dated().period(&self.place, site, &zone)? else { return missing_period() };
         context.add(remark_on_solar_hours("heat is computed", self.hours, &zone));
         let rows = HeatRows { period: &period, hours: self.hours.unwrap_or([0.0, 24.0]), zone: &zone };

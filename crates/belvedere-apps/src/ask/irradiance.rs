@@ -4,8 +4,8 @@ use super::heat::remark_on_wind;
 use super::how_sure::{check_interval, check_interval_scene};
 use super::scene::Whereabouts;
 use super::sections::{LinesSection, MeasuresSection, PlacesReport, PvSection, RadiationSection, RoofsSection};
-use super::sun::SunPlace;
 use super::sun_and_sky::{Light, OnTargets};
+use super::sun_place::SunPlace;
 use super::trees::remark_on_leaves;
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::irradiance::{
@@ -468,8 +468,10 @@ pub(super) fn title(whereabouts: &Whereabouts<'_>) -> String {
 /// Reports the measures of places.
 pub(super) fn summarise(measures: &[Measure], radiation: &Radiation, places: &str, context: &mut Context) {
     if let Some(first) = measures.first() {
-        let under = if radiation.weather().is_none() { ", in a year without clouds" } else { "" };
-        context.headline(format!("energy on {places}{under}: {}", spread(&first.values, 0, "kWh/m²")));
+        // with weather, remarks say of which hours it is
+        let period = radiation.weather().is_none().then(|| format!(", {}", radiation.period_in_words()));
+        let period = period.unwrap_or_default();
+        context.headline(format!("energy on {places}{period}: {}", spread(&first.values, 0, "kWh/m²")));
     }
 }
 

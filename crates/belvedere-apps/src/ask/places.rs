@@ -5,7 +5,7 @@ use super::scene::Scene;
 use super::sections::PlacesReport;
 use super::{Context, Remark, remark_on_outside, single_places};
 use crate::edge::{EdgeReport, near_edge};
-use crate::targets::{CellLevel, CellParams, MeshParams, TargetLayout, Targets};
+use crate::targets::{AreaMeans, CellLevel, CellParams, MeshParams, TargetLayout, Targets};
 use crate::viewshed::cell_for;
 use belvedere_core::ground::{Ground, GroundPoints, MapGrid};
 use belvedere_core::query::MedialScene;
@@ -320,6 +320,14 @@ pub(super) fn test_edge(
     context.report.places.edge = Some(report);
     context.add(remark_on_edge(report.targets_near_edge, targets.target_count()));
     Ok(flags)
+}
+
+/// A warning of areas over which no cell has a value.
+#[must_use]
+pub fn remark_on_empty_areas(areas: &[AreaMeans]) -> Option<Remark> {
+    let empty = areas.iter().filter(|area| area.cells == 0).count();
+    let so = "hold no cell with a value: they lie outside the scene, under roofs, or are smaller than cells";
+    Remark::of_share("areas-without-cells", empty, areas.len(), "areas", so)
 }
 
 /// A warning that `near` of `count` targets are near the edge of the cloud; `None` where they are few.

@@ -4,8 +4,9 @@ mod casters;
 
 use super::how_sure::HowSure;
 use super::sections::{MeasuresSection, PlacesReport};
-use super::sun::{MAX_LISTED_SUNS, NamedSun, SunPlace, Suns};
+use super::sun::{MAX_LISTED_SUNS, NamedSun, Suns};
 use super::sun_and_sky::{Light, OnTargets};
+use super::sun_place::SunPlace;
 use super::trees::remark_on_leaves;
 use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
 use crate::shadow::{

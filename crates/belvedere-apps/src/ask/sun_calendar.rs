@@ -2,8 +2,9 @@
 
 use super::places::test_edge;
 use super::sections::{LinesSection, MeasuresSection, PeriodSection, PlacesReport};
-use super::sun::{Days, SunPlace, sun_days_above};
+use super::sun::{Days, sun_days_above};
 use super::sun_hours::{days_in_words, days_of_rule, missing_period, remark_on_hours_of_rules};
+use super::sun_place::SunPlace;
 use super::window_views::kinds_of_balls;
 use super::windows::GivenWindows;
 use super::{Answers, Ask, Context, Places, Scene, spread};
@@ -79,8 +80,7 @@ impl SunCalendarQuestion {
     fn schedule(&self, scene: &Scene, context: &mut Context) -> Result<(SunSchedule, Option<SunRule>, Zone, Site)> {
         let days = self.stepped();
         let site = self.place.site(scene, context, None)?;
-        let zone = self.place.zone_at(&site, days.times())?;
-        context.add(self.place.remark_on_border(&site, days.times())?);
+        let zone = self.place.clock(&site, days.times(), context)?;
         let params = days.params(&self.place);
         let rule = self.rule.as_deref().map(SunRule::parse).transpose()?;
         let (of_days, params) = match (&rule, days.period(&self.place, &site, &zone)?) {

@@ -1,6 +1,6 @@
 //! Position of the sun above a scene.
 
-use super::sun::SunPlace;
+use super::sun_place::SunPlace;
 use super::{Answers, Ask, Context, Places, Scene};
 use crate::sun::sun_position_with;
 use belvedere_data::Result;
@@ -45,8 +45,7 @@ impl Ask for SunPositionQuestion {
         _control: &Control<'_>,
     ) -> Result<Answers<Vec<SunStands>>> {
         let site = self.place.site(scene, context, None)?;
-        let zone = self.place.zone_at(&site, &self.times)?;
-        context.add(self.place.remark_on_border(&site, &self.times)?);
+        let zone = self.place.clock(&site, &self.times, context)?;
         let stands = |time: &String| {
             let instant = self.place.instant(time, &zone)?;
             let position = sun_position_with(&site, instant, self.place.refraction)?;

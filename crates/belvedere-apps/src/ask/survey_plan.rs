@@ -3,7 +3,8 @@
 use super::cameras::{CameraSite, Candidates};
 use super::observers::{Reach, Standing, check_height, skip_unfit, stand};
 use super::sections::{LinesSection, PairsSection};
-use super::sun::{SunPlace, Suns};
+use super::sun::Suns;
+use super::sun_place::SunPlace;
 use super::{Answers, Ask, Context, GridCells, LinesOfSightQuestion, Places, Remark, Scene};
 use crate::eyes::EyesReport;
 use crate::survey_plan::{STATION_HEIGHT, ScannerParams, SurveyGain, SurveyPlan, missing_pulses, plan_survey};

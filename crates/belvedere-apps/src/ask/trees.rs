@@ -2,7 +2,7 @@
 
 use super::scene::{Scene, Whereabouts};
 use super::sections::TreesSection;
-use super::sun::SunPlace;
+use super::sun_place::SunPlace;
 use super::{Context, Remark};
 use crate::tree_light::{CrownLight, CrownShadows, Leaves, Transmissivity, TreeLight, measured_density};
 use belvedere_core::model::FlightDays;

@@ -47,7 +47,7 @@ impl Zone {
             return Err(Error::InvalidParameter {
                 parameter: Parameter::TimeZone,
                 value: shortened(text),
-                expected: "a name such as Europe/Amsterdam, an offset such as +02:00, or solar",
+                expected: "a name such as Europe/Amsterdam, or an offset such as +02:00",
             });
         };
         let name = zone.iana_name().unwrap_or(text).to_owned();

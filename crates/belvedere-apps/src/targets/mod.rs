@@ -12,6 +12,7 @@
 //! Results are [`Measure`]s with a value for each target. A target without a position (NaN: no ground is known, or it
 //! lies inside an obstacle) has no value.
 
+mod area_means;
 mod cells;
 mod measure;
 mod on_ground;
@@ -20,6 +21,7 @@ mod routes;
 mod surfaces;
 mod windows;
 
+pub use area_means::{AreaMeans, AreaResult};
 pub use cells::{CellLevel, CellParams, CellReport};
 pub use measure::{Measure, MeasureStatistics};
 pub use on_ground::{grid_around, set_on_ground, set_on_terrain};

@@ -21,7 +21,7 @@ pub(crate) struct ViewPage {
     /// Day whose shadows are in the file, at each full hour
     #[arg(long, value_name = "DAY", help_heading = "File", requires = "export")]
     pub(crate) date: Option<String>,
-    /// Time zone of --date, such as Europe/Amsterdam or +01:00 [default: that of the place]
+    /// Time zone of --date: Europe/Amsterdam, +01:00, or solar [default: that of the place]
     #[arg(long, value_name = "ZONE", help_heading = "File", requires = "date", allow_hyphen_values = true)]
     pub(crate) zone: Option<String>,
     /// Viewpoint whose view is in the file, in file coordinates or as LAT,LON; without Z at eye level; repeatable

@@ -22,6 +22,7 @@ fn refuse_flags_of_places(arguments: &IrradianceArguments, outputs: &SkyOutputs)
     let SkyPlaces { places, cell, height, edge_mask, spacing, facing, .. } = &arguments.places;
     let given = [
         ("--measures", outputs.measures.is_some()),
+        ("--by-area", outputs.by_area.by_area.is_some()),
         ("--edge-mask", edge_mask.is_some()),
         ("--surface", places.surface),
         ("--self", places.own),
@@ -40,7 +41,9 @@ fn refuse_flags_of_places(arguments: &IrradianceArguments, outputs: &SkyOutputs)
 pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Summary> {
     let outputs = arguments.outputs.of_places();
     arguments.places.check(&outputs)?;
-    let wants_places = !outputs.output.is_empty() || !arguments.places.places.at.is_empty();
+    let wants_places = !outputs.output.is_empty()
+        || !arguments.places.places.at.is_empty()
+        || arguments.planes.is_empty() && outputs.by_area.by_area.is_some();
     if !wants_places {
         refuse_flags_of_places(arguments, &outputs)?;
     }

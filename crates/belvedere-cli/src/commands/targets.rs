@@ -13,20 +13,21 @@ use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{
-    GridCells, OnTargets, Places, Reach, Remark, Scene, Standing, Turned, position_on_map, standing_on_map,
+    GridCells, OnTargets, Places, Reach, Remark, Scene, Standing, Turned, position_on_map, remark_on_empty_areas,
+    standing_on_map,
 };
-use belvedere::apps::targets::{CellLevel, Facing, Measure, MeshParams, Route};
+use belvedere::apps::targets::{AreaMeans, CellLevel, Facing, Measure, MeshParams, Route};
 use belvedere::apps::viewshed::places_along;
 use belvedere::figures::{Picture, write_png};
 use belvedere::ground::GroundPoints;
 use belvedere::io::{
-    FEATURE_EXTENSIONS, Georeference, MetadataTag, ReadOptions, RowsAre, TextRows, atomic, is_mesh, read_features,
-    write_tif_u8,
+    FEATURE_EXTENSIONS, Georeference, MetadataTag, PolygonArea, ReadOptions, RowsAre, TextRows, atomic, is_mesh,
+    read_features, write_tif_u8,
 };
 use belvedere::raster::Raster;
 use belvedere::results::{
-    ResultKind, TakenFrom, georeference, measure_map, relief_of_cells, values_by_area, write_area_values,
-    write_measures, write_raster,
+    ResultKind, TakenFrom, areas_of, georeference, measure_map, relief_of_cells, write_area_means, write_measures,
+    write_raster,
 };
 use belvedere::{Mesh, PointCloud};
 use std::fs::File;
@@ -234,6 +235,9 @@ impl SkyPlaces {
 
 /// Returns true for places of a map, and for a table whose header has x and y, but no z: they stand on the ground.
 fn lacks_heights(path: &Path) -> bool {
+    if is_mesh(path) {
+        return false;
+    }
     match extension(path).as_str() {
         "csv" | "txt" => {}
         other => return FEATURE_EXTENSIONS.contains(&other),
@@ -328,16 +332,21 @@ impl<'a> TargetOutput<'a> {
         run: &mut CommandContext,
     ) -> Result<()> {
         let frame = &self.on.targets.frame;
-        let features = read_features(areas, &frame.crs)?;
-        let found = values_by_area(&features, &self.on.targets, measures)?;
-        if found.is_empty() {
+        let areas_read = areas_of(&read_features(areas, &frame.crs)?);
+        if areas_read.is_empty() {
             return Err(Usage(format!("--areas: {} has no polygons", areas.display())).into());
         }
+        let local =
+            |ring: &Vec<[f64; 2]>| ring.iter().map(|[x, y]| [x - frame.origin[0], y - frame.origin[1]]).collect();
+        let local = |rings: &Vec<Vec<[f64; 2]>>| rings.iter().map(local).collect();
+        let means = |area: &PolygonArea| {
+            let polygons: Vec<Vec<Vec<[f64; 2]>>> = area.polygons.iter().map(local).collect();
+            AreaMeans::of(&polygons, &self.on.targets, measures)
+        };
+        let means = areas_read.iter().map(means).collect::<belvedere::Result<Vec<_>>>()?;
+        run.summary.remarks(remark_on_empty_areas(&means));
         warn_of_geojson(std::slice::from_ref(&output.to_owned()), &frame.crs, &mut run.summary);
-        let empty = found.iter().filter(|area| area.cells == 0).count();
-        let so = "hold no cell with a value: they lie outside the scene, under roofs, or are smaller than cells";
-        run.summary.remarks(Remark::of_share("areas-without-cells", empty, found.len(), "areas", so));
-        run.stage("writing", 0, |_| write_area_values(output, &found, frame))?;
+        run.stage("writing", 0, |_| write_area_means(output, &areas_read, &means, frame))?;
         Ok(())
     }
 

@@ -10,8 +10,8 @@ use crate::run::CommandContext;
 use crate::summary::{Summary, note};
 use crate::written_files::check_input;
 use anyhow::{Context, Result, anyhow};
-use belvedere::apps::ask;
-use belvedere::apps::sun::{Date, Site, Zone, ZoneOfPlace};
+use belvedere::apps::ask::{self, SunPlace};
+use belvedere::apps::sun::{Date, Site, Zone};
 use belvedere::io::{Source, atomic, has_point_results, is_ball_file, is_mesh};
 use belvedere::model::SceneModel;
 use belvedere::results::file_name;
@@ -166,13 +166,14 @@ fn title(files: &[PathBuf]) -> String {
 fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Global) -> Result<Summary> {
     check_output("--export", output, &["html"])?;
     let date = arguments.date.as_deref().map(Date::parse).transpose()?;
-    let zone = arguments.zone.as_deref().map(Zone::parse).transpose()?;
+    let place = SunPlace { zone: arguments.zone.clone(), ..SunPlace::default() };
+    place.check()?;
     let loading = Loading::default();
     let mut run = CommandContext::new(global);
     let day = |frame: &Frame, bounds: &Bounds| -> Result<Option<(Date, Zone)>> {
-        Ok(match (date, &zone) {
-            (None, _) => None,
-            (Some(date), zone) => {
+        Ok(match date {
+            None => None,
+            Some(date) => {
                 let site = Site::of_scene(frame, bounds, None, None).map_err(|error| match error {
                     Error::MissingAttribute { .. } => {
                         anyhow!(
@@ -181,9 +182,7 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
                     }
                     other => other.into(),
                 })?;
-                let of_place =
-                    || ZoneOfPlace::of(&site.0).map_or_else(|| Zone::mean_solar(&site.0), |found| found.zone);
-                Some((date, zone.clone().unwrap_or_else(of_place)))
+                Some((date, place.zone_at(&site.0, [])?))
             }
         })
     };

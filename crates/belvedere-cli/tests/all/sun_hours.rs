@@ -197,6 +197,13 @@ fn what_cannot_be_is_refused_with_advice() {
     // the shortest day of Sydney, on its clocks
     assert!((run["period"]["possible_hours_per_day"].as_f64().unwrap() - 9.85).abs() < 0.1, "{run}");
     assert_eq!(run["period"]["time_zone"], "Australia/Sydney");
+    // clocks differ between Elvas and Badajoz, unless a zone or an offset is given
+    let border = "sun-position --location 38.88,-7.1 -o sun.csv --time 2026-06-21T12:00";
+    let near = |flags: &str| {
+        let run = place.run(&format!("{border}{flags}"));
+        run.stderr.contains("places nearby have those of Europe/Madrid")
+    };
+    assert_eq!([near(""), near(" --zone Europe/Lisbon"), near("+01:00")], [true, false, false]);
     // the open sea has no zone
     let sea = format!("sun-hours {lost} --location 0,-30 -o sea.csv");
     assert_eq!(place.summary(&format!("{sea} --date 2026-06-21"))["period"]["time_zone"], "mean solar time");

@@ -18,7 +18,7 @@ mod raster;
 #[cfg(feature = "figures")]
 mod wirelines;
 
-pub use by_area::{AreaValues, values_by_area, write_area_values};
+pub use by_area::{areas_of, write_area_means};
 pub use calendar::write_calendar;
 #[cfg(feature = "figures")]
 pub use difference::{difference_map, relief_of};

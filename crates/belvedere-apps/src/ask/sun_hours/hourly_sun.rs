@@ -85,7 +85,7 @@ impl SunHoursQuestion {
         self.place.check()?;
         let mut context = Context::default();
         let site = self.place.site(scene, &mut context, None)?;
-        let zone = self.place.zone_at(&site, self.days.times())?;
+        let zone = self.place.clock(&site, self.days.times(), &mut context)?;
         let year = match year {
             Some(year) => year,
             None => self.plan(&site)?.0.dates().next().map_or(CLEAR_SKY_YEAR, Date::year),
