@@ -26,6 +26,7 @@ def test_ball_files_are_the_same_bytes(scene, run_program, folder):
     ("name", "flags", "arguments"),
     [
         ("time", ["--time", "2026-06-21T15:00+02:00"], {"time": "2026-06-21T15:00+02:00"}),
+        ("clock", ["--time", "2026-06-21T15:00"], {"time": "2026-06-21T15:00"}),
         ("sun", ["--sun", "200,25"], {"sun": (200, 25)}),
         ("soft", ["--sun", "200,25", "--soft"], {"sun": (200, 25), "soft": True}),
         ("top", ["--sun", "120,40", "--surface", "--cell", "1"], {"sun": (120, 40), "surface": True, "cell": 1}),

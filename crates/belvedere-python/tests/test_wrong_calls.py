@@ -31,7 +31,6 @@ WRONG = {
     "numpy time": (lambda s, c, f: s.shadow(time=np.datetime64("2026-06-21T15:00")), "time", "UTC"),
     "several naive times": (lambda s, c, f: s.shadow(time=[NAIVE]), "time", "tzinfo"),
     "number as time": (lambda s, c, f: s.shadow(time=15), "time", "datetime"),
-    "text without offset": (lambda s, c, f: s.shadow(time="2026-06-21T15:00"), "time", "+02:00"),
     "naive period": (lambda s, c, f: s.sun_hours(period=(NAIVE, NAIVE)), "period", "tzinfo"),
     "time as date": (lambda s, c, f: s.sun_hours(date=NAIVE), "date", "datetime.date"),
     "no days": (lambda s, c, f: s.sun_hours(), "period", "days"),

@@ -217,6 +217,39 @@ fn a_shapefile_has_its_attributes_and_its_system_beside_it() {
 }
 
 #[test]
+fn names_of_a_shapefile_are_in_the_encoding_that_it_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = shapefile_in(folder.path());
+    let [table, beside] = ["dbf", "cpg"].map(|extension| path.with_extension(extension));
+    let original = std::fs::read(&table).unwrap();
+    // "garden" of six bytes, in encodings of one byte a letter and of two
+    let named = |bytes: &[u8; 6], mark: u8, encoding: Option<&str>| {
+        let mut table_bytes = original.clone();
+        let at = table_bytes.windows(6).position(|window| window == b"garden").unwrap();
+        table_bytes[at..at + 6].copy_from_slice(bytes);
+        table_bytes[29] = mark;
+        std::fs::write(&table, table_bytes).unwrap();
+        let _ = std::fs::remove_file(&beside);
+        if let Some(name) = encoding {
+            std::fs::write(&beside, name).unwrap();
+        }
+        read_features(&path, &rd()).map(|features| features[0].properties["name"].as_str().unwrap().to_owned())
+    };
+    let (latin, utf8, cyrillic) = (b"Stra\xdfe", b"Gr\xc3\xbc_ ", b"\xd1\xe0\xe4   ");
+    for encoding in ["ISO-8859-1", "1252", "LATIN1"] {
+        assert_eq!(named(latin, 0, Some(encoding)).unwrap(), "Straße");
+    }
+    assert_eq!(named(utf8, 0, Some("UTF-8")).unwrap(), "Grü_");
+    assert_eq!(named(cyrillic, 0, Some("1251")).unwrap(), "Сад");
+    // without a file the header counts, 0x57 for Western European and 0xC9 for Cyrillic, and else Western European
+    assert_eq!(named(latin, 0x57, None).unwrap(), "Straße");
+    assert_eq!(named(cyrillic, 0xc9, None).unwrap(), "Сад");
+    assert_eq!(named(latin, 0, None).unwrap(), "Straße");
+    let error = named(latin, 0, Some("EBCDIC")).unwrap_err().to_string();
+    assert!(error.contains("yards.cpg") && error.contains("EBCDIC") && error.contains("UTF-8"), "{error}");
+}
+
+#[test]
 fn damaged_shapefiles_are_refused_or_read() {
     let folder = tempfile::tempdir().unwrap();
     let path = shapefile_in(folder.path());

@@ -5,7 +5,6 @@ from __future__ import annotations
 import datetime
 import operator
 import os
-import re
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from numbers import Integral, Real
@@ -202,15 +201,11 @@ def path_text(path: object, what: str) -> str:
     return os.fspath(path)
 
 
-#: The end of a time that names an instant: an offset from UTC, or a zone in brackets.
-_OFFSET = re.compile(r"(Z|[+-]\d\d(:?\d\d){0,2}|\])$", re.IGNORECASE)
-
-
 def time_text(time: Time, what: str = "time") -> str:
-    """ISO 8601 with an offset."""
+    """ISO 8601; without an offset it is on the clocks of the place."""
     if isinstance(time, str):
-        if "T" not in time.upper().replace(" ", "T") or not _OFFSET.search(time.strip()):
-            advice = "give day, time and offset, such as 2026-06-21T15:00+02:00 or 2026-06-21T15:00[Europe/Amsterdam]"
+        if "T" not in time.strip().upper().replace(" ", "T"):
+            advice = "give day and time, such as 2026-06-21T15:00 on the clocks of the place, or 2026-06-21T15:00+02:00"
             raise wrong(what, repr(time), advice)
         return time
     if isinstance(time, datetime.datetime):

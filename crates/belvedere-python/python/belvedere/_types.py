@@ -64,7 +64,8 @@ class _System(Protocol):
 
 #: A path, bytes, a file that is open for reading in binary mode, or an object of laspy.
 Source = Union[str, "os.PathLike[str]", bytes, _File, _Laspy]
-#: An instant: a `datetime` or a pandas `Timestamp` with a time zone, or ISO 8601 text with an offset.
+#: An instant: a `datetime` or a pandas `Timestamp` with a time zone, or ISO 8601 text, which is on the clocks of the
+#: place where it has no offset.
 Time = Union[datetime.datetime, str]
 #: A day: a `date`, a midnight of pandas, a day of NumPy, or ISO 8601 text.
 Day = Union[datetime.date, np.datetime64, str]
