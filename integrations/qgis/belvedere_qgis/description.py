@@ -56,6 +56,8 @@ GEOMETRIES = {
     ("comfort", "--route"): "line",
     ("envelope", "--parcel"): "polygon",
     ("report", "--area"): "polygon",
+    # of all commands
+    (None, "--areas"): "polygon",
 }
 # Commands whose tables become the same lines as their GeoJSON, which rounds degrees.
 LINES_IN_TABLES = ("line-of-sight",)
@@ -216,7 +218,7 @@ def _parameter(command, described, plain):
         help=plain(described["details"] or described["text"]) + without,
         default=default,
         choices=tuple((choice["name"], plain(choice["text"])) for choice in described["choices"]),
-        geometry=GEOMETRIES.get((command, flag), "any"),
+        geometry=GEOMETRIES.get((command, flag)) or GEOMETRIES.get((None, flag), "any"),
         is_required=described["required"] and kind != "written",
         is_repeatable=described["repeatable"],
         is_advanced=not is_usual and (described["builds_balls"] or described["heading"] in RARE),

@@ -60,6 +60,7 @@ def test_every_algorithm_has_a_cloud_a_result_and_help(commands):
         ("shadow", "--location", {"kind": "place"}),
         ("shadow", "--sun", {"kind": "text", "is_repeatable": True}),
         ("shadow", "--soft", {"kind": "flag", "default": False}),
+        ("heat", "--areas", {"kind": "layer", "geometry": "polygon"}),
         ("sun-hours", "--time-step-min", {"kind": "number", "default": 10.0}),
         ("envelope", "--parcel", {"kind": "layer", "geometry": "polygon", "is_required": True}),
         ("envelope", "--protect", {"kind": "layer", "geometry": "any", "is_required": True}),

@@ -94,7 +94,7 @@ pub(crate) struct ReportArguments {
     /// Year of days that are given without a year [default: this year]
     #[arg(long, value_name = "Y", help_heading = "Rules and days")]
     pub(crate) year: Option<i16>,
-    /// Time between two sun positions in minutes, 1/6 to 60 [default: 2 for windows, 10 for areas]
+    /// Time between two suns in minutes, 1/6 to 60 [default: 2 for windows, 10 for areas]
     #[arg(long = "time-step-min", value_name = "MIN", value_parser = above_zero::<f64>, allow_negative_numbers = true,
         help_heading = "Rules and days")]
     pub(crate) step: Option<f64>,
