@@ -59,5 +59,18 @@ def test_wirelines_are_pictures_and_a_table_of_each_place_and_tower(scene, folde
     assert row["tip_deg"] == pytest.approx(np.degrees(np.arctan2(60 - 90, np.hypot(40, 20))), abs=0.01)
     # nothing stands between that high
     assert row["disc_visible_share"] == 1.0 and np.isnan(table["hub_deg"][2])
+    visible = table["visible_m"] > 0
+    assert visible.any() and set(table["unproven"][visible]) <= {0, 1} and table["unproven"][~visible].isna().all()
+    # of a mast that is seen whole, the line to its middle counts
+    checked = 0
+    for eye in [(154980.0, 463000.0, 90.0), (154975.0, 462985.0, 3.0)]:
+        mast = {"x": [155025.0], "y": [463005.0], "base": [eye[2]], "tip": [30.0]}
+        scene.towers(mast, targets=[eye], wirelines=folder / "mast")
+        (row,) = pandas.read_csv(folder / "mast" / "wirelines.csv").itertuples()
+        if row.visible_m == 30.0:
+            answer = scene.line_of_sight(eye, (155025.0, 463005.0, eye[2] + 15.0)).answer
+            assert bool(row.unproven) == (answer == belvedere.Answer.UNPROVEN)
+            checked += 1
+    assert checked > 0
     with pytest.raises(belvedere.BelvedereError, match="single places, where wirelines are wanted"):
         scene.towers(TOWERS, cell=8, wirelines=folder / "views")
