@@ -1,7 +1,7 @@
 //! Pairs of sources that contradict each other: something is said of every one. What two agree on is taken in silence.
 
+use belvedere::apps::ask::SunPlace;
 use belvedere::apps::ask::scene::Whereabouts;
-use belvedere::apps::ask::sun::SunPlace;
 use belvedere::apps::ask::{Context, Remark};
 use belvedere::control::Control;
 use belvedere::crs::{Crs, US_SURVEY_FOOT, text};
