@@ -5,6 +5,7 @@
 
 pub mod balls;
 pub mod building_outlines;
+pub mod cast;
 pub mod cloud;
 pub mod contradiction;
 pub mod control;

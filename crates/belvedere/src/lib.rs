@@ -72,8 +72,8 @@ pub use belvedere_data::{
     PointCloud, Result, SurfacePatches, cloud,
 };
 pub use belvedere_data::{
-    contradiction, control, crs, elevation, error, frame, horizon, mesh, patches, polygon, random, raster, report,
-    shown, sky_region, trajectory, vector, view, weather,
+    cast, contradiction, control, crs, elevation, error, frame, horizon, mesh, patches, polygon, random, raster,
+    report, shown, sky_region, trajectory, vector, view, weather,
 };
 #[cfg(feature = "figures")]
 pub use belvedere_figures as figures;
