@@ -15,18 +15,19 @@ use crate::device::with_device;
 use crate::run::CommandContext;
 use crate::scene_config::BallParameters;
 use crate::summary::Summary;
-use anyhow::{Result, bail};
+use anyhow::{Result, anyhow, bail};
 use belvedere::apps::ask::scene::GroundStore;
 use belvedere::apps::ask::{self, ViewFrom};
-use belvedere::cache::{BuiltScene, ReadBefore, scene_model};
+use belvedere::cache::{BuiltScene, ReadBefore, model_of_balls, scene_model};
 use belvedere::crs::CrsKind;
 use belvedere::depth::Profile;
-use belvedere::io::{ReadOptions, ReadReport, UpAxis, is_ball_file, read_balls, read_cloud, web_address};
+use belvedere::io::{ReadOptions, ReadReport, UpAxis, is_ball_file, read_cloud, web_address};
 use belvedere::model::{BallParams, ModelParams, SceneModel};
 use belvedere::query::{BlockRule, UnprovenAs};
 use belvedere::vector::to_f32;
 use belvedere::view::{CAMERA_FOV, CAMERA_SIZE, PANORAMA_WIDTH, View, default_pixel_size, to_sun};
-use belvedere::{Bounds, Error, PointCloud};
+use belvedere::{Bounds, Error, Parameter, PointCloud};
+use serde_json::{Map, Value};
 use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
@@ -229,15 +230,9 @@ fn present_scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandCo
         && is_ball_file(path)?
     {
         refuse_flags_of_clouds(arguments, &parameters, path)?;
-        let parts = run.stage("reading balls", 0, |_| read_balls(path))?;
-        if parts.provenance.get("side").is_some_and(|side| side == "exterior") {
-            bail!(
-                "{}: these are exterior balls (--side exterior), which block nothing; use interior balls",
-                path.display()
-            );
-        }
-        run.summary.add("balls_read", parts.balls.len());
-        let model = SceneModel::from_parts(parts)?;
+        let model = model_of_balls(path, run.cache.as_ref(), &run.control())
+            .map_err(|error| with_file_of_exterior_balls(error, path))?;
+        run.summary.add("balls_read", model.balls().len());
         let cloud = PointCloud::in_frame(model.frame().clone());
         return Ok(LoadedScene { model, cloud, left_out: ReadReport::default(), profile, ground_store: None });
     }
@@ -248,10 +243,15 @@ fn present_scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandCo
         let cloud = PointCloud::in_frame(model.frame().clone());
         return Ok(LoadedScene { model, cloud, left_out: ReadReport::default(), profile, ground_store: None });
     }
-    let (read, notes) = run.aside(|run| read_counted(&arguments.input, run));
-    let notes = notes.into_entries();
+    let (mut cloud, left_out, notes) = match kept_points(&arguments.input, run) {
+        Some((cloud, notes)) => (cloud, ReadReport::default(), notes),
+        None => {
+            let (read, notes) = run.aside(|run| read_counted(&arguments.input, run));
+            let (cloud, left_out) = read?;
+            (cloud, left_out, notes.into_entries())
+        }
+    };
     run.summary.add_report(&notes);
-    let (mut cloud, left_out) = read?;
     let frame = cloud.frame.clone();
     let params = params::model(&parameters, balls, &frame.crs, run)?;
     let given = match points {
@@ -263,11 +263,25 @@ fn present_scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandCo
         let before = ReadBefore { frame: cloud.frame.clone(), cloud: contents.clone(), notes };
         // what fails here has failed for the scene as well, which says it
         let _ = cache.keep_reading(&arguments.input.clouds, &arguments.input.read_options(), &before);
+        if points == KeepPoints::Keep && left_out.left_out_count() == 0 {
+            let _ = run.stage("keeping points", 0, |_| cache.keep_points(contents, &cloud));
+        }
     }
     let kept = run.cache.as_ref().zip(built.cloud.as_ref()).map(|(cache, contents)| cache.ground_of(contents));
     // the ground that is kept is that of lines fitted to each other
     let ground_store = kept.filter(|_| !parameters.cleaning.keep_strips);
     Ok(LoadedScene { model: reported(built, run), cloud, left_out, profile, ground_store })
+}
+
+/// Adds the name of a file of exterior balls to the error that refuses them.
+fn with_file_of_exterior_balls(error: Error, path: &Path) -> anyhow::Error {
+    match error {
+        Error::InvalidParameter { parameter: Parameter::BallSide, .. } => anyhow!(
+            "{}: these are exterior balls (--side exterior), which block nothing; use interior balls",
+            path.display()
+        ),
+        error => error.into(),
+    }
 }
 
 /// The model of a cloud that was read from `input`: found in the cache, or built and kept there.
@@ -312,6 +326,14 @@ fn kept_scene(
     let Some(found) = cache.find(&before.cloud, &params, false, &run.control()) else { return Ok(None) };
     run.summary.add_report(&before.notes);
     Ok(Some(reported(found, run)))
+}
+
+/// Returns the points of files that were read before and have not changed, if they were kept, and the notes of reading.
+fn kept_points(input: &CloudInput, run: &CommandContext) -> Option<(PointCloud, Map<String, Value>)> {
+    let cache = run.cache.as_ref()?;
+    let before = cache.read_before(&input.clouds, &input.read_options())?;
+    let cloud = run.compute("reading kept points", || cache.points(&before))?;
+    Some((cloud, before.notes))
 }
 
 /// Flags that say how to make balls are of no use where they are made already.

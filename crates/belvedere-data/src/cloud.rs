@@ -158,32 +158,41 @@ macro_rules! attributes {
     };
 }
 
-attributes! {
-    /// Unit normals as given by the file, (N, 3); (0, 0, 0) where the file has none for a point.
-    normals: [f32; 3],
-    /// ASPRS class.
-    classification: u8,
-    /// GPS time in seconds, see [`Attributes::gps_time_kind`].
-    gps_time: f64,
-    /// Number of the return in its pulse, from 1.
-    return_number: u8,
-    /// Number of returns of its pulse.
-    return_count: u8,
-    /// Scan angle in radians.
-    scan_angle: f32,
-    /// Flight line.
-    point_source_id: u16,
-    /// Channel of a multi-channel scanner.
-    scanner_channel: u8,
-    /// LAS flags: 1 synthetic, 2 key point, 4 withheld, 8 overlap.
-    flags: u8,
-    /// Intensity.
-    intensity: u16,
-    /// Red, green, blue, 0 to 65535 (readers widen 8-bit colours).
-    color: [u16; 3],
-    /// Index into [`PointCloud::scanner_positions`]; `u16::MAX` where unknown.
-    scanner_index: u16,
+/// Calls the macro `$apply!` with documentation, name and type of each column of [`Attributes`].
+#[doc(hidden)]
+#[macro_export]
+macro_rules! attribute_columns {
+    ($apply:ident) => {
+        $apply! {
+            /// Unit normals as given by the file, (N, 3); (0, 0, 0) where the file has none for a point.
+            normals: [f32; 3],
+            /// ASPRS class.
+            classification: u8,
+            /// GPS time in seconds, see [`Attributes::gps_time_kind`].
+            gps_time: f64,
+            /// Number of the return in its pulse, from 1.
+            return_number: u8,
+            /// Number of returns of its pulse.
+            return_count: u8,
+            /// Scan angle in radians.
+            scan_angle: f32,
+            /// Flight line.
+            point_source_id: u16,
+            /// Channel of a multi-channel scanner.
+            scanner_channel: u8,
+            /// LAS flags: 1 synthetic, 2 key point, 4 withheld, 8 overlap.
+            flags: u8,
+            /// Intensity.
+            intensity: u16,
+            /// Red, green, blue, 0 to 65535 (readers widen 8-bit colours).
+            color: [u16; 3],
+            /// Index into [`PointCloud::scanner_positions`]; `u16::MAX` where unknown.
+            scanner_index: u16,
+        }
+    };
 }
+
+attribute_columns!(attributes);
 
 impl PointCloud {
     /// A cloud without attributes from coordinates in metres, (N, 3), f64; the origin is chosen near their centre.

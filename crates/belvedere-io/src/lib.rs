@@ -125,7 +125,10 @@ mod write_trajectory;
 mod xyz;
 
 #[cfg(feature = "npy")]
-pub use ball_formats::{read_kept_model, read_kept_notes, read_kept_rasters, write_kept_model, write_kept_rasters};
+pub use ball_formats::{
+    read_kept_cloud, read_kept_model, read_kept_notes, read_kept_rasters, write_kept_cloud, write_kept_model,
+    write_kept_rasters,
+};
 pub use balls::{is_ball_file, read_balls, write_balls};
 pub use cityjson::{LevelOfDetail, read_cityjson};
 pub use cloud_batches::{CloudBatch, CloudBatches, read_batches};

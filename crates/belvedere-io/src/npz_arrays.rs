@@ -2,6 +2,7 @@
 
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 
+use bytemuck::Pod;
 use npyz::{AutoSerialize, Deserialize, Order, WriteOptions, WriterBuilder};
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
@@ -90,6 +91,8 @@ const MAX_BYTES_OF_SMALL: u64 = 1 << 26;
 const MAX_BYTES_FOR_EACH: u64 = 100;
 /// Bytes of an entry that are read at once.
 const BUFFER_BYTES: usize = 1 << 16;
+/// Values of an array that are read first; then as many again as are there.
+const VALUES_AT_ONCE: usize = 1 << 16;
 /// The record that ends an archive without a comment.
 const END_BYTES: usize = 22;
 
@@ -127,7 +130,7 @@ pub(crate) fn open<R: Read + Seek>(mut reader: R, size: u64) -> io::Result<ZipAr
 }
 
 /// The rows of an array of shape (M, N).
-pub(crate) fn rows<T: Deserialize + Clone, const N: usize, R: Read + Seek>(
+pub(crate) fn rows<T: Number, const N: usize, R: Read + Seek>(
     archive: &mut ZipArchive<R>,
     name: &str,
 ) -> io::Result<Vec<[T; N]>> {
@@ -135,8 +138,13 @@ pub(crate) fn rows<T: Deserialize + Clone, const N: usize, R: Read + Seek>(
     if shape.len() != 2 || shape[1] != N as u64 {
         return Err(invalid(format!("the array {name} has shape {shape:?}, but must be (M, {N})")));
     }
-    Ok(values.as_chunks::<N>().0.to_vec())
+    Ok(bytemuck::try_cast_vec(values).unwrap_or_else(|(_, values)| values.as_chunks::<N>().0.to_vec()))
 }
+
+/// Numbers of arrays. In a file of the processor's byte order they are the bytes of memory.
+pub(crate) trait Number: Deserialize + AutoSerialize + Pod {}
+
+impl<T: Deserialize + AutoSerialize + Pod> Number for T {}
 
 /// Names of the arrays of an archive.
 pub(crate) fn array_names<R: Read + Seek>(archive: &ZipArchive<R>) -> impl Iterator<Item = &str> {
@@ -152,7 +160,7 @@ pub(crate) fn invalid(what: String) -> io::Error {
 }
 
 /// Reads values and shape of an array of at most `max` values, and checks the sum of the whole.
-pub(crate) fn values<T: Deserialize, R: Read + Seek>(
+pub(crate) fn values<T: Number, R: Read + Seek>(
     archive: &mut ZipArchive<R>,
     name: &str,
     max: u64,
@@ -176,16 +184,23 @@ pub(crate) fn values<T: Deserialize, R: Read + Seek>(
         let what = format!("the array {name} is in Fortran order; save it with numpy.ascontiguousarray");
         return Err(invalid(what));
     }
-    let mut file = BufReader::with_capacity(BUFFER_BYTES, file);
-    let data = npyz::NpyFile::with_header(header, &mut file).data::<T>();
-    let data = data.map_err(|e| invalid(format!("array {name}: {e}")))?;
-    if count.is_none_or(|count| count > max) {
+    let Some(count) = count.and_then(|count| usize::try_from(count).ok()).filter(|&count| count as u64 <= max) else {
         return Err(invalid(format!("the array {name} is too large")));
-    }
-    // the shape was checked against the size of the entry, but that size not yet against the data: no capacity
+    };
+    let mut file = BufReader::with_capacity(BUFFER_BYTES, file);
     let mut values = Vec::new();
-    for value in data {
-        values.push(value?);
+    if header.dtype() == T::default_dtype() {
+        // the shape was checked against the size of the entry, but that size not yet against the data: step by step
+        while values.len() < count {
+            let start = values.len();
+            values.resize(count.min(start + start.max(VALUES_AT_ONCE)), T::zeroed());
+            file.read_exact(bytemuck::cast_slice_mut(&mut values[start..]))?;
+        }
+    } else {
+        let data = npyz::NpyFile::with_header(header, &mut file).data::<T>();
+        for value in data.map_err(|e| invalid(format!("array {name}: {e}")))? {
+            values.push(value?);
+        }
     }
     // the checksum of an entry is tested at its end, which the values alone do not reach
     let beyond = io::copy(&mut file, &mut io::sink()).map_err(|e| invalid(format!("array {name} is damaged: {e}")))?;

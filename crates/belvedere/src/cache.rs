@@ -18,10 +18,12 @@ pub use survey::SurveyFolder;
 
 use crate::apps::ask::Remark;
 use crate::control::Control;
+use crate::io::read_balls;
 use crate::model::{ModelParams, SceneModel};
 use crate::{Error, PointCloud, Result};
 use serde_json::{Map, Value};
 use std::borrow::Cow;
+use std::path::Path;
 
 /// A model that was built or found.
 #[derive(Debug)]
@@ -108,6 +110,26 @@ pub fn scene_model(
     let kept = control.stage("keeping scene", 0, || cache.keep(&key, params, &model, &report, &name));
     let origin = kept.map_or_else(SceneOrigin::NotKept, |()| SceneOrigin::Kept);
     Ok(BuiltScene { model, report, origin, cloud: Some(key) })
+}
+
+/// The model of a ball file: found in `cache` with the trees that questions need, or read, indexed and kept there.
+///
+/// # Errors
+/// Those of reading ball files and of [`SceneModel::from_parts`].
+pub fn model_of_balls(path: &Path, cache: Option<&SceneCache>, control: &Control<'_>) -> Result<SceneModel> {
+    let read = || control.stage("reading balls", 0, || SceneModel::from_parts(read_balls(path)?));
+    let Some((cache, key)) = cache.zip(CloudKey::of_file(path)) else { return read() };
+    let params = ModelParams::default();
+    if let Some(found) = cache.find(&key, &params, false, control) {
+        return Ok(found.model);
+    }
+    let mut model = read()?;
+    model.index(control)?;
+    model.index_proof(control)?;
+    let name = path.display().to_string();
+    // balls that cannot be kept are indexed again
+    let _ = control.stage("keeping scene", 0, || cache.keep(&key, &params, &model, &Map::new(), &name));
+    Ok(model)
 }
 
 /// The files of a cloud, as a list of scenes shows them.

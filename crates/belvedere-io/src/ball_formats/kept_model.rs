@@ -1,14 +1,19 @@
-//! Files of a cache, as archives of arrays: a model with all that takes long to make, and rasters. They are no exchange
-//! format: only the program that wrote them reads them.
+//! Files of a cache, as archives of arrays: a model with all that takes long to make, the points of a cloud, and
+//! rasters. They are no exchange format: only the program that wrote them reads them.
 
 use super::npz::{read_arrays, write_arrays};
-use crate::npz_arrays::{array, has, invalid, open, rows, values, write_archive};
+use crate::npz_arrays::{Number, array, has, invalid, open, rows, values, write_archive};
 use crate::output::Output;
 use crate::source::{Input, Source};
+use belvedere_data::attribute_columns;
+use belvedere_data::cloud::{CloudFile, FileRows, GpsTimeKind};
 use belvedere_data::model::{DerivedParts, ModelParts, ProofParts, TreeParts};
 use belvedere_data::raster::Raster;
-use belvedere_data::{Error, Result};
+use belvedere_data::{Error, Frame, PointCloud, Result};
+use bytemuck::Pod;
+use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Seek, Write};
+use std::path::PathBuf;
 use zip::{ZipArchive, ZipWriter};
 
 /// Writes a model, its derived data, and notes about both, so that [`read_kept_model`] reads the same numbers.
@@ -63,6 +68,128 @@ pub fn read_kept_model<'a>(source: impl Into<Source<'a>>) -> Result<(ModelParts,
     let derived = read_derived(&mut archive).map_err(malformed)?;
     let notes = notes(&mut archive).map_err(malformed)?;
     Ok((parts, derived, notes))
+}
+
+/// Contents of a cloud beside its columns.
+#[derive(Deserialize, Serialize)]
+struct CloudNotes {
+    /// Path, number of rows, other attributes and records of each file.
+    files: Vec<(PathBuf, u64, Vec<String>, Vec<String>)>,
+    has_all_rows: bool,
+    is_adjusted_standard_time: bool,
+}
+
+/// Value of a column of a cloud.
+trait ColumnValue: Pod {
+    type Number: Number;
+    const NUMBERS: u64 = (size_of::<Self>() / size_of::<Self::Number>()) as u64;
+}
+
+macro_rules! column_values {
+    ($($value:ty: $number:ty,)*) => {
+        $(impl ColumnValue for $value {
+            type Number = $number;
+        })*
+    };
+}
+
+column_values! { u8: u8, u16: u16, u64: u64, f32: f32, f64: f64, [u16; 3]: u16, [f32; 2]: f32, [f32; 3]: f32, }
+
+fn write_column<T: ColumnValue, W: Write + Seek>(
+    archive: &mut ZipWriter<W>,
+    name: &str,
+    column: &[T],
+) -> io::Result<()> {
+    let numbers: &[T::Number] = bytemuck::cast_slice(column);
+    array(archive, name, &[column.len() as u64, T::NUMBERS], numbers.iter().copied())
+}
+
+fn read_column<T: ColumnValue, R: Read + Seek>(archive: &mut ZipArchive<R>, name: &str) -> io::Result<Vec<T>> {
+    let (numbers, shape) = values::<T::Number, _>(archive, name, u64::MAX)?;
+    match shape[..] {
+        [_, count] if count == T::NUMBERS => Ok(bytemuck::try_cast_vec(numbers)
+            .unwrap_or_else(|(_, numbers)| bytemuck::cast_slice::<T::Number, T>(&numbers).to_vec())),
+        _ => Err(invalid(format!("the array {name} has shape {shape:?}, but must be (N, {})", T::NUMBERS))),
+    }
+}
+
+/// Writes the points of a cloud with all their attributes, so that [`read_kept_cloud`] reads the same numbers. The
+/// frame is not written, and neither are sky regions.
+///
+/// # Errors
+/// [`Error::Io`].
+pub fn write_kept_cloud<'a>(output: impl Into<Output<'a>>, cloud: &PointCloud) -> Result<()> {
+    let of_file = |file: &CloudFile| {
+        let CloudFile { path, row_count, other_attributes, records } = file.clone();
+        (path, row_count, other_attributes, records)
+    };
+    let notes = CloudNotes {
+        files: cloud.files.files.iter().map(of_file).collect(),
+        has_all_rows: cloud.files.rows == FileRows::All,
+        is_adjusted_standard_time: cloud.attributes.gps_time_kind == GpsTimeKind::AdjustedStandard,
+    };
+    output.into().write(|path, output| {
+        let arrays = |archive: &mut ZipWriter<_>| {
+            write_column(archive, "positions", &cloud.positions)?;
+            macro_rules! columns {
+                ($($(#[$doc:meta])* $column:ident: $value:ty,)*) => {
+                    $(if let Some(column) = &cloud.attributes.$column {
+                        write_column(archive, stringify!($column), column)?;
+                    })*
+                };
+            }
+            attribute_columns!(columns);
+            write_column(archive, "scanner_positions", &cloud.scanner_positions)?;
+            write_column(archive, "cleared_places", &cloud.cleared_places)?;
+            if let FileRows::Of(rows) = &cloud.files.rows {
+                write_column(archive, "file_rows", rows)?;
+            }
+            let notes = serde_json::to_vec(&notes)?;
+            array(archive, "notes", &[notes.len() as u64], notes.into_iter())
+        };
+        write_archive(output, arrays).map_err(Error::io(path))
+    })
+}
+
+/// Reads a file of [`write_kept_cloud`].
+///
+/// # Errors
+/// [`Error::Io`], and [`Error::Malformed`] for a file that is damaged.
+pub fn read_kept_cloud<'a>(source: impl Into<Source<'a>>, frame: Frame) -> Result<PointCloud> {
+    let Input { name, reader, size } = source.into().open()?;
+    let read = || {
+        let archive = &mut open(reader, size)?;
+        let notes: CloudNotes = serde_json::from_str(&notes(archive)?)?;
+        let mut cloud = PointCloud::in_frame(frame);
+        cloud.positions = read_column(archive, "positions")?;
+        macro_rules! columns {
+            ($($(#[$doc:meta])* $column:ident: $value:ty,)*) => {
+                $(if has(archive, stringify!($column)) {
+                    cloud.attributes.$column = Some(read_column(archive, stringify!($column))?);
+                })*
+            };
+        }
+        attribute_columns!(columns);
+        if notes.is_adjusted_standard_time {
+            cloud.attributes.gps_time_kind = GpsTimeKind::AdjustedStandard;
+        }
+        cloud.scanner_positions = read_column(archive, "scanner_positions")?;
+        cloud.cleared_places = read_column(archive, "cleared_places")?;
+        let file =
+            |(path, row_count, other_attributes, records)| CloudFile { path, row_count, other_attributes, records };
+        cloud.files.files = notes.files.into_iter().map(file).collect();
+        cloud.files.rows = match notes.has_all_rows {
+            true => FileRows::All,
+            false if has(archive, "file_rows") => FileRows::Of(read_column(archive, "file_rows")?),
+            false => FileRows::Unknown,
+        };
+        let lengths = cloud.attributes.columns();
+        match lengths.into_iter().find(|(_, length)| *length != cloud.len()) {
+            Some((column, _)) => Err(invalid(format!("its column {column} does not fit its points"))),
+            None => Ok(cloud),
+        }
+    };
+    read().map_err(|error: io::Error| Error::malformed(&name, format!("damaged: {error}")))
 }
 
 /// Writes rasters with notes, so that [`read_kept_rasters`] reads the same numbers.

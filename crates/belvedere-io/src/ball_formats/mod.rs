@@ -23,7 +23,10 @@ mod ply;
 mod write_ply;
 
 #[cfg(feature = "npy")]
-pub use kept_model::{read_kept_model, read_kept_notes, read_kept_rasters, write_kept_model, write_kept_rasters};
+pub use kept_model::{
+    read_kept_cloud, read_kept_model, read_kept_notes, read_kept_rasters, write_kept_cloud, write_kept_model,
+    write_kept_rasters,
+};
 #[cfg(feature = "las")]
 pub(crate) use las::{las_has_balls, read_las, write_las};
 #[cfg(feature = "npy")]

@@ -9,12 +9,12 @@ use crate::apps::ask::scene::{GroundStore, KnownGround};
 use crate::control::Control;
 use crate::ground::{Ground, GroundParams, GroundReport, MapGrid};
 use crate::io::{
-    ReadOptions, read_balls, read_kept_model, read_kept_notes, read_kept_rasters, write_balls, write_kept_model,
-    write_kept_rasters,
+    ReadOptions, read_balls, read_kept_cloud, read_kept_model, read_kept_notes, read_kept_rasters, write_balls,
+    write_kept_cloud, write_kept_model, write_kept_rasters,
 };
 use crate::model::{DerivedParts, ModelParams, ModelParts, SceneModel};
 use crate::raster::Raster;
-use crate::{Error, Frame, Result};
+use crate::{Error, Frame, PointCloud, Result};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use std::ffi::OsString;
@@ -25,8 +25,9 @@ use std::time::SystemTime;
 
 /// Bytes that a cache may take, unless it is given another bound.
 const MAX_BYTES: u64 = 10_000_000_000;
-/// Endings of the names of entries: scenes, their ground, and reports of reading files.
+/// Endings of the names of entries: scenes, their points and ground, and reports of reading files.
 const SCENE: &str = "scene.npz";
+const POINTS: &str = "points.npz";
 const GROUND: &str = "ground.npz";
 const READING: &str = "reading.npz";
 /// The folder of surveys in tiles, each a folder of its own.
@@ -172,6 +173,35 @@ impl SceneCache {
         write_balls(path, &parts.with_provenance(CLOUD, &found.cloud.0).with_provenance(NOTES, notes))
     }
 
+    /// Returns the points that reading files gave before, if they were kept. A file of them that is damaged is removed.
+    #[must_use]
+    pub fn points(&self, before: &ReadBefore) -> Option<PointCloud> {
+        let path = self.entry(&before.cloud.of_points(), POINTS)?;
+        mark_as_used(&path);
+        match read_kept_cloud(&path, before.frame.clone()) {
+            Ok(cloud) => Some(cloud),
+            Err(_) => {
+                let _ = fs::remove_file(&path);
+                None
+            }
+        }
+    }
+
+    /// Keeps the points that reading files gave. Those with sky regions, which scans have, are not kept.
+    ///
+    /// # Errors
+    /// [`Error::Io`] where they cannot be written.
+    pub fn keep_points(&self, key: &CloudKey, cloud: &PointCloud) -> Result<()> {
+        let name = key.of_points();
+        if !cloud.sky_regions.is_empty() || self.entry(&name, POINTS).is_some() {
+            return Ok(());
+        }
+        let path = self.place(&name, POINTS)?;
+        write_kept_cloud(&path, cloud)?;
+        self.make_room(&path);
+        Ok(())
+    }
+
     /// The folder in which tiles of a survey of these files are kept, with all that belongs to them; its `plan.json`
     /// names the files. `None` where these lie on a server or cannot be read, and where it cannot be made or is not
     /// the program's. It counts as used now.
@@ -214,7 +244,7 @@ impl SceneCache {
         Ok(entries)
     }
 
-    /// Bytes of all that is kept: scenes, their ground, and what reading gave.
+    /// Bytes of all that is kept: scenes, their points and ground, and what reading gave.
     ///
     /// # Errors
     /// Those of [`SceneCache::entries`].
@@ -280,7 +310,8 @@ impl SceneCache {
         }
         let files = rows.filter_map(|row| {
             let path = row.ok()?.path();
-            let is_own = [SCENE, GROUND, READING].iter().any(|kind| is_named(&path, kind)) && is_plain_file(&path);
+            let is_own =
+                [SCENE, POINTS, GROUND, READING].iter().any(|kind| is_named(&path, kind)) && is_plain_file(&path);
             // another program may have removed it meanwhile
             let metadata = path.symlink_metadata().ok().filter(|_| is_own)?;
             Some(KeptFile { bytes: metadata.len(), used: metadata.modified().ok()?, survey: None, path })

@@ -1,9 +1,10 @@
 //! Key of a kept scene: a name for all that it follows from.
 
+use crate::PointCloud;
 use crate::ground::{GroundParams, MapGrid};
 use crate::io::{ReadOptions, Source, cloud_sources, web_address};
 use crate::model::ModelParams;
-use crate::{Attributes, PointCloud};
+use belvedere_data::attribute_columns;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -44,35 +45,22 @@ impl CloudKey {
             key.text(&format!("sky {region:?}"));
         }
         key.column("cleared", Some(cloud.cleared_places.as_flattened()));
-        let Attributes {
-            normals,
-            classification,
-            gps_time,
-            gps_time_kind,
-            return_number,
-            return_count,
-            scan_angle,
-            point_source_id,
-            scanner_channel,
-            flags,
-            intensity,
-            color,
-            scanner_index,
-        } = &cloud.attributes;
-        key.column("normals", normals.as_ref().map(|rows| rows.as_flattened()));
-        key.column("classification", classification.as_deref());
-        key.column("gps_time", gps_time.as_deref());
-        key.text(&format!("{gps_time_kind:?}"));
-        key.column("return_number", return_number.as_deref());
-        key.column("return_count", return_count.as_deref());
-        key.column("scan_angle", scan_angle.as_deref());
-        key.column("point_source_id", point_source_id.as_deref());
-        key.column("scanner_channel", scanner_channel.as_deref());
-        key.column("flags", flags.as_deref());
-        key.column("intensity", intensity.as_deref());
-        key.column("color", color.as_ref().map(|rows| rows.as_flattened()));
-        key.column("scanner_index", scanner_index.as_deref());
+        let attributes = &cloud.attributes;
+        key.text(&format!("{:?}", attributes.gps_time_kind));
+        macro_rules! columns {
+            ($($(#[$doc:meta])* $column:ident: $value:ty,)*) => {
+                $(key.column(stringify!($column), attributes.$column.as_deref());)*
+            };
+        }
+        attribute_columns!(columns);
         Self(key.finish())
+    }
+
+    /// The key of a ball file; `None` for one on a server, which may change, and for one that cannot be read.
+    pub(super) fn of_file(path: &Path) -> Option<Self> {
+        let mut key = Key::new("balls");
+        key.file(path).filter(|()| web_address(path).is_none())?;
+        Some(Self(key.finish()))
     }
 
     /// The name of the scene of a cloud, which differs where anything does that the scene follows from.
@@ -83,6 +71,13 @@ impl CloudKey {
         key.text(if has_normals { "with normals" } else { "without" });
         // Debug prints every number so that it is read back as it is
         let _ = write!(key, "{params:?}");
+        key.finish()
+    }
+
+    /// The name of the points of a cloud.
+    pub(super) fn of_points(&self) -> String {
+        let mut key = Key::new("points");
+        key.text(&self.0);
         key.finish()
     }
 

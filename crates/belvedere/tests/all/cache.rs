@@ -3,6 +3,7 @@
 use crate::common::simulated::cloud_of;
 use belvedere::PointCloud;
 use belvedere::cache::{BuiltScene, CloudKey, ReadBefore, SceneCache, SceneOrigin, scene_model};
+use belvedere::cloud::{CloudFile, CloudFiles, FileRows, GpsTimeKind};
 use belvedere::control::Control;
 use belvedere::io::ReadOptions;
 use belvedere::medial::ShrinkParams;
@@ -166,4 +167,32 @@ fn what_reading_gave_is_known_until_a_file_changes() {
     assert_eq!((before.frame, before.cloud, before.notes), (found.frame, found.cloud, found.notes));
     fs::write(&file, "1 2 4\n").unwrap();
     assert!(cache.read_before(&paths, &options).is_none());
+}
+
+#[test]
+fn points_that_are_found_are_those_that_were_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let (cache, mut cloud) = (SceneCache::new(folder.path()), cloud(9));
+    cloud.attributes.color = Some((0..cloud.len()).map(|row| [1, 2, u16::try_from(row % 900).unwrap()]).collect());
+    cloud.attributes.gps_time_kind = GpsTimeKind::AdjustedStandard;
+    cloud.scanner_positions.push([0.1, -2.5, 1e3]);
+    let row_count = 3 * cloud.len() as u64;
+    let (path, other_attributes) = (PathBuf::from("tile.las"), vec!["amplitude".to_owned()]);
+    let file = CloudFile { path, row_count, other_attributes, records: Vec::new() };
+    let rows = FileRows::Of((0..row_count).step_by(3).collect());
+    cloud.files = CloudFiles { files: vec![file], rows };
+    let contents = CloudKey::of(&cloud);
+    let before = ReadBefore { frame: cloud.frame.clone(), cloud: contents.clone(), notes: serde_json::Map::new() };
+    assert!(cache.points(&before).is_none());
+    cache.keep_points(&contents, &cloud).unwrap();
+    let found = cache.points(&before).unwrap();
+    assert!(CloudKey::of(&found) == contents && found.files == cloud.files);
+    // a file that is damaged is none, and goes
+    let path = fs::read_dir(folder.path()).unwrap().map(|row| row.unwrap().path());
+    let path = path.filter(|path| path.to_string_lossy().ends_with("points.npz")).last().unwrap();
+    let mut bytes = fs::read(&path).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 0x10;
+    fs::write(&path, bytes).unwrap();
+    assert!(cache.points(&before).is_none() && !path.exists());
 }
