@@ -52,16 +52,6 @@ impl ShadowSun {
     pub fn at(azimuth: f64, elevation: f64) -> Self {
         Self { to_sun: belvedere_data::view::to_sun(azimuth, elevation), season: None }
     }
-
-    /// The sun above `site` at an instant, seconds of UTC since 1970, lifted by the air as usual.
-    ///
-    /// # Errors
-    /// Those of [`crate::sun::sun_position`].
-    pub fn at_time(site: &crate::sun::Site, unix_s: f64) -> Result<Self> {
-        let position = crate::sun::sun_position(site, unix_s)?;
-        let date = crate::sun::Zone::mean_solar(site).date_at(unix_s)?;
-        Ok(Self { to_sun: position.to_sun(site), season: Some(Season::on(date, site)) })
-    }
 }
 
 /// The share of each of `suns` that reaches each of `targets` among `obstacles`, 0 to 1, (suns) rows of (M); NaN for a

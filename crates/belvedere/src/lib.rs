@@ -8,20 +8,23 @@
 //!
 //! ```no_run
 //! use belvedere::prelude::*;
+//! use std::sync::Arc;
 //!
 //! fn main() -> Result<()> {
 //!     let control = Control::none();
 //!     let options = ReadOptions::new().with_crs("EPSG:7415");
 //!     let (cloud, _) = read_cloud(["tile.laz"], &options, &control)?;
 //!     let (model, _) = SceneModel::build(&cloud, &ModelParams::default(), &control)?;
-//!     let scene = model.scene(&model.rule(), UnprovenAs::Visible, &control)?;
-//!     let cells = Targets::ground_cells(&cloud, 0.5)?;
-//!     let (site, _) = Site::of_scene(model.frame(), &model.bounds(), None, None)?;
-//!     let sun = ShadowSun::at_time(&site, parse_instant("2026-06-21T15:00+02:00", None)?)?;
-//!     let lit = shadow(&scene, &cells, sun, &control)?;
-//!     write_raster("shadow.tif".as_ref(), &cells, &[&Measure::new("lit", lit)], &[])
+//!     let scene = Scene::new(model, Arc::new(cloud));
+//!     let question = ShadowQuestion::of_times(vec!["2026-06-21T15:00".to_owned()]);
+//!     let answers = ask(&scene, &question, &Places::Cells(GridCells::default()), &control)?;
+//!     let bands: Vec<&Measure> = answers.measures.iter().collect();
+//!     write_raster("shadow.tif".as_ref(), &answers.found.on.targets, &bands, &[])
 //! }
 //! ```
+//!
+//! All questions are structs of `apps::ask`, asked in this way. Answers have values, warnings (`remarks`) and a few
+//! sentences (`headline`).
 //!
 //! # Where to look
 //!
@@ -30,7 +33,8 @@
 //! | read and write clouds, meshes, rasters, tables, ball files | `io` |
 //! | from a cloud to a scene; what Belvedere does by default | [`model`] |
 //! | which lines of sight are free | [`query`] |
-//! | shadow, sun hours, sky view, irradiance, viewsheds, landmarks, cameras, solar envelopes, comfort | `apps` |
+//! | questions: shadow, sun hours, sky view, viewsheds, cameras and all others | `apps::ask` |
+//! | their computations one by one | `apps` |
 //! | results of applications as files | `results` |
 //! | sunlight of windows and gardens as a report | `sunlight_report` |
 //! | scenes that were built before | `cache` |
@@ -90,6 +94,8 @@ pub mod sunlight_report;
 
 /// Items that most programs need: `use belvedere::prelude::*`.
 pub mod prelude {
+    #[cfg(feature = "apps")]
+    pub use crate::apps::ask::{GridCells, Places, Scene, ShadowQuestion, ask};
     #[cfg(feature = "apps")]
     pub use crate::apps::shadow::{ShadowSun, shadow};
     #[cfg(feature = "apps")]
