@@ -2,7 +2,7 @@
 
 use crate::grid::{MapArea, TileId, block_area};
 use crate::plan::Plan;
-use crate::question::PreparedQuestion;
+use crate::plan::question::PreparedQuestion;
 use belvedere::query::{BlockedLines, EarthParams};
 use belvedere::vector::piece_in_box;
 use std::collections::BTreeSet;

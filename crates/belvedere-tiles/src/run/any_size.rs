@@ -2,7 +2,7 @@
 //! answer of one model.
 
 use crate::plan::Plan;
-use crate::question::TileQuestion;
+use crate::plan::question::TileQuestion;
 use crate::run::{RunParams, RunReport, Shard, Steps, run};
 use belvedere::Frame;
 use belvedere::apps::ask::{self, Answers, Context, HowSure, NamedSun, Remark, summarise_parts};

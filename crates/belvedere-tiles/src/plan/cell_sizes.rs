@@ -1,6 +1,6 @@
 //! Sides of the cells of results: one for all, with finer or coarser exceptions for single results.
 
-use crate::question::{TileQuestion, Topic};
+use crate::plan::question::{TileQuestion, Topic};
 use belvedere::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

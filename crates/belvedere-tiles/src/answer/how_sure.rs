@@ -1,13 +1,13 @@
 //! Probability that the cells of a tile are lit or visible. The evidence is gathered part by part from obstacles, and
 //! block by block from pulses.
 
-use crate::lines::AreaLines;
-use crate::obstacles::{ObstacleSearch, rule};
-use crate::parts::TileObstacles;
+use crate::answer::lines::AreaLines;
+use crate::answer::obstacles::{ObstacleSearch, rule};
+use crate::answer::parts::TileObstacles;
+use crate::answer::proof::{self, Line, sampled_lengths};
 use crate::plan::Plan;
-use crate::planned::Others;
-use crate::proof::{self, Line, sampled_lengths};
-use crate::question::{LightQuestion, PreparedQuestion};
+use crate::plan::question::{LightQuestion, PreparedQuestion};
+use crate::plan::side_files::Others;
 use belvedere::apps::eyes::skip_unfit_eyes;
 use belvedere::apps::rows::ObstacleParts;
 use belvedere::apps::shadow::ShadowSun;

@@ -1,6 +1,6 @@
 //! Questions about a city.
 
-use crate::planned::SideFile;
+use crate::plan::side_files::SideFile;
 use belvedere::apps::ask::{self, Context, SkyParts, SunHoursQuestion};
 use belvedere::apps::irradiance::{self, ClearSky, IrradianceParams, RadiationSource, SeasonRadiation, period_seasons};
 use belvedere::apps::shadow::{self, ShadowSun};

@@ -1,11 +1,11 @@
 //! Obstacles for lines of sight from a tile: the balls of all tiles that are high and near enough.
 
+use crate::answer::lines::{AreaLines, MAX_BALL, passes, tiles};
+use crate::build::make_balls::{crown_box, make_balls, square_of};
 use crate::grid::{CELL, MapArea, TOP_SIDE, TileId, block_area, square_area};
-use crate::lines::{AreaLines, MAX_BALL, passes, tiles};
-use crate::make_balls::{crown_box, make_balls, square_of};
 use crate::plan::Plan;
-use crate::record::{TileOutcome, TileRecord};
-use crate::stage::Stage;
+use crate::plan::record::{TileOutcome, TileRecord};
+use crate::plan::stage::Stage;
 use belvedere::blocking::BlockRule;
 use belvedere::control::Control;
 use belvedere::io::{Source, read_balls};
@@ -220,7 +220,7 @@ pub(crate) fn push(balls: &mut MedialBalls, more: &MedialBalls, row: usize) {
 /// Returns the possible obstacles on a tile without balls, from the heights of its points.
 fn unknown(plan: &Plan, tile: TileId) -> Vec<(MapArea, f64)> {
     let core = plan.grid().core(tile);
-    let part = |block: &crate::survey::SurveyBlock| {
+    let part = |block: &crate::plan::survey::SurveyBlock| {
         let own = block_area(block.at);
         let low = [0, 1].map(|axis| own.low[axis].max(core.low[axis]));
         let high = [0, 1].map(|axis| (own.low[axis] + CELL).min(core.high[axis]));

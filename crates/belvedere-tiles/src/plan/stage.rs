@@ -2,7 +2,7 @@
 
 use crate::grid::TileId;
 use crate::plan::Plan;
-use crate::question::{BALLS, TileQuestion};
+use crate::plan::question::{BALLS, TileQuestion};
 use std::path::{Path, PathBuf};
 
 /// Step of the run of a tile.

@@ -3,8 +3,8 @@
 use crate::grid::TileId;
 use crate::inputs::{bytes_of_file, hash};
 use crate::plan::Plan;
+use crate::plan::stage::Stage;
 use crate::sealed::{is_sound, sealed};
-use crate::stage::Stage;
 use belvedere::io::atomic;
 use belvedere::{Error, Result};
 use serde::{Deserialize, Serialize};

@@ -1,8 +1,8 @@
 //! Questions about tiles that a question about a survey becomes.
 
 use crate::plan::Plan;
-use crate::planned::SideFile;
-use crate::question::{TileQuestion, TileRadiation};
+use crate::plan::question::{TileQuestion, TileRadiation};
+use crate::plan::side_files::SideFile;
 use belvedere::apps::ask::scene::Whereabouts;
 use belvedere::apps::ask::{self, Context, SunHoursQuestion};
 use belvedere::apps::irradiance::Grouping;

@@ -1,12 +1,24 @@
 //! Plan of a run: all data that a tile needs beside its own points.
 
-use crate::cell_sizes::CellSizes;
+pub(crate) mod cell_sizes;
+pub(crate) mod estimate;
+mod kept_survey;
+pub(crate) mod make_plan;
+pub(crate) mod question;
+pub(crate) mod record;
+pub(crate) mod side_files;
+pub(crate) mod stage;
+pub(crate) mod survey;
+mod tile_questions;
+pub(crate) mod window;
+
 use crate::grid::{MapArea, TileGrid, TileId, block_area};
 use crate::inputs::{InputFile, PointColumns, bytes_of_file, hash};
-use crate::planned::{Others, SideFile, added_meshes, far_terrain};
-use crate::question::{BALLS, TileQuestion};
+use crate::plan::cell_sizes::CellSizes;
+use crate::plan::question::{BALLS, TileQuestion};
+use crate::plan::side_files::{Others, SideFile, added_meshes, far_terrain};
+use crate::plan::survey::SurveyBlock;
 use crate::sealed::{is_sound, sealed};
-use crate::survey::SurveyBlock;
 use belvedere::apps::ask::scene::Whereabouts;
 use belvedere::apps::ask::{Context, GridCells, Remark, density_at, remark_on_leaves, remark_on_terrain};
 use belvedere::apps::targets::{CellLevel, CellParams};

@@ -5,10 +5,10 @@
 //! length of each piece that no pulse over the block came near to is added in whole numbers. The order of the blocks
 //! therefore does not change the sum.
 
+use crate::answer::obstacles::ObstacleSearch;
+use crate::build::tile_pulses::in_order;
 use crate::grid::{CELL, MapArea, TileId, block_area, square_at};
-use crate::obstacles::ObstacleSearch;
 use crate::plan::Plan;
-use crate::tile_pulses::in_order;
 use belvedere::control::Control;
 use belvedere::pulses::{FreeSegmentColumns, ends_of_pulse};
 use belvedere::query::{Evidence, Proof, ProofParams, nearness_of};

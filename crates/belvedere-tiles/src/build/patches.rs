@@ -1,8 +1,8 @@
 //! Surface patches of tiles. A tile keeps all triangles that reach into it. Some are kept by several tiles, which
 //! changes no answer. At each place where a line of sight meets a triangle, the tile there has the triangle.
 
+use crate::answer::lines::{AreaLines, ROOM};
 use crate::grid::{MapArea, TOP_SIDE, square_at};
-use crate::lines::{AreaLines, ROOM};
 use belvedere::SurfacePatches;
 use belvedere::model::ClearedArea;
 use belvedere::patches::PatchTriangle;

@@ -2,10 +2,10 @@
 
 use crate::grid::{MapArea, TileId};
 use crate::plan::Plan;
-use crate::question::TileQuestion;
-use crate::record::{TileOutcome, TileRecord};
-use crate::stage::Stage;
-use crate::window;
+use crate::plan::question::TileQuestion;
+use crate::plan::record::{TileOutcome, TileRecord};
+use crate::plan::stage::Stage;
+use crate::plan::window;
 use belvedere::apps::ask::Remark;
 use belvedere::control::Control;
 use belvedere::crs::text::wkt_line;

@@ -3,7 +3,7 @@
 use crate::columns::append;
 use crate::grid::{MapArea, block_area, block_of};
 use crate::plan::Plan;
-use crate::survey::is_counted;
+use crate::plan::survey::is_counted;
 use belvedere::apps::targets::{grid_around, set_on_ground};
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams};

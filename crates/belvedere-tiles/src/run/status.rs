@@ -1,8 +1,8 @@
 //! Progress of a run.
 
 use crate::plan::Plan;
-use crate::record::{TileOutcome, TileRecord};
-use crate::stage::Stage;
+use crate::plan::record::{TileOutcome, TileRecord};
+use crate::plan::stage::Stage;
 use serde::Serialize;
 use std::path::Path;
 

@@ -3,8 +3,8 @@
 //! Seen along a direction, the lines from a tile lie side by side in strips. An obstacle in a strip must be higher than
 //! the lowest line there. Few lines run far, so that most distant obstacles need no test and no index.
 
+use crate::answer::lines::{MAX_BALL, ROOM};
 use crate::grid::{MapArea, TOP_SIDE, square_area, square_at};
-use crate::lines::{MAX_BALL, ROOM};
 use belvedere::query::FreeLines;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -193,7 +193,7 @@ impl DirectionLines {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::make_balls::tops;
+    use crate::build::make_balls::tops;
     use belvedere::medial::MedialBalls;
     use belvedere::random::uniform;
 

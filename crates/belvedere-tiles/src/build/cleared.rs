@@ -6,7 +6,7 @@
 
 use crate::grid::{CELL, MapArea, block_area, block_of};
 use crate::plan::Plan;
-use crate::window;
+use crate::plan::window;
 use belvedere::control::Control;
 use belvedere::ground::{MAX_GAP_FROM_RETURNS, MapGrid, SurfaceParams};
 use belvedere::medial::{LIMIT_TOUCH, MedialBalls};

@@ -1,7 +1,7 @@
 //! Page about a run: results, times, and missing parts.
 
 use crate::plan::Plan;
-use crate::status::status;
+use crate::run::status::status;
 use belvedere::io::atomic;
 use belvedere::{Error, Result};
 use std::fmt::Write as _;

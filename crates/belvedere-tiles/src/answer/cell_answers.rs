@@ -1,19 +1,19 @@
 //! Answer to a question on the cells of a tile.
 
-use crate::cleared::{ClassedPoint, ClearedSurface, classed};
+use crate::answer::ground_cells::{EDGE_CELLS, GroundSquares, ground_cells};
+use crate::answer::how_sure::PartialEvidence;
+use crate::answer::lines::AreaLines;
+use crate::answer::obstacles::{ObstacleSearch, rule};
+use crate::answer::parts::TileObstacles;
+use crate::answer::proof::{Line, unproven};
+use crate::build::cleared::{ClassedPoint, ClearedSurface, classed};
 use crate::grid::TileId;
-use crate::ground_cells::{EDGE_CELLS, GroundSquares, ground_cells};
-use crate::how_sure::PartialEvidence;
-use crate::lines::AreaLines;
-use crate::obstacles::{ObstacleSearch, rule};
-use crate::parts::TileObstacles;
 use crate::plan::Plan;
-use crate::planned::Others;
-use crate::proof::{Line, unproven};
-use crate::question::{LightQuestion, PreparedQuestion, TileQuestion};
-use crate::record::{Stamp, TileOutcome, TileRecord};
-use crate::stage::Stage;
-use crate::window;
+use crate::plan::question::{LightQuestion, PreparedQuestion, TileQuestion};
+use crate::plan::record::{Stamp, TileOutcome, TileRecord};
+use crate::plan::side_files::Others;
+use crate::plan::stage::Stage;
+use crate::plan::window;
 use belvedere::apps::edge::near_edge;
 use belvedere::apps::eyes::skip_unfit_eyes;
 use belvedere::apps::irradiance::season_irradiation;

@@ -1,15 +1,20 @@
 //! Run of all tiles that are not done yet, one after the other.
 
-use crate::answer::{SharedSurfaces, TileTask, answer};
+pub(crate) mod any_size;
+pub(crate) mod merge;
+mod report;
+pub(crate) mod status;
+
+use crate::answer::cell_answers::{SharedSurfaces, TileTask, answer};
+use crate::answer::lines::{AreaLines, tiles};
+use crate::build::make_balls::make_balls;
 use crate::grid::TileId;
-use crate::lines::{AreaLines, tiles};
-use crate::make_balls::make_balls;
-use crate::merge::write_catalogue;
 use crate::plan::Plan;
-use crate::planned::Others;
-use crate::record::{TileOutcome, TileRecord};
-use crate::report::write_report;
-use crate::stage::Stage;
+use crate::plan::record::{TileOutcome, TileRecord};
+use crate::plan::side_files::Others;
+use crate::plan::stage::Stage;
+use crate::run::merge::write_catalogue;
+use crate::run::report::write_report;
 use belvedere::apps::ask::{Context, Remark, remark_on_edge};
 use belvedere::control::Control;
 use belvedere::{Error, Parameter, Result};

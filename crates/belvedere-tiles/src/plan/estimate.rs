@@ -2,7 +2,7 @@
 
 use crate::grid::{CELL, MapArea, block_area};
 use crate::plan::Plan;
-use crate::survey::SurveyBlock;
+use crate::plan::survey::SurveyBlock;
 use serde::Serialize;
 
 /// Memory for each point of a window while balls are made, and without any point, bytes, as measured in docs/scale.md.

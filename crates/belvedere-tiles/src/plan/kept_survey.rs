@@ -1,9 +1,9 @@
 //! Kept surveys: read once, with balls that all questions share.
 
-use crate::cell_sizes::CellSizes;
 use crate::inputs::{absolute, hash, remarks_on_file};
-use crate::make_plan::PlanParams;
 use crate::plan::Plan;
+use crate::plan::cell_sizes::CellSizes;
+use crate::plan::make_plan::PlanParams;
 use crate::sealed::sealed;
 use belvedere::apps::ask::Remark;
 use belvedere::control::Control;

@@ -1,11 +1,11 @@
 //! Cells on the ground. Ground is found in squares that are the same for all tiles, so that tiles make no difference. A
 //! kept survey keeps the ground with its balls.
 
-use crate::cleared::{ClearedSurface, classed};
+use crate::build::cleared::{ClearedSurface, classed};
 use crate::grid::{CELL, MapArea, TileId, square_area, square_at};
 use crate::inputs::hash;
 use crate::plan::Plan;
-use crate::window;
+use crate::plan::window;
 use belvedere::PointCloud;
 use belvedere::Result;
 use belvedere::apps::targets::{CellLevel, TargetLayout, Targets};

@@ -1,13 +1,13 @@
 //! Plan of tiles from the files of a survey.
 
-use crate::cell_sizes::{CellSizes, MIN_TILE};
+use crate::answer::proof;
 use crate::grid::{CELL, MapArea};
 use crate::inputs::{InputFile, NOWHERE, PIECE_ROWS, PointColumns, remarks_on_file};
+use crate::plan::cell_sizes::{CellSizes, MIN_TILE};
+use crate::plan::survey::survey;
+use crate::plan::window;
+use crate::plan::window::without_ground;
 use crate::plan::{LAYOUT, Plan, PlanFrame, on_surface};
-use crate::proof;
-use crate::survey::survey;
-use crate::window;
-use crate::window::without_ground;
 use belvedere::apps::ask::Remark;
 use belvedere::control::Control;
 use belvedere::crs::Crs;

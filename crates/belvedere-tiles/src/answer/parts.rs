@@ -6,13 +6,13 @@
 //! balls high enough to block a line that is still free are tested. Lines of sight to observers are tested in parts as
 //! well.
 
+use crate::answer::lines::{AreaLines, MAX_BALL};
+use crate::answer::obstacles::{BallTile, ObstacleSearch, ball_tiles, may_block, push, rule};
+use crate::answer::strips::Strips;
+use crate::build::patches::add_blocking;
 use crate::grid::{MapArea, TOP_SIDE, TileId, square_area};
-use crate::lines::{AreaLines, MAX_BALL};
-use crate::obstacles::{BallTile, ObstacleSearch, ball_tiles, may_block, push, rule};
-use crate::patches::add_blocking;
 use crate::plan::Plan;
-use crate::planned::Others;
-use crate::strips::Strips;
+use crate::plan::side_files::Others;
 use belvedere::apps::rows::ObstacleParts;
 use belvedere::apps::tree_light::CrownLight;
 use belvedere::blocking::BlockRule;

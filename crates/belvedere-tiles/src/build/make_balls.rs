@@ -1,13 +1,13 @@
 //! Balls of a tile.
 
-use crate::cleared::{ClassedPoint, classed, clear_balls, left_crowns};
+use crate::build::cleared::{ClassedPoint, classed, clear_balls, left_crowns};
+use crate::build::patches;
+use crate::build::tile_pulses;
 use crate::grid::{MapArea, TOP_SIDE, TileId, square_at};
-use crate::patches;
 use crate::plan::Plan;
-use crate::record::{Stamp, TileOutcome, TileRecord};
-use crate::stage::Stage;
-use crate::tile_pulses;
-use crate::window;
+use crate::plan::record::{Stamp, TileOutcome, TileRecord};
+use crate::plan::stage::Stage;
+use crate::plan::window;
 use belvedere::control::Control;
 use belvedere::io::{atomic, write_balls};
 use belvedere::medial::MedialBalls;
