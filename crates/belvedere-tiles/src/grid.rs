@@ -1,12 +1,16 @@
 //! Tiles on one grid.
 
 use belvedere::Bounds;
+use belvedere::query::BlockedLines;
 use serde::{Deserialize, Serialize};
 
 /// Side of the blocks in which the survey counts points and some rules for balls work, metres.
 pub(crate) const CELL: f64 = 64.0;
 /// Side of the squares on which tops of balls are kept, metres.
 pub(crate) const TOP_SIDE: f64 = 16.0;
+/// Half-width added to lines of sight, metres. It exceeds the rounding of f32 and the distance of the parallel lines of
+/// probabilities.
+pub(crate) const LINE_ROOM: f64 = BlockedLines::WIDTH + 0.03;
 
 /// Tile: column and row on the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

@@ -8,7 +8,7 @@ use crate::plan::Plan;
 use crate::plan::window;
 use belvedere::PointCloud;
 use belvedere::Result;
-use belvedere::apps::targets::{CellLevel, TargetLayout, Targets};
+use belvedere::apps::targets::{TargetLayout, Targets};
 use belvedere::apps::viewshed::cell_targets;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid};
@@ -252,10 +252,5 @@ impl Plan {
         let around = if self.cleared.is_empty() { around } else { around.joined(&core.in_blocks().widened(CELL)) };
         let around = if self.is_on_ground() { around.joined(&area_around(&core)) } else { around };
         self.blocks_in(&around).map(|block| f64::from(block.heights[0])).fold(f64::INFINITY, f64::min)
-    }
-
-    /// Returns true if cells lie on the ground instead of on the surface.
-    pub(crate) fn is_on_ground(&self) -> bool {
-        self.targets.level == CellLevel::Ground
     }
 }

@@ -1,17 +1,14 @@
 //! Lines of sight from the cells of a tile, and the areas where obstacles may block them.
 
-use crate::grid::{MapArea, TileId, block_area};
+use crate::grid::{LINE_ROOM, MapArea, TileId, block_area};
 use crate::plan::Plan;
 use crate::plan::question::PreparedQuestion;
-use belvedere::query::{BlockedLines, EarthParams};
+use belvedere::query::EarthParams;
 use belvedere::vector::piece_in_box;
 use std::collections::BTreeSet;
 
 /// Number of directions up to which each is tested by itself.
 const FEW: usize = 8;
-/// Half-width added to lines of sight, metres. It exceeds the rounding of f32 and the distance of the parallel lines of
-/// probabilities.
-pub(crate) const ROOM: f64 = BlockedLines::WIDTH + 0.03;
 /// Maximum distance above and beside its points that a ball reaches, metres: twice the initial radius of balls.
 pub(crate) const MAX_BALL: f64 = 10.0;
 
@@ -74,7 +71,7 @@ impl<'a> AreaLines<'a> {
     }
 
     fn may_meet_towards(&self, directions: &[[f64; 3]], area: &MapArea, top: f64) -> bool {
-        let rise = top - self.lowest + ROOM;
+        let rise = top - self.lowest + LINE_ROOM;
         if rise < 0.0 {
             return false;
         }
@@ -89,14 +86,14 @@ impl<'a> AreaLines<'a> {
     fn meets_along(&self, direction: &[f64; 3], area: &MapArea, rise: f64) -> bool {
         let level = direction[0].hypot(direction[1]);
         if level < 1e-9 {
-            return self.targets.distance(area) <= ROOM;
+            return self.targets.distance(area) <= LINE_ROOM;
         }
         let along = [direction[0] / level, direction[1] / level];
         let across = [-along[1], along[0]];
         let ([left, right], [own_left, own_right]) = (area.span(across), self.targets.span(across));
         let ([near, far], [back, front]) = (area.span(along), self.targets.span(along));
-        let beside = left > own_right + ROOM || own_left > right + ROOM;
-        let behind = far < back - ROOM;
+        let beside = left > own_right + LINE_ROOM || own_left > right + LINE_ROOM;
+        let behind = far < back - LINE_ROOM;
         !beside && !behind && (near - front).max(0.0) * direction[2] / level <= rise
     }
 
@@ -109,7 +106,7 @@ impl<'a> AreaLines<'a> {
         let is_apart = |axis: [f64; 2]| {
             let ([low, high], [eye_low, eye_high]) = (area.span(axis), place.span(axis));
             let [own_low, own_high] = self.targets.span(axis);
-            low > own_high.max(eye_high) + ROOM || high < own_low.min(eye_low) - ROOM
+            low > own_high.max(eye_high) + LINE_ROOM || high < own_low.min(eye_low) - LINE_ROOM
         };
         if axes.chain([[1.0, 0.0], [0.0, 1.0]]).any(is_apart) {
             return false;
@@ -118,7 +115,7 @@ impl<'a> AreaLines<'a> {
         let (nearest, farthest) = (place.distance(&self.targets), place.farthest(&self.targets));
         let share = if nearest > 0.0 { (place.farthest(area) / nearest).min(1.0) } else { 1.0 };
         let lowest = eye[2] + share * (self.lowest - eye[2]).min(0.0);
-        top >= lowest - EarthParams::default().sag(farthest, 0.5) - ROOM
+        top >= lowest - EarthParams::default().sag(farthest, 0.5) - LINE_ROOM
     }
 }
 

@@ -6,5 +6,5 @@ mod how_sure;
 pub(crate) mod lines;
 mod obstacles;
 mod parts;
-pub(crate) mod proof;
+mod proof;
 mod strips;

@@ -9,7 +9,7 @@
 use crate::answer::lines::{AreaLines, MAX_BALL};
 use crate::answer::obstacles::{BallTile, ObstacleSearch, ball_tiles, may_block, push, rule};
 use crate::answer::strips::Strips;
-use crate::build::patches::add_blocking;
+use crate::build::patches;
 use crate::grid::{MapArea, TOP_SIDE, TileId, square_area};
 use crate::plan::Plan;
 use crate::plan::side_files::Others;
@@ -103,7 +103,8 @@ impl<'a> TileObstacles<'a> {
             control.check()?;
             let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, of_tile.tile, control))?;
             let Some(ModelParts { balls, patches: of_tile, transmission, .. }) = read else { continue };
-            add_blocking(&mut part.patches, &of_tile, lines);
+            let blocking = patches::select(&of_tile, |area, top| lines.may_meet(area, top));
+            blocking.iter().for_each(|(corners, kind)| part.patches.push(*corners, kind));
             let vegetation = vegetation_of_transmission(&transmission);
             for row in may_block(&balls, lines) {
                 if part.all.len() == self.max_balls {

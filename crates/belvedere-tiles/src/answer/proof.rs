@@ -9,11 +9,11 @@ use crate::answer::obstacles::ObstacleSearch;
 use crate::build::tile_pulses::in_order;
 use crate::grid::{CELL, MapArea, TileId, block_area, square_at};
 use crate::plan::Plan;
+use belvedere::Result;
 use belvedere::control::Control;
 use belvedere::pulses::{FreeSegmentColumns, ends_of_pulse};
-use belvedere::query::{Evidence, Proof, ProofParams, nearness_of};
+use belvedere::query::{Evidence, Proof, ProofParams};
 use belvedere::vector::piece_in_box;
-use belvedere::{PointCloud, Result};
 use rayon::prelude::*;
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, HashMap};
@@ -44,13 +44,6 @@ pub(crate) struct Line {
 /// Returns the height up to which pulses can prove space empty, local metres.
 pub(crate) fn top(plan: &Plan) -> f64 {
     f64::from(plan.statistics.top + plan.model().free_segments.headroom)
-}
-
-/// Returns the proof distance, metres, from the first returns of some places all over a survey.
-pub(crate) fn nearness(places: &PointCloud) -> f64 {
-    let numbers = places.attributes.return_number.as_deref();
-    let is_first = |(row, _): &(usize, &[f32; 3])| numbers.is_none_or(|numbers| numbers[*row] <= 1);
-    nearness_of(places.positions.iter().enumerate().filter(is_first).map(|(_, &p)| p))
 }
 
 /// True if a piece of a line passes over an area.

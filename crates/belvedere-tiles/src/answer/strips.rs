@@ -3,8 +3,8 @@
 //! Seen along a direction, the lines from a tile lie side by side in strips. An obstacle in a strip must be higher than
 //! the lowest line there. Few lines run far, so that most distant obstacles need no test and no index.
 
-use crate::answer::lines::{MAX_BALL, ROOM};
-use crate::grid::{MapArea, TOP_SIDE, square_area, square_at};
+use crate::answer::lines::MAX_BALL;
+use crate::grid::{LINE_ROOM, MapArea, TOP_SIDE, square_area, square_at};
 use belvedere::query::FreeLines;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -13,7 +13,7 @@ use std::collections::HashMap;
 const WIDTH: f64 = 4.0;
 const MAX_STRIPS: f64 = 1024.0;
 /// Maximum slope of lines, metres of height for each metre on the map. Steeper lines get this slope. In the highest
-/// scene they then move by less than [`ROOM`].
+/// scene they then move by less than [`LINE_ROOM`].
 const STEEPEST: f64 = 1e6;
 /// Slope below which lines run far: 11 degrees.
 const LOW_SLOPE: f64 = 0.2;
@@ -147,7 +147,7 @@ impl DirectionLines {
         } else {
             ([1.0, 0.0], STEEPEST)
         };
-        let [left, right] = targets.widened(ROOM).span([-along[1], along[0]]);
+        let [left, right] = targets.widened(LINE_ROOM).span([-along[1], along[0]]);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by the width of a strip")]
         let count = ((right - left) / width).max(0.0) as usize + 1;
         Self { along, slope, left, strips: vec![NO_LINES; count] }
@@ -184,9 +184,9 @@ impl DirectionLines {
     /// Returns the minimum top of an obstacle over `area` that may block a line, local metres.
     fn min_top(&self, area: &MapArea, width: f64) -> f64 {
         let [[near, far], [left, right]] = self.spans(area);
-        let met = self.strips.get(self.met([left - ROOM, right + ROOM], width)).unwrap_or_default();
-        let ahead = met.iter().filter(|strip| far >= strip.start - ROOM);
-        ahead.map(|strip| strip.height + near.max(strip.start) * self.slope - ROOM).fold(f64::INFINITY, f64::min)
+        let met = self.strips.get(self.met([left - LINE_ROOM, right + LINE_ROOM], width)).unwrap_or_default();
+        let ahead = met.iter().filter(|strip| far >= strip.start - LINE_ROOM);
+        ahead.map(|strip| strip.height + near.max(strip.start) * self.slope - LINE_ROOM).fold(f64::INFINITY, f64::min)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::grid::{CELL, MapArea, block_area, block_of};
 use crate::plan::Plan;
 use crate::plan::window;
 use belvedere::control::Control;
-use belvedere::ground::{MAX_GAP_FROM_RETURNS, MapGrid, SurfaceParams};
+use belvedere::ground::MapGrid;
 use belvedere::medial::{LIMIT_TOUCH, MedialBalls};
 use belvedere::medium::VOXEL_SIDE;
 use belvedere::model::{ClearedArea, Clearing};
@@ -29,21 +29,6 @@ pub(crate) fn classed(cloud: &PointCloud, rows: impl Iterator<Item = usize>) -> 
 }
 
 impl Plan {
-    /// Returns this plan without the present objects in some areas. Points, their balls, and parts of balls beside a
-    /// polygon that reach into it are removed. The ground below is closed.
-    ///
-    /// # Errors
-    /// [`belvedere::Error::InvalidParameter`] for an area beside the survey and for the class of the ground.
-    pub fn with_cleared(mut self, areas: Vec<ClearedArea>) -> Result<Self> {
-        let (bounds, origin) = (self.bounds(), self.frame()?.origin);
-        areas.iter().try_for_each(|area| area.rectangle_on(&bounds, origin).map(|_| ()))?;
-        self.cleared = areas;
-        // Cleared objects ended pulses that would prove the space behind them.
-        self.proves &= self.cleared.is_empty();
-        self.tiles = self.tiles_with_cells();
-        Ok(self)
-    }
-
     /// Returns true if any object stands in the cleared areas. Tiles are tested one after the other until the first
     /// object.
     ///
@@ -64,29 +49,6 @@ impl Plan {
             }
         }
         Ok(false)
-    }
-
-    /// Returns the cleared areas, with the rectangles around polygons on the survey.
-    fn cleared_areas(&self) -> Result<Vec<(&ClearedArea, Option<MapArea>)>> {
-        let (bounds, origin) = (self.bounds(), self.frame()?.origin);
-        let mut areas = Vec::new();
-        for cleared in &self.cleared {
-            areas.push((cleared, cleared.rectangle_on(&bounds, origin)?.map(|(low, high)| MapArea { low, high })));
-        }
-        Ok(areas)
-    }
-
-    /// Returns true if all areas can be cleared from a survey in a frame with this origin.
-    pub(crate) fn has_sound_areas(&self, origin: [f64; 3]) -> bool {
-        self.cleared.iter().all(|area| area.rectangle_on(&self.bounds(), origin).is_ok())
-    }
-
-    /// Returns the maximum distance from a point at which a cell of side `cell` may get a height, metres. It includes
-    /// closed ground.
-    pub(crate) fn reach(&self, cell: f64) -> f64 {
-        let reach = SurfaceParams::reach(cell);
-        let reach = if self.is_on_ground() { reach.max(MAX_GAP_FROM_RETURNS) } else { reach };
-        if self.cleared.is_empty() { reach } else { reach.max(Clearing::REACH + cell) }
     }
 }
 

@@ -1,8 +1,7 @@
 //! Surface patches of tiles. A tile keeps all triangles that reach into it. Some are kept by several tiles, which
 //! changes no answer. At each place where a line of sight meets a triangle, the tile there has the triangle.
 
-use crate::answer::lines::{AreaLines, ROOM};
-use crate::grid::{MapArea, TOP_SIDE, square_at};
+use crate::grid::{LINE_ROOM, MapArea, TOP_SIDE, square_at};
 use belvedere::SurfacePatches;
 use belvedere::model::ClearedArea;
 use belvedere::patches::PatchTriangle;
@@ -13,7 +12,7 @@ use std::collections::BTreeMap;
 pub(crate) fn of_tile(patches: &SurfacePatches, core: &MapArea, cleared: &[ClearedArea]) -> SurfacePatches {
     let blocks = core.in_blocks();
     let middle = |area: &MapArea| [0, 1].map(|axis| f64::midpoint(area.low[axis], area.high[axis]));
-    let mut own = chosen(patches, |area, _| area.meets(core) && blocks.holds(middle(area)));
+    let mut own = select(patches, |area, _| area.meets(core) && blocks.holds(middle(area)));
     for area in cleared {
         match area {
             ClearedArea::Polygon(_) | ClearedArea::Polygons(_) => own = own.outside_polygons(&area.index()),
@@ -22,11 +21,6 @@ pub(crate) fn of_tile(patches: &SurfacePatches, core: &MapArea, cleared: &[Clear
         }
     }
     own
-}
-
-/// Adds to `all` those of `patches` that may block one of `lines`.
-pub(crate) fn add_blocking(all: &mut SurfacePatches, patches: &SurfacePatches, lines: &AreaLines<'_>) {
-    chosen(patches, |area, top| lines.may_meet(area, top)).iter().for_each(|(corners, kind)| all.push(*corners, kind));
 }
 
 /// Raises the highest tops over squares of 16 m to the patches that reach into them.
@@ -48,7 +42,7 @@ pub(crate) fn raise(tops: Vec<([i32; 2], f32)>, patches: &SurfacePatches) -> Vec
 }
 
 /// Returns the patches that `is_chosen` selects by their area on the map and their top.
-fn chosen(patches: &SurfacePatches, is_chosen: impl Fn(&MapArea, f64) -> bool) -> SurfacePatches {
+pub(crate) fn select(patches: &SurfacePatches, is_chosen: impl Fn(&MapArea, f64) -> bool) -> SurfacePatches {
     let mut chosen = SurfacePatches::default();
     for (triangle, kind) in patches.iter() {
         let (area, top) = area_and_top(triangle);
@@ -63,7 +57,7 @@ fn chosen(patches: &SurfacePatches, is_chosen: impl Fn(&MapArea, f64) -> bool) -
 fn area_and_top(triangle: &PatchTriangle) -> (MapArea, f64) {
     let corners = triangle.map(|corner| corner.map(f64::from));
     let around = corners.map(MapArea::at).iter().fold(MapArea::at(corners[0]), |all, own| all.joined(own));
-    (around.widened(ROOM), corners.iter().map(|corner| corner[2]).fold(f64::NEG_INFINITY, f64::max))
+    (around.widened(LINE_ROOM), corners.iter().map(|corner| corner[2]).fold(f64::NEG_INFINITY, f64::max))
 }
 
 #[cfg(test)]

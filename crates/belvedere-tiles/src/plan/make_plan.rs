@@ -1,6 +1,5 @@
 //! Plan of tiles from the files of a survey.
 
-use crate::answer::proof;
 use crate::grid::{CELL, MapArea};
 use crate::inputs::{InputFile, NOWHERE, PIECE_ROWS, PointColumns, remarks_on_file};
 use crate::plan::cell_sizes::{CellSizes, MIN_TILE};
@@ -13,8 +12,9 @@ use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{Insistence, LasHead, cloud_sources};
 use belvedere::model::{ModelParams, SurveyStatistics};
+use belvedere::query::nearness_of;
 use belvedere::weather::CalendarDay;
-use belvedere::{Error, Parameter, Result};
+use belvedere::{Error, Parameter, PointCloud, Result};
 use std::path::{Path, PathBuf};
 
 /// Spacing of possible origins of local coordinates, metres. It is a multiple of 64 m blocks, and large so that
@@ -110,7 +110,7 @@ impl Plan {
             targets: on_surface(),
             ground: found.ground_points(),
             proves: false,
-            nearness: proof::nearness(&found.places),
+            nearness: nearness(&found.places),
             // Rounded up, because more digits would suggest too much accuracy.
             buffer: statistics.buffer(&model).ceil(),
             questions: Vec::new(),
@@ -181,6 +181,13 @@ fn next_smaller(size: f64) -> f64 {
 fn sample(positions: &[[f32; 3]]) -> Vec<[f64; 3]> {
     let step = positions.len().div_ceil(MAX_SAMPLE).max(1);
     positions.iter().step_by(step).map(|p| p.map(f64::from)).collect()
+}
+
+/// Returns the proof distance, metres, from the first returns of some places all over a survey.
+fn nearness(places: &PointCloud) -> f64 {
+    let numbers = places.attributes.return_number.as_deref();
+    let is_first = |(row, _): &(usize, &[f32; 3])| numbers.is_none_or(|numbers| numbers[*row] <= 1);
+    nearness_of(places.positions.iter().enumerate().filter(is_first).map(|(_, &p)| p))
 }
 
 /// Returns the frame of a survey and the corners of its files, metres. The file `named_in` names the reference system.

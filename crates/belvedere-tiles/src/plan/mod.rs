@@ -1,6 +1,7 @@
 //! Plan of a run: all data that a tile needs beside its own points.
 
 pub(crate) mod cell_sizes;
+mod cleared_areas;
 pub(crate) mod estimate;
 mod kept_survey;
 pub(crate) mod make_plan;
