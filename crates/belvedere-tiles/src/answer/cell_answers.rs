@@ -24,6 +24,7 @@ use belvedere::apps::sum_errors::Intervals;
 use belvedere::apps::sun_hours::scene_sun_hours;
 use belvedere::apps::targets::{Measure, TargetLayout, Targets};
 use belvedere::apps::viewshed::{Masks, Observer, Viewshed, ViewshedParams, viewshed};
+use belvedere::cast::{to_f32, to_f32s, to_index, to_row};
 use belvedere::clean::clean;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid, SurfaceParams, top_surface};
@@ -406,8 +407,7 @@ impl<'a> PartialSight<'a> {
                 Pixels::answers([band(0), band(1)], size)?
             }
             _ => {
-                #[expect(clippy::cast_possible_truncation, reason = "no more than there are observers")]
-                let band = |i: usize| cells().map(|counts| ResultKind::count(counts.map(|c| c[i] as u32))).collect();
+                let band = |i: usize| cells().map(|counts| ResultKind::count(counts.map(|c| to_row(c[i])))).collect();
                 Pixels::counts([band(0), band(1)], size)?
             }
         };
@@ -434,8 +434,7 @@ fn cells(
 ) -> Result<Targets> {
     let (kept, _) = clean(cloud, &plan.statistics.cleaning(&plan.model().clean), control)?;
     let core = plan.grid().core(tile);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
-    let count = (plan.tile_size / cell).round() as usize;
+    let count = to_index((plan.tile_size / cell).round());
     let grid = MapGrid { corner: [core.low[0], core.high[1]], cell, width: count, height: count };
     let places = (0..count).flat_map(|row| (0..count).map(move |column| (column, row)));
     let middles: Vec<[f64; 2]> = places.clone().map(|(column, row)| grid.center(column, row)).collect();
@@ -460,9 +459,7 @@ fn cells(
     let mut heights = Raster::from_values(count, count, places.clone().map(of_cell).collect())?;
     for (place, height) in cleared.ground {
         if let Some(value) = heights.values_mut().get_mut(place).filter(|value| value.is_nan()) {
-            #[expect(clippy::cast_possible_truncation, reason = "local heights are f32")]
-            let height = height as f32;
-            *value = height;
+            *value = to_f32(height);
         }
     }
     if let Some(added) = added {
@@ -471,8 +468,7 @@ fn cells(
     let position = |(column, row): (usize, usize)| {
         let [x, y] = grid.center(column, row);
         let z = f64::from(heights.get(column, row).unwrap_or(f32::NAN)) + plan.targets.height;
-        #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-        if z.is_finite() { [x as f32, y as f32, z as f32] } else { [f32::NAN; 3] }
+        if z.is_finite() { to_f32s([x, y, z]) } else { [f32::NAN; 3] }
     };
     let positions = places.map(position).collect();
     let gaps = Raster::filled(count, count, f32::NAN);

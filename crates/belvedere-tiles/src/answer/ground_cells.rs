@@ -10,6 +10,7 @@ use belvedere::PointCloud;
 use belvedere::Result;
 use belvedere::apps::targets::{TargetLayout, Targets};
 use belvedere::apps::viewshed::cell_targets;
+use belvedere::cast::{to_f32s, to_index};
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid};
 use belvedere::io::{atomic, read_kept_rasters, write_kept_rasters};
@@ -146,8 +147,7 @@ pub(crate) fn area_around(area: &MapArea) -> MapArea {
 
 /// Returns the squares that meet an area.
 fn squares(area: &MapArea) -> impl Iterator<Item = MapArea> + use<> {
-    #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-    let number = |place: [f64; 2]| square_at(place.map(|v| v as f32), SQUARE);
+    let number = |place: [f64; 2]| square_at(to_f32s(place), SQUARE);
     let (area, [east, north], [last_east, last_north]) = (*area, number(area.low), number(area.high));
     (north..=last_north)
         .flat_map(move |north| (east..=last_east).map(move |east| square_area([east, north], SQUARE)))
@@ -164,8 +164,7 @@ pub(crate) fn ground_cells(
     control: &Control<'_>,
 ) -> Result<(Targets, [usize; 2])> {
     let core = plan.grid().core(tile);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
-    let count = (plan.tile_size / cell).round() as usize;
+    let count = to_index((plan.tile_size / cell).round());
     let grid = MapGrid { corner: [core.low[0], core.high[1]], cell, width: count, height: count };
     let mut positions = vec![[f32::NAN; 3]; count * count];
     let mut heights = Raster::filled(count, count, f32::NAN);

@@ -10,6 +10,7 @@ use crate::build::tile_pulses::in_order;
 use crate::grid::{CELL, MapArea, TileId, block_area, square_at};
 use crate::plan::Plan;
 use belvedere::Result;
+use belvedere::cast::{to_f32s, to_row};
 use belvedere::control::Control;
 use belvedere::pulses::{FreeSegmentColumns, ends_of_pulse};
 use belvedere::query::{Evidence, Proof, ProofParams};
@@ -154,8 +155,7 @@ fn lines_of_blocks(lines: &[Line], pieces: &[Option<[f64; 2]>]) -> BTreeMap<[i32
     for (row, (line, piece)) in (0_u32..).zip(lines.iter().zip(pieces)) {
         let Some([from, to]) = *piece else { continue };
         let at = |along: f64, axis: usize| line.target[axis] + along * line.towards[axis];
-        #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-        let block = |along: f64| square_at([at(along, 0) as f32, at(along, 1) as f32], CELL);
+        let block = |along: f64| square_at(to_f32s([0, 1].map(|axis| at(along, axis))), CELL);
         let ends = [block(from), block(to)];
         let span = |axis: usize| {
             let [a, b] = ends.map(|block| block[axis]);
@@ -237,8 +237,7 @@ impl PulsesOfBlocks {
             };
             blocks.into_iter().filter(is_over).map(move |block| (block, row))
         };
-        #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
-        let count = pulses.starts.len() as u32;
+        let count = to_row(pulses.starts.len());
         let mut pairs: Vec<([i32; 2], u32)> =
             (0..count).into_par_iter().with_min_len(CHUNK).flat_map_iter(blocks_of).collect();
         pairs.par_sort_unstable();

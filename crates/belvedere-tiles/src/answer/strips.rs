@@ -5,6 +5,7 @@
 
 use crate::answer::lines::MAX_BALL;
 use crate::grid::{LINE_ROOM, MapArea, TOP_SIDE, square_area, square_at};
+use belvedere::cast::to_index;
 use belvedere::query::FreeLines;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -148,8 +149,7 @@ impl DirectionLines {
             ([1.0, 0.0], STEEPEST)
         };
         let [left, right] = targets.widened(LINE_ROOM).span([-along[1], along[0]]);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by the width of a strip")]
-        let count = ((right - left) / width).max(0.0) as usize + 1;
+        let count = to_index((right - left) / width) + 1;
         Self { along, slope, left, strips: vec![NO_LINES; count] }
     }
 
@@ -166,8 +166,7 @@ impl DirectionLines {
     /// Returns the strips that meet a range across the lines.
     fn met(&self, [from, to]: [f64; 2], width: f64) -> std::ops::Range<usize> {
         let place = |v: f64| (v - self.left) / width;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
-        let number = |v: f64| (v.max(0.0) as usize).min(self.strips.len());
+        let number = |v: f64| to_index(v).min(self.strips.len());
         if place(to) < 0.0 { 0..0 } else { number(place(from))..number(place(to) + 1.0) }
     }
 
@@ -194,6 +193,7 @@ impl DirectionLines {
 mod tests {
     use super::*;
     use crate::build::make_balls::tops;
+    use belvedere::cast::to_f32;
     use belvedere::medial::MedialBalls;
     use belvedere::random::uniform;
 
@@ -201,10 +201,9 @@ mod tests {
     #[test]
     fn what_blocks_a_line_is_found_and_little_else() {
         let random = |seed: u64, i: u64, low: f64, high: f64| low + (high - low) * uniform(seed, i);
-        #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
         let place = |seed: u64, i: u64, across: [f64; 2], heights: [f64; 2]| -> [f32; 3] {
             let ranges = [across, across, heights];
-            std::array::from_fn(|axis| random(seed + axis as u64, i, ranges[axis][0], ranges[axis][1]) as f32)
+            std::array::from_fn(|axis| to_f32(random(seed + axis as u64, i, ranges[axis][0], ranges[axis][1])))
         };
         let mut directions: Vec<[f64; 3]> = (0..30)
             .map(|i| {

@@ -7,6 +7,7 @@
 use crate::grid::{CELL, MapArea, block_area, block_of};
 use crate::plan::Plan;
 use crate::plan::window;
+use belvedere::cast::to_f32;
 use belvedere::control::Control;
 use belvedere::ground::MapGrid;
 use belvedere::medial::{LIMIT_TOUCH, MedialBalls};
@@ -165,8 +166,7 @@ impl ClearedSurface {
             return Ok(Self { is_cleared, ground });
         }
         let of_blocks = by_block(points.iter().map(|point| point.0));
-        #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-        let places_of_blocks = by_block(places.iter().map(|&[x, y]| [x as f32, y as f32, 0.0]));
+        let places_of_blocks = by_block(places.iter().map(|&[x, y]| [to_f32(x), to_f32(y), 0.0]));
         each_block(plan, area, core, control, |block, clearings| {
             for &row in of_blocks.get(&block).into_iter().flatten() {
                 let (position, class) = points[row as usize];

@@ -8,6 +8,7 @@ use crate::plan::Plan;
 use crate::plan::record::{Stamp, TileOutcome, TileRecord};
 use crate::plan::stage::Stage;
 use crate::plan::window;
+use belvedere::cast::{to_f32, to_f32s};
 use belvedere::control::Control;
 use belvedere::io::{atomic, write_balls};
 use belvedere::medial::MedialBalls;
@@ -128,13 +129,10 @@ fn raised_to_crowns(tops: Vec<([i32; 2], f32)>, voxels: &ExtinctionVoxels, origi
     let mut tops: BTreeMap<[i32; 2], f32> = tops.into_iter().collect();
     for &voxel in &voxels.voxels {
         let (area, top) = crown_box(voxel, origin);
-        #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-        let [first, last] = [area.low, area.high].map(|corner| square_at(corner.map(|v| v as f32), TOP_SIDE));
+        let [first, last] = [area.low, area.high].map(|corner| square_at(to_f32s(corner), TOP_SIDE));
         for square in (first[1]..=last[1]).flat_map(|north| (first[0]..=last[0]).map(move |east| [east, north])) {
             let highest = tops.entry(square).or_insert(f32::NEG_INFINITY);
-            #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-            let top = top as f32;
-            *highest = highest.max(top);
+            *highest = highest.max(to_f32(top));
         }
     }
     tops.into_iter().collect()

@@ -1,6 +1,7 @@
 //! Pulses of tiles, in an order that does not depend on their index.
 
 use crate::grid::MapArea;
+use belvedere::cast::to_row;
 use belvedere::pulses::FreeSegmentColumns;
 use rayon::prelude::*;
 
@@ -19,8 +20,7 @@ pub(crate) fn in_order(pulses: FreeSegmentColumns) -> FreeSegmentColumns {
         let length = pulses.lengths.get(row).map(|length| length.to_bits());
         (start, pulses.slopes.get(row), length, pulses.ways.get(row))
     };
-    #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
-    let mut rows: Vec<u32> = (0..pulses.starts.len() as u32).collect();
+    let mut rows: Vec<u32> = (0..to_row(pulses.starts.len())).collect();
     // The pulses of one tile are sorted already.
     if rows.is_sorted_by(|&a, &b| key(a) <= key(b)) {
         return pulses;

@@ -3,6 +3,7 @@
 use crate::grid::{CELL, MapArea, block_area};
 use crate::plan::Plan;
 use crate::plan::survey::SurveyBlock;
+use belvedere::cast::to_index;
 use serde::Serialize;
 
 /// Memory for each point of a window while balls are made, and without any point, bytes, as measured in docs/scale.md.
@@ -62,9 +63,7 @@ impl Plan {
     /// Returns the maximum number of balls that are tested together. They take no more memory than making the balls of
     /// the largest tile.
     pub(crate) fn balls_at_a_time(&self) -> usize {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an estimate; `as` saturates")]
-        let balls = ((self.estimate().memory_bytes as f64 - MIN_BYTES) / BYTES_PER_BALL) as usize;
-        balls.max(MIN_BALLS)
+        to_index((self.estimate().memory_bytes as f64 - MIN_BYTES) / BYTES_PER_BALL).max(MIN_BALLS)
     }
 }
 

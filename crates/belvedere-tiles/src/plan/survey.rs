@@ -3,6 +3,7 @@
 use crate::columns::append;
 use crate::grid::{MapArea, block_of};
 use crate::inputs::{NOWHERE, PIECE_ROWS, PieceCell, PointColumns, hold};
+use belvedere::cast::to_i32;
 use belvedere::control::Control;
 use belvedere::ground::GroundPoints;
 use belvedere::io::{CloudBatch, ReadOptions, read_batches};
@@ -114,8 +115,7 @@ pub(crate) fn survey(
             extremes.has_vegetation |= (3..=5).contains(&class);
             let block = blocks.entry(block_of([p[0], p[1]])).or_default();
             block.points += 1;
-            #[expect(clippy::cast_possible_truncation, reason = "heights of a planet; `as` saturates")]
-            let level = block.levels.entry((p[2] / LEVEL_M).floor() as i32).or_insert((0, p[2], p[2]));
+            let level = block.levels.entry(to_i32(f64::from((p[2] / LEVEL_M).floor()))).or_insert((0, p[2], p[2]));
             *level = (level.0.saturating_add(1), level.1.min(p[2]), level.2.max(p[2]));
             let own = Bounds { low: p, high: p };
             bounds = Some(bounds.map_or(own, |bounds| joined(&bounds, &own)));

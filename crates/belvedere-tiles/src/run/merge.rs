@@ -7,6 +7,7 @@ use crate::plan::record::{TileOutcome, TileRecord};
 use crate::plan::stage::Stage;
 use crate::plan::window;
 use belvedere::apps::ask::Remark;
+use belvedere::cast::{to_i64, to_index};
 use belvedere::control::Control;
 use belvedere::crs::text::wkt_line;
 use belvedere::ground::{HighestPoints, MapGrid};
@@ -99,24 +100,20 @@ fn area_with_cells(plan: &Plan, question: &TileQuestion, tiles: &[TileId]) -> Re
 /// Returns the cells of the result of a question over an area.
 fn cells_over(plan: &Plan, question: &TileQuestion, area: &MapArea) -> MapGrid {
     let cell = plan.cells.of(question);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
-    let count = |axis: usize| ((area.high[axis] - area.low[axis]) / cell).round() as usize;
+    let count = |axis: usize| to_index(((area.high[axis] - area.low[axis]) / cell).round());
     MapGrid { corner: [area.low[0], area.high[1]], cell, width: count(0), height: count(1) }
 }
 
 /// Returns column and row of the first cell of a tile, which may lie beside the cells.
 fn place_of(plan: &Plan, cells: &MapGrid, tile: TileId) -> [i64; 2] {
     let core = plan.grid().core(tile);
-    #[expect(clippy::cast_possible_truncation, reason = "a whole number of cells")]
-    let number = |metres: f64| (metres / cells.cell).round() as i64;
+    let number = |metres: f64| to_i64((metres / cells.cell).round());
     [number(core.low[0] - cells.corner[0]), number(cells.corner[1] - core.high[1])]
 }
 
 /// Returns the number of cells along the side of a tile.
 fn side_of(plan: &Plan, cells: &MapGrid) -> usize {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of cells")]
-    let side = (plan.tile_size / cells.cell).round() as usize;
-    side
+    to_index((plan.tile_size / cells.cell).round())
 }
 
 fn in_xml(text: &str) -> String {
