@@ -3,13 +3,13 @@
 use std::collections::VecDeque;
 use std::path::PathBuf;
 
-use super::assemble::assemble;
-use super::file_part::FilePart;
+use crate::files::source::Source;
 #[cfg(feature = "las")]
-use super::las::{self, LasPoints};
-use super::read_cloud::{Systems, files_of, read_one};
-use super::read_options::{ReadOptions, Reading, UpAxis};
-use super::source::Source;
+use crate::las::{self, LasPoints};
+use crate::points::assemble::assemble;
+use crate::points::file_part::FilePart;
+use crate::points::read_options::{ReadOptions, Reading, UpAxis};
+use crate::read_cloud::{Systems, files_of, read_one};
 use belvedere_data::cloud::PointCloud;
 use belvedere_data::control::Control;
 use belvedere_data::crs::Crs;

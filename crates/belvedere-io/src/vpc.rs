@@ -10,9 +10,9 @@ use serde::Deserialize;
 use serde_json::Value;
 
 #[cfg(feature = "las")]
-use super::announced::{Announced, BoundsAre};
-use super::read_options::FileBox;
-use super::source::{Source, folder_and_query, place_beside, web_address};
+use crate::files::announced::{Announced, BoundsAre};
+use crate::files::source::{Source, folder_and_query, place_beside, web_address};
+use crate::points::read_options::FileBox;
 use belvedere_data::{Error, Result};
 
 /// Largest catalogue that is read, bytes: a million tiles, and far below the memory of any machine.
@@ -61,7 +61,7 @@ pub struct CatalogueTile {
 }
 
 /// The files of the catalogue `source` that may have points in `wanted`, in its order; all of them without a box.
-pub(super) fn files_within(catalogue: Source<'_>, wanted: Option<&FileBox>) -> Result<Vec<Source<'static>>> {
+pub(crate) fn files_within(catalogue: Source<'_>, wanted: Option<&FileBox>) -> Result<Vec<Source<'static>>> {
     let name = catalogue.name().file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let meets = |tile: &CatalogueTile| match (wanted, tile.bounds) {
         (Some(wanted), Some((low, high))) => wanted.meets(low, high),

@@ -1,13 +1,14 @@
 //! Point clouds with columns of results.
 
-use crate::columns::{Column, ExtraColumn, WriteReport, check_lengths, not_in_cloud, to_column};
-use crate::output::Output;
-use crate::source::unusable;
-#[cfg(feature = "las")]
-use crate::write_las;
 #[cfg(feature = "npy")]
-use crate::write_npy;
-use crate::{write_ply, write_table};
+use crate::arrays::write_npy;
+use crate::files::output::Output;
+use crate::files::source::unusable;
+#[cfg(feature = "las")]
+use crate::las::write_las;
+use crate::ply::write_ply;
+use crate::points::columns::{Column, ExtraColumn, WriteReport, check_lengths, not_in_cloud, to_column};
+use crate::text::write_table;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
 
 /// Extensions a cloud can be written to.

@@ -1,7 +1,9 @@
 //! Points, lines and polygons on the map, with their properties: GeoJSON, GeoPackage and Shapefile.
 
+mod antimeridian;
 #[cfg(feature = "gpkg")]
 mod geopackage;
+pub(crate) mod outline;
 mod read;
 #[cfg(feature = "shp")]
 mod shapefile;

@@ -5,7 +5,7 @@ use std::path::Path;
 use geojson::{GeoJson, Geometry, GeometryValue, Position};
 use serde_json::{Map, Value};
 
-use crate::source::{Source, refuse_other_shapes};
+use crate::files::source::{Source, refuse_other_shapes};
 
 use belvedere_data::crs::evidence::Comparison;
 use belvedere_data::crs::{Crs, CrsKind, GeographicProjection};
@@ -117,7 +117,7 @@ fn of_geopackage(source: Source<'_>) -> Result<RawFeatures> {
 
 #[cfg(feature = "shp")]
 fn of_shapefile(source: &Source<'_>) -> Result<RawFeatures> {
-    use crate::source::SystemBeside;
+    use crate::files::source::SystemBeside;
     let (features, beside) = super::shapefile::read(source)?;
     let system = match beside {
         Some(SystemBeside::Known { crs, .. }) => Some(crs),

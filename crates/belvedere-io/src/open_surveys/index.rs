@@ -7,7 +7,7 @@
 use serde_json::Value;
 
 use super::tiles::SurveyTile;
-use crate::source::web_address;
+use crate::files::source::web_address;
 use belvedere_data::shown::without_secrets;
 
 /// Ends of addresses of point clouds, the best first: windows of COPC are read without the rest, archives not at all.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::tiles::without_key;
-use crate::source::Source;
+use crate::files::source::Source;
 use belvedere_data::parameter::Parameter;
 use belvedere_data::{Error, Result};
 

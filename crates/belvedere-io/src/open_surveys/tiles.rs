@@ -6,8 +6,8 @@ use serde::{Serialize, Serializer};
 
 use super::index::ListPage;
 use super::table::{OpenSurvey, SurveyArea, TileIndex};
-use crate::remote;
-use crate::secrets::hidden;
+use crate::files::remote;
+use crate::files::secrets::hidden;
 use belvedere_data::control::Control;
 use belvedere_data::crs::{Crs, GeographicProjection};
 use belvedere_data::parameter::Parameter;

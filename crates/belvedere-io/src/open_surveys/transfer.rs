@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 
 use super::table::SurveyArea;
 use super::tiles::{FoundSurvey, SurveyTile, best_covering, middle_in};
-use crate::atomic;
+use crate::files::atomic;
+use crate::files::secrets::hidden;
+use crate::files::source::Source;
 use crate::las::read_las_head;
+use crate::points::read_options::{ReadOptions, Within};
+use crate::points::read_report::ReadReport;
 use crate::read_cloud::read_cloud;
-use crate::read_options::{ReadOptions, Within};
-use crate::read_report::ReadReport;
-use crate::secrets::hidden;
-use crate::source::Source;
 use belvedere_data::control::Control;
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, PointCloud, Result};
