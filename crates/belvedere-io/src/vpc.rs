@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use serde_json::Value;
 
-#[cfg(feature = "las")]
 use crate::files::announced::{Announced, BoundsAre};
 use crate::files::source::{Source, folder_and_query, place_beside, web_address};
 use crate::points::read_options::FileBox;
@@ -68,17 +67,13 @@ pub(crate) fn files_within(catalogue: Source<'_>, wanted: Option<&FileBox>) -> R
         _ => true,
     };
     let source = |tile: CatalogueTile| {
-        #[cfg_attr(not(feature = "las"), expect(unused_mut, reason = "announced points are compared with LAS headers"))]
         let mut source = Source::path(tile.path);
-        #[cfg(feature = "las")]
-        {
-            source.announced = Some(Announced {
-                by: name.clone(),
-                points: tile.point_count,
-                bounds: tile.bounds,
-                bounds_are: BoundsAre::OfPoints,
-            });
-        }
+        source.announced = Some(Announced {
+            by: name.clone(),
+            points: tile.point_count,
+            bounds: tile.bounds,
+            bounds_are: BoundsAre::OfPoints,
+        });
         source
     };
     Ok(read_catalogue(catalogue)?.into_iter().filter(meets).map(source).collect())

@@ -1,6 +1,5 @@
 //! Sources and outputs: files, bytes, readers, and files on web servers.
 
-#[cfg(feature = "las")]
 pub(crate) mod announced;
 pub mod atomic;
 pub(crate) mod output;

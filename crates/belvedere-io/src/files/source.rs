@@ -5,7 +5,6 @@ use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-#[cfg(feature = "las")]
 use crate::files::announced::Announced;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
@@ -43,7 +42,6 @@ pub struct Source<'a> {
     /// The system of a source that names none, where a catalogue gives it.
     pub(crate) system: Option<SystemBeside>,
     /// Description of its points by a hierarchy or a catalogue.
-    #[cfg(feature = "las")]
     pub(crate) announced: Option<Announced>,
 }
 
@@ -91,14 +89,7 @@ impl<'a> Source<'a> {
     }
 
     fn of(name: PathBuf, content: Content<'a>) -> Self {
-        Self {
-            name,
-            content,
-            likely_rows: None,
-            system: None,
-            #[cfg(feature = "las")]
-            announced: None,
-        }
+        Self { name, content, likely_rows: None, system: None, announced: None }
     }
 
     /// Adds the rows that may hold points of a window ([`crate::ReadOptions::within`]): ranges of rows from 0, in their
@@ -131,11 +122,7 @@ impl<'a> Source<'a> {
     /// Returns the description of its points by a hierarchy or a catalogue, as text that changes with it.
     #[must_use]
     pub fn announced_in_words(&self) -> String {
-        #[cfg(feature = "las")]
-        let words = self.announced.as_ref().map(|announced| format!("{announced:?}"));
-        #[cfg(not(feature = "las"))]
-        let words: Option<String> = None;
-        words.unwrap_or_default()
+        self.announced.as_ref().map(|announced| format!("{announced:?}")).unwrap_or_default()
     }
 
     /// The folder at the path, where the source is one.

@@ -1,6 +1,7 @@
 //! LAS 1.0 to 1.4 and LAZ (also COPC), all point formats. Points come in the order of the file. Of a box only those
 //! chunks of a COPC file are read that may hold points of it, and nothing of a file whose bounds do not meet it.
 
+pub(crate) mod announced;
 pub(crate) mod columns;
 pub(crate) mod copc;
 pub(crate) mod copy;
@@ -24,8 +25,8 @@ use std::path::{Path, PathBuf};
 use ::las::point::Format;
 use ::las::{PointData, PointDataBuilder, Transform, Vector};
 
-use crate::files::announced::are_given;
 use crate::files::source::{Input, Source, SourceReader, web_address};
+use crate::las::announced::are_given;
 use crate::las::columns::{LasColumns, UnreadFields};
 use crate::las::copc::CopcNodes;
 use crate::las::extra::{ExtraField, ExtraNormals, find_columns, find_extra_normals};

@@ -1,8 +1,9 @@
 //! The table of open surveys, and the area that is wanted of them.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
+use std::path::Path;
 
-use super::tiles::without_key;
+use crate::files::secrets::hidden;
 use crate::files::source::Source;
 use belvedere_data::parameter::Parameter;
 use belvedere_data::{Error, Result};
@@ -66,6 +67,11 @@ pub enum TileIndex {
     },
     /// None: people choose tiles on the page of the provider.
     Page,
+}
+
+/// Writes an address without user, password and key.
+pub(super) fn without_key<S: Serializer>(address: &str, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+    serializer.collect_str(&hidden(Path::new(address)).display())
 }
 
 /// A square area around a place.

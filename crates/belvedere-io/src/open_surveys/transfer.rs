@@ -4,8 +4,9 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use super::index::SurveyTile;
 use super::table::SurveyArea;
-use super::tiles::{FoundSurvey, SurveyTile, best_covering, middle_in};
+use super::tiles::{FoundSurvey, best_covering, middle_in};
 use crate::files::atomic;
 use crate::files::secrets::hidden;
 use crate::files::source::Source;
