@@ -1,6 +1,6 @@
 //! Sky view and isovist here: how open a place is.
 
-use super::RequestContext;
+use super::context::RequestContext;
 use super::places::{command_at, local, number};
 use super::sun::target_at;
 use crate::replies::{QuestionReply, Refusal};
