@@ -2,6 +2,7 @@
 
 use crate::arrays::npz::{array, has, invalid, rows};
 use belvedere_data::building_outlines::{BuildingOutlines, Edge, Ridge, RoofPlane, Wall};
+use belvedere_data::cast::to_index;
 use std::io::{self, Read, Seek, Write};
 use zip::{ZipArchive, ZipWriter};
 
@@ -81,6 +82,5 @@ fn whole(v: f64) -> io::Result<usize> {
     if !(0.0..=f64::from(u32::MAX)).contains(&v) || v.fract() != 0.0 {
         return Err(invalid(format!("{v} is neither a row nor a count")));
     }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number below 2^32")]
-    Ok(v as usize)
+    Ok(to_index(v))
 }

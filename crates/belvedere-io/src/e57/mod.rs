@@ -13,6 +13,7 @@ use crate::points::file_part::{COARSE_STEP, FilePart, single_step};
 use crate::points::read_options::Reading;
 use crate::points::rows::{Role, Row, Rows, role_of};
 use crate::points::sky::ScanGrid;
+use belvedere_data::cast::to_i64;
 use belvedere_data::contradiction::POINTS_NOT_COUNTED;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
@@ -266,7 +267,6 @@ fn meaning(record: &Record, scan: &Scan, cartesian: bool) -> Meaning {
     }
 }
 
-#[expect(clippy::cast_precision_loss, reason = "limits of colours and intensities are small")]
 fn type_limits(kind: &RecordDataType) -> (Option<f64>, Option<f64>) {
     match kind {
         RecordDataType::Single { min, max } => (min.map(f64::from), max.map(f64::from)),
@@ -385,9 +385,8 @@ impl GridBounds {
 
     /// The cell of a row and a column, counted from the lowest.
     fn cell(self, [row, column]: [f64; 2]) -> Option<[u64; 2]> {
-        #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
         let from = |value: f64, [low, high]: [i64; 2]| {
-            let index = value as i64;
+            let index = to_i64(value);
             (low..=high).contains(&index).then(|| index.abs_diff(low))
         };
         Some([from(row, self.rows)?, from(column, self.columns)?])

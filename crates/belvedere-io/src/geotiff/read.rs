@@ -8,6 +8,7 @@ use tiff::{TiffError, TiffFormatError, TiffResult};
 
 use crate::files::source::{Input, Source, SourceReader};
 use crate::geotiff::{GDAL_METADATA, Georeference, SOFTWARE};
+use belvedere_data::cast::to_f32;
 use belvedere_data::crs::Crs;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Result};
@@ -136,7 +137,6 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
     let Input { name, reader, size } = source.into().open()?;
     let mut decoder = decoder(reader, size).map_err(|e| damaged(&name, e))?;
     let (size, values) = size_and_values(&mut decoder).map_err(|e| damaged(&name, e))?;
-    #[expect(clippy::cast_possible_truncation, reason = "values of maps are f32")]
     let values: Vec<f32> = match values {
         DecodingResult::U8(values) => values.into_iter().map(f32::from).collect(),
         DecodingResult::I8(values) => values.into_iter().map(f32::from).collect(),
@@ -145,12 +145,11 @@ pub fn read_placed<'a>(source: impl Into<Source<'a>>) -> Result<PlacedRaster> {
         DecodingResult::U32(values) => values.into_iter().map(|v| v as f32).collect(),
         DecodingResult::I32(values) => values.into_iter().map(|v| v as f32).collect(),
         DecodingResult::F32(values) => values,
-        DecodingResult::F64(values) => values.into_iter().map(|v| v as f32).collect(),
+        DecodingResult::F64(values) => values.into_iter().map(to_f32).collect(),
         _ => return Err(other_kind(&name)),
     };
     let nodata = decoder.get_tag_ascii_string(Tag::GdalNodata).ok();
-    #[expect(clippy::cast_possible_truncation, reason = "values of maps are f32")]
-    let nodata = nodata.and_then(|text| text.trim().parse::<f64>().ok()).map(|nodata| nodata as f32);
+    let nodata = nodata.and_then(|text| text.trim().parse::<f64>().ok()).map(to_f32);
     let values = values.into_iter().map(|v| if Some(v) == nodata || !v.is_finite() { f32::NAN } else { v }).collect();
     let of_belvedere = decoder.get_tag_ascii_string(Tag::Software).is_ok_and(|program| program.starts_with(SOFTWARE));
     let mut bands = bands(size, values)?;

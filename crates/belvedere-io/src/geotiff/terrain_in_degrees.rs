@@ -1,6 +1,7 @@
 //! Elevation rasters in degrees, brought into the plane of a scene.
 
 use crate::geotiff::Georeference;
+use belvedere_data::cast::to_index;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::to_f32;
 use belvedere_data::{ElevationGrid, Error, Frame, Result};
@@ -57,8 +58,7 @@ pub(crate) fn projected(
     if !(counts[0] * counts[1] <= MAX_CELLS) {
         return Err(too_large(name));
     }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole numbers up to 67 million")]
-    let [width, height] = counts.map(|count| count as usize);
+    let [width, height] = counts.map(to_index);
     // columns and rows of the raster at every few nodes of the result, and one beyond the last
     let coarse = [width, height].map(|count| count.div_ceil(STEP) + 1);
     let mut known = Vec::with_capacity(coarse[0] * coarse[1]);
@@ -116,8 +116,7 @@ fn bilinear(raster: &Raster<f32>, [u, v]: [f64; 2]) -> f64 {
         return f64::NAN;
     }
     let [s, t] = [u.clamp(0.0, last[0]), v.clamp(0.0, last[1])];
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the raster")]
-    let [column, row] = [s.min(last[0] - 1.0).max(0.0) as usize, t.min(last[1] - 1.0).max(0.0) as usize];
+    let [column, row] = [s.min(last[0] - 1.0), t.min(last[1] - 1.0)].map(to_index);
     let (s, t) = (s - column as f64, t - row as f64);
     let at = |c: usize, r: usize| raster.get(column + c, row + r).map_or(f64::NAN, f64::from);
     (1.0 - t) * ((1.0 - s) * at(0, 0) + s * at(1, 0)) + t * ((1.0 - s) * at(0, 1) + s * at(1, 1))

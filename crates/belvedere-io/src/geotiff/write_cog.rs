@@ -8,6 +8,7 @@ use crate::files::output::Output;
 use crate::geotiff::{
     BandValues, Bands, GDAL_METADATA, Georeference, SOFTWARE_VERSION, ascii, geo_keys, metadata_in_xml, size_of_bands,
 };
+use belvedere_data::cast::to_row;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Parameter, Result};
 use flate2::Compression;
@@ -238,8 +239,7 @@ fn file<'a>(
 
 /// The tags of each level.
 fn tags(level: &RasterLevel, offsets: &[u32], nodata: &str) -> Vec<Tag> {
-    #[expect(clippy::cast_possible_truncation, reason = "tiles of a megabyte at most")]
-    let sizes: Vec<u32> = level.tiles.iter().map(|tile| tile.len() as u32).collect();
+    let sizes: Vec<u32> = level.tiles.iter().map(|tile| to_row(tile.len())).collect();
     // one for each band
     let [bits, kind] = level.kind.map(|value| vec![value; level.band_count]);
     #[expect(clippy::cast_possible_truncation, reason = "512, and no more bands than measures")]

@@ -19,13 +19,12 @@ use crate::las::{Batches, LasFile};
 use crate::points::columns::Column;
 use crate::points::coordinates::Coordinates;
 use crate::points::file_part::FilePart;
+use belvedere_data::cast::to_i32;
 use belvedere_data::cloud::{Attributes, to_local};
 use belvedere_data::{Error, FileRows, PointCloud, Result};
 
 /// Maximum distance between a record and its point, in steps of an f32 at the place of the point and steps of the file.
 const ROUNDING_STEPS: f64 = 4.0;
-/// Degrees per step of the scan angle of point formats 6 and up (LAS 1.4 R15, table 17).
-const DEGREES_PER_SCAN_STEP: f64 = 0.006;
 /// Bytes of the fields that all points of formats 0 to 5, and of formats 6 to 10, have.
 const SHORT_FIELDS: usize = 20;
 const LONG_FIELDS: usize = 30;
@@ -419,9 +418,7 @@ impl RecordCopy<'_> {
                 bytes
             } else {
                 let place = f64::from(i32::from_le_bytes(bytes)) * from.scale + from.offset;
-                #[expect(clippy::cast_possible_truncation, reason = "the step was chosen so that all coordinates fit")]
-                let steps = ((place - to.offset) / to.scale).round() as i32;
-                steps.to_le_bytes()
+                to_i32(((place - to.offset) / to.scale).round()).to_le_bytes()
             };
             out[axis * 4..axis * 4 + 4].copy_from_slice(&value);
         }
@@ -482,9 +479,7 @@ fn widen(record: &[u8], out: &mut [u8]) {
     out[16] = class & 0x1f;
     out[17] = record[17];
     let degrees = f64::from(i8::from_le_bytes([record[16]]));
-    #[expect(clippy::cast_possible_truncation, reason = "128 degrees are 21 333 steps")]
-    let steps = (degrees / DEGREES_PER_SCAN_STEP).round() as i16;
-    out[18..20].copy_from_slice(&steps.to_le_bytes());
+    out[18..20].copy_from_slice(&scan_steps(degrees).to_le_bytes());
     out[20..22].copy_from_slice(&record[18..20]);
 }
 
@@ -543,4 +538,13 @@ pub(crate) fn results_record(names: &[String]) -> Vlr {
     let (user, record_id) = records::RESULTS;
     let description = "columns of results".to_owned();
     Vlr { user_id: user.to_owned(), record_id, description, data: names.join("\n").into_bytes() }
+}
+
+/// Degrees per step of the scan angle of point formats 6 and up (LAS 1.4 R15, table 17).
+const DEGREES_PER_SCAN_STEP: f64 = 0.006;
+
+/// Returns the steps of a scan angle, degrees, of point formats 6 and up.
+#[expect(clippy::cast_possible_truncation, reason = "clamped to the range of i16")]
+pub(crate) fn scan_steps(angle: f64) -> i16 {
+    (angle / DEGREES_PER_SCAN_STEP).round().clamp(-30000.0, 30000.0) as i16
 }

@@ -1,6 +1,7 @@
 //! Epoch of the GPS times of a file: by its header, by the times themselves, and by the day of the flight.
 
 use belvedere_data::GpsTimeKind;
+use belvedere_data::cast::to_i64;
 use belvedere_data::cloud::{ADJUSTED_GPS_EPOCH, Attributes};
 use belvedere_data::contradiction::{FLIGHT_DAY, FoundContradiction, GPS_TIME_EPOCH};
 use belvedere_data::trajectory::{LONGEST_WEEK_S, WEEK_S};
@@ -91,8 +92,7 @@ impl GpsEpoch {
                 Epoch::Standard => -ADJUSTMENT,
                 Epoch::Week | Epoch::WeekOf(_) => return None,
             };
-            #[expect(clippy::cast_possible_truncation, reason = "days; a cast saturates")]
-            Some(((time + shift + ADJUSTED_GPS_EPOCH) / DAY).floor() as i64)
+            Some(to_i64(((time + shift + ADJUSTED_GPS_EPOCH) / DAY).floor()))
         };
         let day = first.and_then(day_of);
         let date = day.and_then(date_of_unix_day);

@@ -11,18 +11,17 @@ use rayon::prelude::*;
 use crate::files::atomic;
 use crate::files::output::{Output, WriteSeek};
 use crate::files::source;
-use crate::las::copy::{RecordCopy, results_record};
+use crate::las::copy::{RecordCopy, results_record, scan_steps};
 use crate::points::columns::{Column, ColumnValues};
 use crate::points::columns::{WriteReport, not_in_cloud};
 use belvedere_data::Bounds;
+use belvedere_data::cast::to_i32;
 use belvedere_data::cloud::GpsTimeKind;
 use belvedere_data::crs::text;
 use belvedere_data::{CloudFile, Error, Parameter, PointCloud, Result};
 
 /// Points encoded at a time: many LAZ chunks of 50 000, so that all threads compress, yet little memory.
 const POINTS_PER_SLAB: usize = 1 << 20;
-/// Degrees per step of the scan angle of point formats 6 and up (LAS 1.4 R15, table 17).
-const DEGREES_PER_SCAN_STEP: f64 = 0.006;
 /// Names of the columns that readers look for normals in.
 const NORMALS: [&str; 3] = ["NormalX", "NormalY", "NormalZ"];
 /// Maximum number of letters of the name of a column.
@@ -360,8 +359,7 @@ impl Encoder<'_> {
         let transforms = [self.transforms.x, self.transforms.y, self.transforms.z];
         for (axis, (value, transform)) in xyz.into_iter().zip(transforms).enumerate() {
             let steps = ((value - transform.offset) / transform.scale).round();
-            #[expect(clippy::cast_possible_truncation, reason = "the scale was chosen so that all coordinates fit")]
-            record[axis * 4..axis * 4 + 4].copy_from_slice(&(steps as i32).to_le_bytes());
+            record[axis * 4..axis * 4 + 4].copy_from_slice(&to_i32(steps).to_le_bytes());
         }
         let of = |column: &Option<Vec<u8>>, default: u8| column.as_ref().map_or(default, |v| v[index]);
         let intensity = a.intensity.as_ref().map_or(0, |v| v[index]);
@@ -372,9 +370,7 @@ impl Encoder<'_> {
         record[15] = cut(of(&a.flags, 0), 15) | cut(of(&a.scanner_channel, 0), 3) << 4;
         record[16] = of(&a.classification, 0);
         let angle = a.scan_angle.as_ref().map_or(0.0, |v| f64::from(v[index]).to_degrees());
-        #[expect(clippy::cast_possible_truncation, reason = "clamped to the range of i16")]
-        let steps = (angle / DEGREES_PER_SCAN_STEP).round().clamp(-30000.0, 30000.0) as i16;
-        record[18..20].copy_from_slice(&steps.to_le_bytes());
+        record[18..20].copy_from_slice(&scan_steps(angle).to_le_bytes());
         let source = a.point_source_id.as_ref().map_or(0, |v| v[index]);
         record[20..22].copy_from_slice(&source.to_le_bytes());
         let time = a.gps_time.as_ref().map_or(0.0, |v| v[index]);

@@ -306,15 +306,3 @@ fn make_unit(normals: &mut [[f32; 3]]) -> usize {
     }
     absent
 }
-
-/// A number of a file as u8: rounded, clamped to the range, zero for NaN.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "float casts saturate, which is meant")]
-pub(crate) fn to_u8(value: f64) -> u8 {
-    value.round() as u8
-}
-
-/// A number of a file as u16: rounded, clamped to the range, zero for NaN.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "float casts saturate, which is meant")]
-pub(crate) fn to_u16(value: f64) -> u16 {
-    value.round() as u16
-}

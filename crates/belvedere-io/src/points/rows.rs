@@ -1,7 +1,7 @@
 //! Points that come one by one with named numbers, as in text, PLY, PCD and E57 files.
 
 use crate::points::coordinates::Coordinates;
-use crate::points::file_part::{FilePart, to_u8, to_u16};
+use crate::points::file_part::FilePart;
 use crate::points::read_options::RowNumbers;
 use belvedere_data::cloud::{Attributes, GpsTimeKind};
 use belvedere_data::contradiction::COLUMN_TWICE;
@@ -303,4 +303,15 @@ fn to_16_bit(part: &mut FilePart, what: &str, values: &[f32]) -> Vec<u16> {
         part.note(format!("{outside} {what} lie outside 0 to 65535 and were clamped"));
     }
     values.iter().map(|&v| to_u16(f64::from(v) * scale)).collect()
+}
+
+/// Rounds a number of a file, and clamps it to the range; zero for NaN.
+fn to_u8(value: f64) -> u8 {
+    belvedere_data::cast::to_u8(value.round())
+}
+
+/// Rounds a number of a file, and clamps it to the range; zero for NaN.
+#[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
+pub(crate) fn to_u16(value: f64) -> u16 {
+    value.round() as u16
 }

@@ -5,6 +5,7 @@
 //! So only cells above the horizon count that hang together up to the top of the grid.
 
 use crate::points::read_options::UpAxis;
+use belvedere_data::cast::to_index;
 use belvedere_data::sky_region::SkyRegion;
 use belvedere_data::vector::to_f32;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -162,9 +163,7 @@ impl ScanGrid {
 
 /// Place of a share in a sorted list; `None` in one without entries.
 fn at_share(share: f64, count: usize) -> Option<usize> {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a count")]
-    let place = (share * count as f64) as usize;
-    count.checked_sub(1).map(|last| place.min(last))
+    count.checked_sub(1).map(|last| to_index(share * count as f64).min(last))
 }
 
 /// Returns true if the columns of a grid go all around, so that the last stands beside the first.
@@ -176,9 +175,7 @@ fn goes_around(region: &SkyRegion) -> bool {
 /// Returns the number of columns that are at least `angle` wide in a row.
 fn columns_of(angle: f64, region: &SkyRegion, row: usize) -> usize {
     let width = region.azimuth[1].abs() * region.elevation_of(row).cos().max(0.0);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
-    let count = (angle / width - 1e-6).ceil() as usize;
-    count.clamp(1, region.columns)
+    to_index((angle / width - 1e-6).ceil()).clamp(1, region.columns)
 }
 
 /// The closed cells of a grid, and those within the margin of one.
@@ -199,8 +196,7 @@ fn widened(closed: &[bool], region: &SkyRegion, rows: usize) -> Vec<bool> {
             }
         }
     }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
-    let reach = ((margin / height - 1e-6).ceil() as usize).clamp(1, rows);
+    let reach = to_index((margin / height - 1e-6).ceil()).clamp(1, rows);
     let mut all = vec![false; closed.len()];
     for row in 0..rows {
         for near in row.saturating_sub(reach)..(row + reach + 1).min(rows) {

@@ -166,7 +166,6 @@ impl PcdField {
             return Some(());
         }
         let Some(role) = self.role else { return Some(()) };
-        #[expect(clippy::cast_precision_loss, reason = "64-bit integers beyond 2^53 are no coordinates")]
         let value = match (self.kind, self.size) {
             ('F', 4) => f64::from(f32::from_le_bytes(*bytes.first_chunk()?)),
             ('F', _) => f64::from_le_bytes(*bytes.first_chunk()?),

@@ -9,6 +9,7 @@ use crate::points::read_options::Reading;
 use crate::points::rows::{POSITION, Role, Row, Rows};
 use crate::points::sky::ScanGrid;
 use crate::text::scan_pose::fault_of_rotation;
+use belvedere_data::cast::to_i64;
 use belvedere_data::contradiction::{FoundContradiction, SCAN_POSE};
 use belvedere_data::{Error, Result};
 
@@ -160,8 +161,7 @@ fn read_header<R: BufRead>(lines: &mut PtxLines<'_, R>) -> Result<Option<PtxHead
     if ![columns, rows].iter().all(|n| n.fract() == 0.0 && (0.0..1e9).contains(n)) {
         return Err(lines.malformed("follows a grid size that is not a whole number"));
     }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole and below 1e18, as just seen")]
-    let [rows, columns] = [rows, columns].map(|count| count as u64);
+    let [rows, columns] = [rows, columns].map(|count| to_i64(count).unsigned_abs());
     Ok(Some(PtxHeader {
         line,
         size: [rows, columns],

@@ -1,5 +1,6 @@
 //! Lines of cells parted by commas, and errors that name them.
 
+use belvedere_data::cast::to_i32;
 use belvedere_data::weather::{CalendarDay, WeatherAir};
 use belvedere_data::{Error, Result};
 use std::ops::RangeInclusive;
@@ -87,9 +88,8 @@ impl<'a> WeatherLine<'a> {
     /// The same where a whole number is meant.
     pub(super) fn whole_in(&self, cells: &[&str], column: usize, name: &str) -> Result<i32> {
         let value = self.number_in(cells, column, name)?;
-        #[expect(clippy::cast_possible_truncation, reason = "tested to be whole and small")]
         if value.fract() == 0.0 && value.abs() < 1e6 {
-            Ok(value as i32)
+            Ok(to_i32(value))
         } else {
             Err(self.wrong(&format!("{name} is {value}, which is not a whole number")))
         }
