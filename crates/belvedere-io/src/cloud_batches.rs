@@ -58,11 +58,7 @@ pub fn read_batches<'a, S: Into<Source<'a>>>(
 ) -> Result<CloudBatches<'a>> {
     if options.up != UpAxis::Z {
         let value = "y".to_owned();
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::UpAxis,
-            value,
-            expected: "z for clouds in batches",
-        });
+        return Err(Error::invalid(Parameter::UpAxis, value, "z for clouds in batches"));
     }
     let forced = options.forced_crs()?;
     let reading = Reading { options, forced: forced.as_ref(), control };

@@ -290,11 +290,7 @@ where
 }
 
 pub(crate) fn invalid_size(width: usize, height: usize) -> Error {
-    Error::InvalidParameter {
-        parameter: Parameter::Raster,
-        value: format!("{width} x {height}"),
-        expected: "1 to 4294967295 pixels wide and high",
-    }
+    Error::invalid(Parameter::Raster, format!("{width} x {height}"), "1 to 4294967295 pixels wide and high")
 }
 
 fn encode<C: ColorType, W: std::io::Write + std::io::Seek, K: TiffKind>(

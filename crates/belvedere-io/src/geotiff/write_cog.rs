@@ -32,11 +32,7 @@ pub fn write_cog<'a>(output: impl Into<Output<'a>>, bands: &Bands<'_>, place: &G
     let ([east, tilt], [turn, south]) = (place.column_step, place.row_step);
     if tilt != 0.0 || turn != 0.0 || !(east > 0.0 && south < 0.0) {
         let value = format!("steps {:?} and {:?}", place.column_step, place.row_step);
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::Raster,
-            value,
-            expected: "columns to the east and rows to the south",
-        });
+        return Err(Error::invalid(Parameter::Raster, value, "columns to the east and rows to the south"));
     }
     let (levels, nodata) = match bands.values {
         BandValues::U8(rasters, nodata) => (levels(rasters, nodata, majority), nodata.to_string()),
@@ -216,11 +212,8 @@ fn file<'a>(
         .collect();
     let mut next = 8 + sizes.iter().sum::<usize>();
     let mut offsets: Vec<Vec<u32>> = vec![Vec::new(); levels.len()];
-    let too_large = |_| Error::InvalidParameter {
-        parameter: Parameter::Raster,
-        value: "more than 4 GB, compressed".to_owned(),
-        expected: "a smaller raster, or larger cells",
-    };
+    let too_large =
+        |_| Error::invalid(Parameter::Raster, "more than 4 GB, compressed", "a smaller raster, or larger cells");
     for (level, offsets) in levels.iter().zip(&mut offsets).rev() {
         for tile in &level.tiles {
             offsets.push(u32::try_from(next).map_err(too_large)?);

@@ -126,10 +126,8 @@ impl<'a> CityFile<'a> {
         }
         let chosen = match wanted {
             LevelOfDetail::Highest => levels.iter().map(|level| level.0).fold(f64::NEG_INFINITY, f64::max),
-            LevelOfDetail::Only(level) => level.trim().parse().map_err(|_| Error::InvalidParameter {
-                parameter: Parameter::LevelOfDetail,
-                value: level.clone(),
-                expected: "a number such as 1, 1.3 or 2.2",
+            LevelOfDetail::Only(level) => level.trim().parse().map_err(|_| {
+                Error::invalid(Parameter::LevelOfDetail, level.clone(), "a number such as 1, 1.3 or 2.2")
             })?,
         };
         let mut index = None;

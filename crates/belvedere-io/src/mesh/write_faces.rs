@@ -1,6 +1,7 @@
 //! Bare meshes: vertices that faces share.
 
 use crate::files::output::Output;
+use crate::ply::write_ply::{header_start, plain};
 use belvedere_data::crs::text::comment_lines;
 use belvedere_data::{Error, Mesh, Result};
 
@@ -15,15 +16,11 @@ const DECIMALS: usize = 4;
 pub fn write_mesh<'a>(output: impl Into<Output<'a>>, mesh: &Mesh, metres_per_unit: [f64; 3]) -> Result<()> {
     let output = output.into();
     let place = |vertex: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|i| vertex[i] / metres_per_unit[i]) };
-    // text of other programs may hold what a header must not
-    let plain = |line: String| -> String {
-        line.chars().map(|c| if c.is_ascii() && !c.is_ascii_control() { c } else { '?' }).collect()
-    };
-    let comments: Vec<String> = comment_lines(&mesh.crs).into_iter().map(plain).collect();
+    let comments = comment_lines(&mesh.crs);
     match output.extension().as_str() {
         "obj" => output.write(|path, output| {
             let mut text = String::from("# written by belvedere\n");
-            comments.iter().for_each(|line| text.push_str(&format!("# {line}\n")));
+            comments.iter().for_each(|line| text.push_str(&format!("# {}\n", plain(line))));
             output.write_all(text.as_bytes()).map_err(Error::io(path))?;
             for vertex in &mesh.vertices {
                 let [x, y, z] = place(vertex);
@@ -37,14 +34,11 @@ pub fn write_mesh<'a>(output: impl Into<Output<'a>>, mesh: &Mesh, metres_per_uni
             Ok(())
         }),
         "ply" => output.write(|path, output| {
-            let mut header = String::from("ply\nformat binary_little_endian 1.0\ncomment written by belvedere\n");
-            comments.iter().for_each(|line| header.push_str(&format!("comment {line}\n")));
-            header.push_str(&format!(
-                "element vertex {}\nproperty double x\nproperty double y\nproperty double z\nelement face {}\n\
-                 property list uchar uint vertex_indices\nend_header\n",
-                mesh.vertices.len(),
+            let header = format!(
+                "{}element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
+                header_start(&comments, mesh.vertices.len()),
                 mesh.triangles.len()
-            ));
+            );
             let mut write = |bytes: &[u8]| output.write_all(bytes).map_err(Error::io(path));
             write(header.as_bytes())?;
             for value in mesh.vertices.iter().flat_map(place) {

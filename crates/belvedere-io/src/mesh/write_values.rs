@@ -2,6 +2,7 @@
 
 use crate::colors::ramp;
 use crate::files::output::Output;
+use crate::ply::write_ply::header_start;
 use belvedere_data::crs::Crs;
 use belvedere_data::crs::text::comment_lines;
 use belvedere_data::vector::to_f32;
@@ -36,11 +37,7 @@ pub fn write_mesh_values<'a>(
     }
     if mesh.triangles.len() > 1_000_000_000 {
         let value = mesh.triangles.len().to_string();
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::Mesh,
-            value,
-            expected: "a billion triangles at most",
-        });
+        return Err(Error::invalid(Parameter::Mesh, value, "a billion triangles at most"));
     }
     let faces: Vec<([[f64; 3]; 3], f64)> =
         values.iter().enumerate().filter_map(|(t, &value)| Some((mesh.corners(t)?, value))).collect();
@@ -70,20 +67,9 @@ pub fn write_mesh_values<'a>(
 
 /// The header of a PLY file of `face_count` triangles with vertices of their own, whose values are called `name`.
 fn header(crs: &Crs, name: &str, face_count: usize) -> String {
-    let mut header = String::from("ply\nformat binary_little_endian 1.0\ncomment written by belvedere\n");
-    for line in comment_lines(crs) {
-        let line: String = line.chars().map(|c| if c.is_ascii() && !c.is_ascii_control() { c } else { '?' }).collect();
-        header.push_str(&format!("comment {line}\n"));
-    }
-    header.push_str(&format!("element vertex {}\n", 3 * face_count));
-    for axis in ["x", "y", "z"] {
-        header.push_str(&format!("property double {axis}\n"));
-    }
-    for channel in ["red", "green", "blue"] {
-        header.push_str(&format!("property uchar {channel}\n"));
-    }
-    header.push_str(&format!(
-        "property float {name}\nelement face {face_count}\nproperty list uchar uint vertex_indices\nend_header\n",
-    ));
-    header
+    format!(
+        "{}property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float {name}\n\
+         element face {face_count}\nproperty list uchar uint vertex_indices\nend_header\n",
+        header_start(&comment_lines(crs), 3 * face_count)
+    )
 }

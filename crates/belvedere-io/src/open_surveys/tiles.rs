@@ -69,28 +69,28 @@ pub fn surveys_at(mut surveys: Vec<OpenSurvey>, name: Option<&str>, area: &Surve
         let names: Vec<String> = surveys.iter().map(|survey| survey.name.clone()).collect();
         surveys.retain(|survey| survey.name == name);
         if surveys.is_empty() {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::OpenSurvey,
-                value: format!("{name:?}, which is none of {}", names.join(", ")),
-                expected: "a survey of the table",
-            });
+            return Err(Error::invalid(
+                Parameter::OpenSurvey,
+                format!("{name:?}, which is none of {}", names.join(", ")),
+                "a survey of the table",
+            ));
         }
     }
     surveys.retain(|survey| survey.may_cover(area));
     if surveys.is_empty() {
         let [latitude, longitude] = area.middle_deg();
         if let Some(name) = name {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::OpenSurvey,
-                value: format!("{name}, which does not cover {latitude}, {longitude}"),
-                expected: "one that covers the place (latitude first), or left out",
-            });
+            return Err(Error::invalid(
+                Parameter::OpenSurvey,
+                format!("{name}, which does not cover {latitude}, {longitude}"),
+                "one that covers the place (latitude first), or left out",
+            ));
         }
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::SurveyPlace,
-            value: format!("{latitude}, {longitude}, where no survey of the table lies"),
-            expected: "in a survey of the table, latitude first; https://portal.opentopography.org/datasets lists others",
-        });
+        return Err(Error::invalid(
+            Parameter::SurveyPlace,
+            format!("{latitude}, {longitude}, where no survey of the table lies"),
+            "in a survey of the table, latitude first; https://portal.opentopography.org/datasets lists others",
+        ));
     }
     Ok(surveys)
 }

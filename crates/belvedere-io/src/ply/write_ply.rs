@@ -46,17 +46,22 @@ pub(crate) fn write(
     })
 }
 
+/// Returns the start of a header: `comments`, and a number of vertices with coordinates.
+pub(crate) fn header_start<'a>(comments: impl IntoIterator<Item = &'a String>, vertex_count: usize) -> String {
+    let comments: String = comments.into_iter().map(|line| format!("comment {}\n", plain(line))).collect();
+    format!(
+        "ply\nformat binary_little_endian 1.0\ncomment written by belvedere\n{comments}element vertex {vertex_count}\n\
+         property double x\nproperty double y\nproperty double z\n"
+    )
+}
+
+/// Returns a comment in ASCII, as many readers refuse other headers.
+pub(crate) fn plain(line: &str) -> String {
+    line.chars().map(|c| if c.is_ascii() && !c.is_ascii_control() { c } else { '?' }).collect()
+}
+
 fn header(cloud: &PointCloud, columns: &[Column<'_>], comments: &[String], element: &PlyElement) -> String {
-    let mut text = String::from("ply\nformat binary_little_endian 1.0\ncomment written by belvedere\n");
-    for line in comment_lines(&cloud.frame.crs).iter().chain(comments) {
-        // many readers refuse headers that are not ASCII
-        let line: String = line.chars().map(|c| if c.is_ascii() && !c.is_ascii_control() { c } else { '?' }).collect();
-        text.push_str(&format!("comment {line}\n"));
-    }
-    text.push_str(&format!("element vertex {}\n", cloud.len()));
-    for axis in ["x", "y", "z"] {
-        text.push_str(&format!("property double {axis}\n"));
-    }
+    let mut text = header_start(comment_lines(&cloud.frame.crs).iter().chain(comments), cloud.len());
     for column in columns {
         let kind = match column.values {
             ColumnValues::U8(_) => "uchar",

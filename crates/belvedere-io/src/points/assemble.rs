@@ -92,11 +92,7 @@ pub(crate) fn assemble(mut parts: Vec<FilePart>, options: &ReadOptions) -> Resul
         return Err(Error::NoPoints { what: nothing_left(&report) });
     }
     if u32::try_from(cloud.len()).is_err() {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::PointCount,
-            value: cloud.len().to_string(),
-            expected: "at most 4294967295; read fewer files at once",
-        });
+        return Err(Error::invalid(Parameter::PointCount, cloud.len(), "at most 4294967295; read fewer files at once"));
     }
     cloud.validate()?;
     Ok((cloud, report))

@@ -186,7 +186,7 @@ impl ReadOptions {
 
     /// Checks the options that need no file, and gives the reference system of the option.
     pub(crate) fn forced_crs(&self) -> Result<Option<Crs>> {
-        let invalid = |parameter, value, expected| Err(Error::InvalidParameter { parameter, value, expected });
+        let invalid = |parameter, value, expected| Err(Error::invalid(parameter, value, expected));
         if let Some(frame) = &self.frame
             && !frame.origin.iter().all(|v| v.is_finite())
         {

@@ -83,11 +83,7 @@ impl<'a> PartialEvidence<'a> {
                 Viewers::Observers { observers: observers.clone(), is_reverse: *is_reverse }
             }
             PreparedQuestion::Light(_) | PreparedQuestion::Probability { .. } => {
-                return Err(Error::InvalidParameter {
-                    parameter: Parameter::Certainty,
-                    value: "given".to_owned(),
-                    expected: "left out but for a sun and for observers",
-                });
+                return Err(Error::invalid(Parameter::Certainty, "given", "left out but for a sun and for observers"));
             }
         };
         let blocked = vec![vec![BlockedLines::NONE; targets.len()]; viewers.count()];

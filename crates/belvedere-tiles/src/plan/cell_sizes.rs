@@ -72,7 +72,7 @@ impl CellSizes {
             return Ok(());
         }
         let (value, expected) = (format!("{tile_size} m"), "16 to 8192 m, and a whole number of cells");
-        Err(Error::InvalidParameter { parameter: Parameter::TileSize, value, expected })
+        Err(Error::invalid(Parameter::TileSize, value, expected))
     }
 
     /// Checks the range of the sides.
@@ -86,7 +86,7 @@ impl CellSizes {
                 return Ok(());
             }
             let expected = "a whole number of sixty-fourths of a metre up to 64, such as 0.25, 0.5, 1 or 2";
-            Err(Error::InvalidParameter { parameter, value: format!("{side} m"), expected })
+            Err(Error::invalid(parameter, format!("{side} m"), expected))
         };
         check(Parameter::Cell, self.usual)?;
         self.others.values().try_for_each(|&side| check(Parameter::CellOfResult, side))

@@ -152,17 +152,17 @@ impl Plan {
             }
             if smaller < MIN_TILE {
                 let megabytes = |bytes: u64| bytes as f64 / 1e6;
-                return Err(Error::InvalidParameter {
-                    parameter: Parameter::TileMemory,
-                    value: format!(
+                return Err(Error::invalid(
+                    Parameter::TileMemory,
+                    format!(
                         "{:.0} MB, but a tile of {size} m takes about {:.0} MB, and one of {} m {:.0} MB",
                         megabytes(memory),
                         megabytes(needed),
                         self.tile_size,
                         megabytes(self.estimate().memory_bytes)
                     ),
-                    expected: "enough for a small tile with what is around it",
-                });
+                    "enough for a small tile with what is around it",
+                ));
             }
             self.tile_size = smaller;
             self.tiles = self.tiles_with_cells();
@@ -217,11 +217,11 @@ fn frame_of(
         std::array::from_fn(|i| (f64::midpoint(low[i], high[i]) / ORIGIN_STEP).round() * ORIGIN_STEP);
     if (0..2).any(|i| low[i] - origin[i] < -FARTHEST || high[i] - origin[i] > FARTHEST) {
         let [width, height] = [0, 1].map(|i| ((high[i] - low[i]) / 1000.0).ceil());
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::Extent,
-            value: format!("{width} x {height} km"),
-            expected: "at most 32 x 32 km; make a plan for each part, with the tiles around it",
-        });
+        return Err(Error::invalid(
+            Parameter::Extent,
+            format!("{width} x {height} km"),
+            "at most 32 x 32 km; make a plan for each part, with the tiles around it",
+        ));
     }
     let system = crs.wkt.clone().or_else(|| crs.epsg.map(|code| format!("EPSG:{code}"))).unwrap_or_default();
     let frame = PlanFrame { origin, metres_per_unit, system, doubt: crs.doubt.clone() };

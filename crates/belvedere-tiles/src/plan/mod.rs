@@ -487,8 +487,7 @@ fn check_names(questions: &[TileQuestion]) -> Result<()> {
     let mut names = BTreeSet::from([BALLS]);
     for name in questions.iter().map(TileQuestion::name) {
         let is_plain = |c: char| c.is_alphanumeric() || "_-+.".contains(c);
-        let refused =
-            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Questions, value, expected });
+        let refused = |value: String, expected| Err(Error::invalid(Parameter::Questions, value, expected));
         if name.is_empty() || name.starts_with('.') || !name.chars().all(is_plain) {
             return refused(format!("{name:?}"), "names of letters, digits, _, -, + and ., which are those of folders");
         }

@@ -303,7 +303,7 @@ impl TileQuestion {
             _ => return Ok(()),
         };
         let expected = "left out for surveys whose pulses are not known, or of which something is cleared";
-        let refused = || Err(Error::InvalidParameter { parameter, value: "given".to_owned(), expected });
+        let refused = || Err(Error::invalid(parameter, "given", expected));
         if are_known { Ok(()) } else { refused() }
     }
 
@@ -369,7 +369,7 @@ impl TileQuestion {
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<PreparedQuestion> {
-        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
+        let invalid = |parameter, value: String, expected| Err(Error::invalid(parameter, value, expected));
         let gives_shares = crowns.is_some_and(|crowns| crowns.gives_shares());
         if self.has_interval() && gives_shares {
             return invalid(Parameter::Interval, self.name().to_owned(), "left out where light gets through trees");

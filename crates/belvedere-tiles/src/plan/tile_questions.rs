@@ -27,11 +27,11 @@ impl TileQuestion {
     ) -> Result<Vec<Self>> {
         question.check()?;
         if let Some(what) = Self::not_in_tiles(question) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Questions,
-                value: format!("with {what}"),
-                expected: "without: runs in tiles do not give them",
-            });
+            return Err(Error::invalid(
+                Parameter::Questions,
+                format!("with {what}"),
+                "without: runs in tiles do not give them",
+            ));
         }
         match question {
             ask::Question::Shadow(shadow) => {
@@ -76,11 +76,11 @@ impl TileQuestion {
                 let seen = Self::Viewshed { eyes, max_distance: view.limits.max_distance, is_reverse: view.reverse };
                 Ok(seen.with_probability(&view.how_sure))
             }
-            _ => Err(Error::InvalidParameter {
-                parameter: Parameter::Questions,
-                value: "another".to_owned(),
-                expected: "shadow, sun hours, rules of sunlight, sky view, irradiance or viewsheds",
-            }),
+            _ => Err(Error::invalid(
+                Parameter::Questions,
+                "another",
+                "shadow, sun hours, rules of sunlight, sky view, irradiance or viewsheds",
+            )),
         }
     }
 

@@ -129,5 +129,5 @@ impl Plan {
 
 pub(crate) fn without_ground(value: String) -> Error {
     let expected = "a place of the survey with ground, or with its height as a third coordinate";
-    Error::InvalidParameter { parameter: Parameter::Observer, value, expected }
+    Error::invalid(Parameter::Observer, value, expected)
 }

@@ -158,14 +158,11 @@ impl SurveyQuestion {
         let needed = values.saturating_mul(BYTES_PER_VALUE);
         if needed > limit {
             let [needed, limit] = [needed, limit].map(size_in_words);
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::TileMemory,
-                value: format!(
-                    "{limit}, but the {values} values of {} results take {needed} together",
-                    questions.len()
-                ),
-                expected: "enough for the answer: give larger cells, fewer suns or more memory, or plan a run in tiles, which writes each result on its own",
-            });
+            return Err(Error::invalid(
+                Parameter::TileMemory,
+                format!("{limit}, but the {values} values of {} results take {needed} together", questions.len()),
+                "enough for the answer: give larger cells, fewer suns or more memory, or plan a run in tiles, which writes each result on its own",
+            ));
         }
         if let (ask::Question::Viewshed(view), Some(TileQuestion::Viewshed { eyes, .. })) =
             (&question, questions.first())

@@ -278,11 +278,11 @@ fn gather(
 ) -> Result<(Pixels, Georeference)> {
     let (width, height) = (cells.width, cells.height);
     if width.saturating_mul(height) > MAX_CELLS {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::Raster,
-            value: format!("{width} x {height} cells"),
-            expected: "at most 268 million cells; open the .vrt, or convert it with gdal_translate",
-        });
+        return Err(Error::invalid(
+            Parameter::Raster,
+            format!("{width} x {height} cells"),
+            "at most 268 million cells; open the .vrt, or convert it with gdal_translate",
+        ));
     }
     let kind = plan.kind_of(question);
     let mut all = Pixels::nothing(kind, question.band_names(kind).len(), [width, height]);

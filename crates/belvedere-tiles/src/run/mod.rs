@@ -132,7 +132,7 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
     let Shard { number, of } = params.shard;
     if number == 0 || number > of {
         let value = format!("{number}/{of}");
-        return Err(Error::InvalidParameter { parameter: Parameter::Shard, value, expected: "1/N to N/N" });
+        return Err(Error::invalid(Parameter::Shard, value, "1/N to N/N"));
     }
     let mut work = RunWork { plan, folder, params, control, report: RunReport::default() };
     work.report.cells_under_cover = plan.is_on_ground().then_some(0);
