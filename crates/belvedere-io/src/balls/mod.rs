@@ -1,23 +1,20 @@
 //! The formats of ball files.
 
+#![cfg_attr(
+    not(all(feature = "las", feature = "ply", feature = "npy")),
+    allow(dead_code, reason = "a build without some formats uses a part of it")
+)]
+
 pub(crate) mod files;
 #[cfg(feature = "npy")]
 mod kept_model;
 #[cfg(feature = "las")]
 mod las;
-#[cfg_attr(
-    not(all(feature = "las", feature = "ply", feature = "npy")),
-    allow(dead_code, reason = "a build without some formats uses a part of it")
-)]
 mod metadata;
 #[cfg(feature = "npy")]
 mod npz;
 #[cfg(feature = "npy")]
 mod outlines;
-#[cfg_attr(
-    not(all(feature = "las", feature = "ply", feature = "npy")),
-    allow(dead_code, reason = "a build without some formats uses a part of it")
-)]
 mod patches;
 #[cfg(feature = "ply")]
 mod ply;
@@ -64,10 +61,6 @@ fn as_cloud(parts: &ModelParts) -> (PointCloud, Vec<Column<'_>>) {
 }
 
 /// A ball as the formats that hold points give it.
-#[cfg_attr(
-    not(all(feature = "las", feature = "ply", feature = "npy")),
-    allow(dead_code, reason = "a build without some formats uses a part of it")
-)]
 #[derive(Clone, Copy, Debug, Default)]
 struct FileBall {
     /// In the system and unit of the file.
@@ -81,10 +74,6 @@ struct FileBall {
     transmission: f32,
 }
 
-#[cfg_attr(
-    not(all(feature = "las", feature = "ply", feature = "npy")),
-    allow(dead_code, reason = "a build without some formats uses a part of it")
-)]
 /// An index that was stored as a signed number: negative numbers of 32 bits stand above 2³¹.
 #[expect(
     clippy::cast_possible_truncation,

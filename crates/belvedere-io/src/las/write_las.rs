@@ -62,16 +62,9 @@ pub(crate) fn write(
         has_changed |= next.is_err();
         next
     };
-    let written = if output.is_path() {
-        put_file(&name, header, &mut next).map(|()| None)
-    } else {
-        encode(&name, Cursor::new(Vec::new()), header, &mut next).map(Some)
-    };
-    match written {
+    match put(&output, header, &mut next) {
         Ok(bytes) => {
-            if let Some(bytes) = bytes {
-                output.write(|name, output| output.write_all(bytes.get_ref()).map_err(Error::io(name)))?;
-            }
+            hand_over(output, bytes)?;
             Ok(WriteReport { point_count: cloud.len(), left_out: copy.lost_fields(), clamped_count: 0 })
         }
         // the files are not those any more that were read: what is known of their points is written
@@ -113,15 +106,8 @@ fn write_anew(output: Output<'_>, cloud: &PointCloud, extra: &[Column<'_>], reco
     let header = finished(&name, builder, (&output.extension(), length), &[], &columns, &results)?;
     let mut encoder = Encoder { cloud, columns: &columns, transforms: *header.transforms(), next: 0, clamped_count: 0 };
     let mut next = |header: &las::Header| Ok(encoder.next(header));
-    if output.is_path() {
-        put_file(&name, header, &mut next)?;
-    } else {
-        // The LAS writer wants to own what it writes to; a borrowed writer gets the finished file.
-        output.write(|name, output| {
-            let bytes = encode(name, Cursor::new(Vec::new()), header, &mut next)?;
-            output.write_all(bytes.get_ref()).map_err(Error::io(name))
-        })?;
-    }
+    let bytes = put(&output, header, &mut next)?;
+    hand_over(output, bytes)?;
     let of_las = |file: &CloudFile| matches!(source::extension(&file.path).as_str(), "las" | "laz");
     let mut left_out = not_in_cloud(cloud);
     if cloud.files.files.iter().any(of_las) {
@@ -179,12 +165,22 @@ fn gps_time_type(cloud: &PointCloud) -> GpsTimeType {
 /// The next points of a file with that header; `None` at the end.
 type NextPoints<'n> = dyn FnMut(&las::Header) -> Result<Option<PointData>> + 'n;
 
-/// Writes the file at a path.
-fn put_file(name: &Path, header: las::Header, next: &mut NextPoints<'_>) -> Result<()> {
+/// Writes the file at a path. For another output, returns its bytes: the LAS writer wants to own what it writes to.
+fn put(output: &Output<'_>, header: las::Header, next: &mut NextPoints<'_>) -> Result<Option<Vec<u8>>> {
+    let name = output.name();
+    if !output.is_path() {
+        return encode(name, Cursor::new(Vec::new()), header, next).map(|bytes| Some(bytes.into_inner()));
+    }
     atomic::write(name, |file| {
         let file = file.get_ref().try_clone().map_err(Error::io(name))?;
-        encode(name, file, header, next).map(|_| ())
+        encode(name, file, header, next).map(|_| None)
     })
+}
+
+/// Writes the bytes of [`put`].
+fn hand_over(output: Output<'_>, bytes: Option<Vec<u8>>) -> Result<()> {
+    let Some(bytes) = bytes else { return Ok(()) };
+    output.write(|name, output| output.write_all(&bytes).map_err(Error::io(name)))
 }
 
 /// Writes header and points to `output`, and gives it back.

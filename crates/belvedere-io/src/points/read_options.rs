@@ -186,38 +186,30 @@ impl ReadOptions {
 
     /// Checks the options that need no file, and gives the reference system of the option.
     pub(crate) fn forced_crs(&self) -> Result<Option<Crs>> {
-        let invalid = |parameter, value, expected| Err(Error::invalid(parameter, value, expected));
-        if let Some(frame) = &self.frame
-            && !frame.origin.iter().all(|v| v.is_finite())
-        {
-            return invalid(Parameter::Origin, format!("{:?}", frame.origin), "finite");
-        }
-        match self.within {
+        let corners = "from the lowest to the highest corner";
+        let in_local = || "in local coordinates".to_owned();
+        let origin = self.frame.as_ref().map_or([0.0; 3], |frame| frame.origin);
+        let refused = match self.within {
+            _ if !origin.iter().all(|v| v.is_finite()) => Some((Parameter::Origin, format!("{origin:?}"), "finite")),
             Some(Within::File { low, high }) if !(0..3).all(|i| low[i] <= high[i]) => {
-                return invalid(
-                    Parameter::ReadBox,
-                    format!("{low:?} to {high:?}"),
-                    "from the lowest to the highest corner",
-                );
+                Some((Parameter::ReadBox, format!("{low:?} to {high:?}"), corners))
             }
-            Some(Within::Local(bounds)) if !(0..3).all(|i| bounds.low[i] <= bounds.high[i]) => {
-                let value = format!("{:?} to {:?}", bounds.low, bounds.high);
-                return invalid(Parameter::ReadBox, value, "from the lowest to the highest corner");
+            Some(Within::Local(Bounds { low, high })) if !(0..3).all(|i| low[i] <= high[i]) => {
+                Some((Parameter::ReadBox, format!("{low:?} to {high:?}"), corners))
             }
             Some(Within::Local(_)) if self.up == UpAxis::Y => {
-                return invalid(
-                    Parameter::ReadBox,
-                    "in local coordinates".to_owned(),
-                    "in those of the file where its y is up",
-                );
+                Some((Parameter::ReadBox, in_local(), "in those of the file where its y is up"))
             }
             Some(Within::Local(_)) if self.frame.is_none() => {
-                return invalid(Parameter::ReadBox, "in local coordinates".to_owned(), "given together with a frame");
+                Some((Parameter::ReadBox, in_local(), "given together with a frame"))
             }
-            _ => {}
-        }
-        if self.crs.is_none() && self.crs_against_files == Insistence::Insist {
-            return invalid(Parameter::CrsOverride, "given".to_owned(), "given together with a reference system");
+            _ if self.crs.is_none() && self.crs_against_files == Insistence::Insist => {
+                Some((Parameter::CrsOverride, "given".to_owned(), "given together with a reference system"))
+            }
+            _ => None,
+        };
+        if let Some((parameter, value, expected)) = refused {
+            return Err(Error::invalid(parameter, value, expected));
         }
         self.crs.as_deref().map(Crs::parse).transpose()
     }

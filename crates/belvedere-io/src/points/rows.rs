@@ -162,17 +162,10 @@ pub(crate) struct Rows {
     numbers: Option<Vec<u64>>,
     passed_over: u64,
     coordinates: Vec<[f64; 3]>,
-    normals: Vec<[f32; 3]>,
     colors: Vec<[f32; 3]>,
     intensities: Vec<f32>,
-    gps_times: Vec<f64>,
-    scan_angles: Vec<f32>,
-    source_ids: Vec<u16>,
-    classes: Vec<u8>,
-    return_numbers: Vec<u8>,
-    return_counts: Vec<u8>,
-    scanner_channels: Vec<u8>,
-    flags: Vec<u8>,
+    /// All attributes but colours and intensities, whose range is known at the end.
+    attributes: Attributes,
 }
 
 impl Rows {
@@ -182,7 +175,24 @@ impl Rows {
         for role in roles {
             rows.has[role as usize] = true;
         }
+        rows.attributes = Attributes {
+            normals: rows.column(&NORMAL),
+            classification: rows.column(&[Role::Classification]),
+            gps_time: rows.column(&[Role::GpsTime]),
+            return_number: rows.column(&[Role::ReturnNumber]),
+            return_count: rows.column(&[Role::ReturnCount]),
+            scan_angle: rows.column(&[Role::ScanAngle]),
+            point_source_id: rows.column(&[Role::SourceId]),
+            scanner_channel: rows.column(&[Role::ScannerChannel]),
+            flags: rows.column(&[Role::Flags]),
+            ..Attributes::default()
+        };
         rows
+    }
+
+    /// Returns an empty column if all of `roles` are there.
+    fn column<T>(&self, roles: &[Role]) -> Option<Vec<T>> {
+        self.has(roles).then(Vec::new)
     }
 
     /// The same, which remembers the rows of points.
@@ -219,74 +229,47 @@ impl Rows {
             numbers.push(number);
         }
         self.coordinates.push(row.three(POSITION));
-        if self.has(&NORMAL) {
-            self.normals.push(row.three(NORMAL).map(to_f32));
-        }
         if self.has(&COLOR) {
             self.colors.push(row.three(COLOR).map(to_f32));
         }
         if self.has(&[Role::Intensity]) {
             self.intensities.push(to_f32(row.get(Role::Intensity)));
         }
-        if self.has(&[Role::GpsTime]) {
-            self.gps_times.push(row.get(Role::GpsTime));
-        }
-        if self.has(&[Role::ScanAngle]) {
-            self.scan_angles.push(to_f32(row.get(Role::ScanAngle).to_radians()));
-        }
-        if self.has(&[Role::SourceId]) {
-            self.source_ids.push(to_u16(row.get(Role::SourceId)));
-        }
-        if self.has(&[Role::Classification]) {
-            self.classes.push(to_u8(row.get(Role::Classification)));
-        }
-        if self.has(&[Role::ReturnNumber]) {
-            self.return_numbers.push(to_u8(row.get(Role::ReturnNumber)));
-        }
-        if self.has(&[Role::ReturnCount]) {
-            self.return_counts.push(to_u8(row.get(Role::ReturnCount)));
-        }
-        if self.has(&[Role::ScannerChannel]) {
-            self.scanner_channels.push(to_u8(row.get(Role::ScannerChannel)));
-        }
-        if self.has(&[Role::Flags]) {
-            self.flags.push(to_u8(row.get(Role::Flags)));
-        }
+        let own = &mut self.attributes;
+        push_to(&mut own.normals, row.three(NORMAL).map(to_f32));
+        push_to(&mut own.gps_time, row.get(Role::GpsTime));
+        push_to(&mut own.scan_angle, to_f32(row.get(Role::ScanAngle).to_radians()));
+        push_to(&mut own.point_source_id, to_u16(row.get(Role::SourceId)));
+        push_to(&mut own.classification, to_u8(row.get(Role::Classification)));
+        push_to(&mut own.return_number, to_u8(row.get(Role::ReturnNumber)));
+        push_to(&mut own.return_count, to_u8(row.get(Role::ReturnCount)));
+        push_to(&mut own.scanner_channel, to_u8(row.get(Role::ScannerChannel)));
+        push_to(&mut own.flags, to_u8(row.get(Role::Flags)));
     }
 
     /// Moves the points into `part`. Intensities and colours from 0 to 1 become 0 to 65535.
     pub(crate) fn finish(self, part: &mut FilePart) {
-        let has = |role: Role| self.has[role as usize];
-        let (color, normal) = (self.has(&COLOR), self.has(&NORMAL));
-        let colors: Option<Vec<[u16; 3]>> = color.then(|| {
+        let color = self.has(&COLOR).then(|| {
             let values = to_16_bit(part, "colours", self.colors.as_flattened());
             values.as_chunks::<3>().0.to_vec()
         });
-        let intensity = has(Role::Intensity).then(|| to_16_bit(part, "intensities", &self.intensities));
+        let intensity = self.has(&[Role::Intensity]).then(|| to_16_bit(part, "intensities", &self.intensities));
         // Only LAS files say what their times count from; a time that no week has can only be the other kind.
         let in_a_week = |time: &f64| !time.is_finite() || (0.0..=LONGEST_WEEK_S).contains(time);
-        let gps_time_kind = if self.gps_times.iter().all(in_a_week) {
+        let gps_time_kind = if self.attributes.gps_time.iter().flatten().all(in_a_week) {
             GpsTimeKind::SecondsOfWeek
         } else {
             GpsTimeKind::AdjustedStandard
         };
-        part.attributes = Attributes {
-            normals: normal.then_some(self.normals),
-            classification: has(Role::Classification).then_some(self.classes),
-            gps_time: has(Role::GpsTime).then_some(self.gps_times),
-            gps_time_kind,
-            return_number: has(Role::ReturnNumber).then_some(self.return_numbers),
-            return_count: has(Role::ReturnCount).then_some(self.return_counts),
-            scan_angle: has(Role::ScanAngle).then_some(self.scan_angles),
-            point_source_id: has(Role::SourceId).then_some(self.source_ids),
-            scanner_channel: has(Role::ScannerChannel).then_some(self.scanner_channels),
-            flags: has(Role::Flags).then_some(self.flags),
-            intensity,
-            color: colors,
-            ..Attributes::default()
-        };
+        part.attributes = Attributes { gps_time_kind, intensity, color, ..self.attributes };
         part.coordinates = Coordinates::Real(self.coordinates);
         part.rows = self.numbers;
+    }
+}
+
+fn push_to<T>(column: &mut Option<Vec<T>>, value: T) {
+    if let Some(column) = column {
+        column.push(value);
     }
 }
 
