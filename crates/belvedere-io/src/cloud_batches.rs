@@ -3,13 +3,13 @@
 use std::collections::VecDeque;
 use std::path::PathBuf;
 
-use super::assemble::assemble;
-use super::file_part::FilePart;
+use crate::files::source::Source;
 #[cfg(feature = "las")]
-use super::las::{self, LasPoints};
-use super::read_cloud::{Systems, files_of, read_one};
-use super::read_options::{ReadOptions, Reading, UpAxis};
-use super::source::Source;
+use crate::las::{self, LasPoints};
+use crate::points::assemble::assemble;
+use crate::points::file_part::FilePart;
+use crate::points::read_options::{ReadOptions, Reading, UpAxis};
+use crate::read_cloud::{Systems, files_of, read_one};
 use belvedere_data::cloud::PointCloud;
 use belvedere_data::control::Control;
 use belvedere_data::crs::Crs;
@@ -58,11 +58,7 @@ pub fn read_batches<'a, S: Into<Source<'a>>>(
 ) -> Result<CloudBatches<'a>> {
     if options.up != UpAxis::Z {
         let value = "y".to_owned();
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::UpAxis,
-            value,
-            expected: "z for clouds in batches",
-        });
+        return Err(Error::invalid(Parameter::UpAxis, value, "z for clouds in batches"));
     }
     let forced = options.forced_crs()?;
     let reading = Reading { options, forced: forced.as_ref(), control };

@@ -1,5 +1,7 @@
 //! Colours for numbers and classes.
 
+use belvedere_data::cast::to_index;
+
 /// Colour of a value between 0 and 1: dark violet over green to yellow, even in lightness and readable by the
 /// colour-blind (viridis).
 pub fn ramp(value: f64) -> [u8; 3] {
@@ -54,7 +56,6 @@ pub fn in_shadow([red, green, blue]: [u8; 3]) -> [u8; 3] {
 pub fn percentiles(values: &[f32], low: f64, high: f64) -> Option<(f32, f32)> {
     let mut finite: Vec<f32> = values.iter().copied().filter(|v| v.is_finite()).collect();
     let last = finite.len().checked_sub(1)?;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of the number of values")]
-    let mut at = |share: f64| *finite.select_nth_unstable_by((last as f64 * share) as usize, f32::total_cmp).1;
+    let mut at = |share: f64| *finite.select_nth_unstable_by(to_index(last as f64 * share), f32::total_cmp).1;
     Some((at(low), at(high)))
 }

@@ -2,19 +2,25 @@
 
 use std::path::{Path, PathBuf};
 
-#[cfg(feature = "e57")]
-use super::e57;
-use super::file_part::FilePart;
-#[cfg(feature = "ply")]
-use super::ply;
-use super::read_options::{ReadOptions, Reading, UpAxis};
-use super::read_report::ReadReport;
-use super::source::{Source, extension, unusable};
-use super::{assemble, pcd, ptx, vpc, xyz};
-#[cfg(feature = "las")]
-use super::{ept, las};
 #[cfg(feature = "npy")]
-use super::{masbcpp, npy};
+use crate::arrays::masbcpp;
+#[cfg(feature = "npy")]
+use crate::arrays::npy;
+use crate::files::source::{Source, extension, unusable};
+#[cfg(feature = "las")]
+use crate::las;
+#[cfg(feature = "las")]
+use crate::las::ept;
+#[cfg(feature = "ply")]
+use crate::ply;
+use crate::points::assemble;
+use crate::points::file_part::FilePart;
+use crate::points::read_options::{ReadOptions, Reading, UpAxis};
+use crate::points::read_report::ReadReport;
+use crate::text::pcd;
+use crate::text::ptx;
+use crate::text::xyz;
+use crate::vpc;
 use belvedere_data::cloud::PointCloud;
 use belvedere_data::contradiction::FoundContradiction;
 use belvedere_data::control::Control;
@@ -95,19 +101,19 @@ pub fn read_cloud<'a, S: Into<Source<'a>>>(
 }
 
 /// The reference system that all files must share.
-pub(super) struct Systems {
+pub(crate) struct Systems {
     /// The first known system, and the name of its source.
     known: Option<(Crs, String)>,
 }
 
 impl Systems {
-    pub(super) fn new(options: &ReadOptions) -> Self {
+    pub(crate) fn new(options: &ReadOptions) -> Self {
         let frame = options.frame.as_ref().filter(|frame| frame.crs.kind != CrsKind::Unknown);
         Self { known: frame.map(|frame| (frame.crs.clone(), "the frame to read into".to_owned())) }
     }
 
     /// Gives `part` the system of the option, and refuses one that cannot be used together with the others.
-    pub(super) fn accept(&mut self, part: &mut FilePart, reading: &Reading<'_>) -> Result<()> {
+    pub(crate) fn accept(&mut self, part: &mut FilePart, reading: &Reading<'_>) -> Result<()> {
         let somewhere = part.somewhere.unwrap_or_else(|| assemble::any_position(part));
         // a file without a point lies nowhere
         let is_empty = part.somewhere.is_none() && part.coordinates.len() == 0;
@@ -163,8 +169,8 @@ pub fn cloud_sources(paths: &[PathBuf]) -> Result<(Vec<Source<'_>>, Vec<FoundCon
 
 /// Resolved sources of a cloud.
 #[derive(Default)]
-pub(super) struct CloudFiles<'a> {
-    pub(super) sources: Vec<Source<'a>>,
+pub(crate) struct CloudFiles<'a> {
+    pub(crate) sources: Vec<Source<'a>>,
     /// Files of folders that are tables or grids of something else.
     tables: Vec<PathBuf>,
     /// Notes on skipped files of folders.
@@ -175,7 +181,7 @@ pub(super) struct CloudFiles<'a> {
 
 /// The sources with folders and catalogues replaced by their files. Tiles of catalogues that cannot have a point that
 /// `reading` requests are left out.
-pub(super) fn files_of<'a>(sources: impl Iterator<Item = Source<'a>>, reading: &Reading<'_>) -> Result<CloudFiles<'a>> {
+pub(crate) fn files_of<'a>(sources: impl Iterator<Item = Source<'a>>, reading: &Reading<'_>) -> Result<CloudFiles<'a>> {
     let mut found = CloudFiles::default();
     for source in sources {
         let name = source.name().to_owned();
@@ -274,7 +280,7 @@ fn is_masbcpp(folder: &Path) -> bool {
 }
 
 /// The points of one source, without those that are not requested.
-pub(super) fn read_one(source: Source<'_>, reading: &Reading<'_>) -> Result<FilePart> {
+pub(crate) fn read_one(source: Source<'_>, reading: &Reading<'_>) -> Result<FilePart> {
     if let Some(folder) = source.folder() {
         #[cfg(feature = "npy")]
         let part = masbcpp::read(folder);
@@ -292,7 +298,7 @@ pub(super) fn read_one(source: Source<'_>, reading: &Reading<'_>) -> Result<File
         "xyz" | "txt" | "csv" | "pts" | "asc" => xyz::read(source.open_text()?, reading),
         "pcd" => pcd::read(source.open()?, reading),
         #[cfg(feature = "e57")]
-        "e57" => e57::read(source.open()?, reading),
+        "e57" => crate::e57::read(source.open()?, reading),
         #[cfg(feature = "npy")]
         "npy" => npy::read(source.open()?),
         "ptx" => ptx::read(source.open_text()?, reading),

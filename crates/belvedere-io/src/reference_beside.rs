@@ -1,10 +1,10 @@
 //! The reference system that stands beside a file.
 
 #[cfg(feature = "las")]
-use super::ept;
+use crate::files::source::Content;
+use crate::files::source::{Source, SystemBeside};
 #[cfg(feature = "las")]
-use super::source::Content;
-use super::source::{Source, SystemBeside};
+use crate::las::ept;
 use belvedere_data::crs::Crs;
 use std::path::Path;
 

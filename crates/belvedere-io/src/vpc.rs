@@ -9,10 +9,9 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use serde_json::Value;
 
-#[cfg(feature = "las")]
-use super::announced::{Announced, BoundsAre};
-use super::read_options::FileBox;
-use super::source::{Source, folder_and_query, place_beside, web_address};
+use crate::files::announced::{Announced, BoundsAre};
+use crate::files::source::{Source, folder_and_query, place_beside, web_address};
+use crate::points::read_options::FileBox;
 use belvedere_data::{Error, Result};
 
 /// Largest catalogue that is read, bytes: a million tiles, and far below the memory of any machine.
@@ -61,24 +60,20 @@ pub struct CatalogueTile {
 }
 
 /// The files of the catalogue `source` that may have points in `wanted`, in its order; all of them without a box.
-pub(super) fn files_within(catalogue: Source<'_>, wanted: Option<&FileBox>) -> Result<Vec<Source<'static>>> {
+pub(crate) fn files_within(catalogue: Source<'_>, wanted: Option<&FileBox>) -> Result<Vec<Source<'static>>> {
     let name = catalogue.name().file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let meets = |tile: &CatalogueTile| match (wanted, tile.bounds) {
         (Some(wanted), Some((low, high))) => wanted.meets(low, high),
         _ => true,
     };
     let source = |tile: CatalogueTile| {
-        #[cfg_attr(not(feature = "las"), expect(unused_mut, reason = "announced points are compared with LAS headers"))]
         let mut source = Source::path(tile.path);
-        #[cfg(feature = "las")]
-        {
-            source.announced = Some(Announced {
-                by: name.clone(),
-                points: tile.point_count,
-                bounds: tile.bounds,
-                bounds_are: BoundsAre::OfPoints,
-            });
-        }
+        source.announced = Some(Announced {
+            by: name.clone(),
+            points: tile.point_count,
+            bounds: tile.bounds,
+            bounds_are: BoundsAre::OfPoints,
+        });
         source
     };
     Ok(read_catalogue(catalogue)?.into_iter().filter(meets).map(source).collect())

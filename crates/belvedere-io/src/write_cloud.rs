@@ -1,13 +1,14 @@
 //! Point clouds with columns of results.
 
-use crate::columns::{Column, ExtraColumn, WriteReport, check_lengths, not_in_cloud, to_column};
-use crate::output::Output;
-use crate::source::unusable;
-#[cfg(feature = "las")]
-use crate::write_las;
 #[cfg(feature = "npy")]
-use crate::write_npy;
-use crate::{write_ply, write_table};
+use crate::arrays::write_npy;
+use crate::files::output::Output;
+use crate::files::source::unusable;
+#[cfg(feature = "las")]
+use crate::las::write_las;
+use crate::ply::write_ply;
+use crate::points::columns::{Column, ExtraColumn, WriteReport, check_lengths, not_in_cloud, to_column};
+use crate::text::write_table;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
 
 /// Extensions a cloud can be written to.
@@ -45,11 +46,11 @@ pub fn write_cloud<'a>(
             .map(|report| of_attributes(report, cloud)),
         "csv" => write_table::write(output, cloud, &columns, ',').map(|report| of_attributes(report, cloud)),
         "xyz" | "txt" => write_table::write(output, cloud, &columns, ' ').map(|report| of_attributes(report, cloud)),
-        "npy" if !columns.is_empty() => Err(Error::InvalidParameter {
-            parameter: Parameter::ResultColumns,
-            value: "written as .npy".to_owned(),
-            expected: "written as one of .las .laz .ply .csv .xyz .txt",
-        }),
+        "npy" if !columns.is_empty() => Err(Error::invalid(
+            Parameter::ResultColumns,
+            "written as .npy",
+            "written as one of .las .laz .ply .csv .xyz .txt",
+        )),
         #[cfg(feature = "npy")]
         "npy" => write_npy::write_coordinates(output, cloud),
         _ => Err(unusable(output.name(), "point cloud output", SUPPORTED)),
@@ -66,11 +67,11 @@ fn of_attributes(mut report: WriteReport, cloud: &PointCloud) -> WriteReport {
 fn check_names(columns: &[Column<'_>]) -> Result<()> {
     let usable = |name: &str| !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c));
     match columns.iter().find(|c| !usable(&c.name)) {
-        Some(c) => Err(Error::InvalidParameter {
-            parameter: Parameter::ResultColumns,
-            value: format!("named {:?}", c.name),
-            expected: "named by ASCII letters, digits, '_', '-' and '.'",
-        }),
+        Some(c) => Err(Error::invalid(
+            Parameter::ResultColumns,
+            format!("named {:?}", c.name),
+            "named by ASCII letters, digits, '_', '-' and '.'",
+        )),
         None => Ok(()),
     }
 }

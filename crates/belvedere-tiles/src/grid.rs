@@ -1,12 +1,17 @@
 //! Tiles on one grid.
 
 use belvedere::Bounds;
+use belvedere::cast::{to_f32s, to_i32, to_i64};
+use belvedere::query::BlockedLines;
 use serde::{Deserialize, Serialize};
 
 /// Side of the blocks in which the survey counts points and some rules for balls work, metres.
 pub(crate) const CELL: f64 = 64.0;
 /// Side of the squares on which tops of balls are kept, metres.
 pub(crate) const TOP_SIDE: f64 = 16.0;
+/// Half-width added to lines of sight, metres. It exceeds the rounding of f32 and the distance of the parallel lines of
+/// probabilities.
+pub(crate) const LINE_ROOM: f64 = BlockedLines::WIDTH + 0.03;
 
 /// Tile: column and row on the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -45,15 +50,13 @@ pub(crate) struct MapArea {
 impl TileGrid {
     /// Returns the core of a tile.
     pub(crate) fn core(&self, tile: TileId) -> MapArea {
-        #[expect(clippy::cast_precision_loss, reason = "tiles of a planet are far fewer than 2^53")]
         let low = [tile.east as f64 * self.size - self.origin[0], tile.north as f64 * self.size - self.origin[1]];
         MapArea { low, high: low.map(|v| v + self.size) }
     }
 
     /// Returns the tile whose core contains a local position.
-    #[expect(clippy::cast_possible_truncation, reason = "tiles of a planet are far fewer than 2^63")]
     pub(crate) fn tile_of(&self, [x, y]: [f64; 2]) -> TileId {
-        let number = |v: f64, axis: usize| ((v + self.origin[axis]) / self.size).floor() as i64;
+        let number = |v: f64, axis: usize| to_i64(((v + self.origin[axis]) / self.size).floor());
         TileId { east: number(x, 0), north: number(y, 1) }
     }
 }
@@ -113,8 +116,7 @@ impl MapArea {
 
     /// Returns the numbers of the blocks that it meets, east and north.
     pub(crate) fn blocks(&self) -> impl Iterator<Item = [i32; 2]> + use<> {
-        #[expect(clippy::cast_possible_truncation, reason = "blocks of a frame of kilometres")]
-        let range = |axis: usize| ((self.low[axis] / CELL).floor() as i32)..((self.high[axis] / CELL).ceil() as i32);
+        let range = |axis: usize| to_i32((self.low[axis] / CELL).floor())..to_i32((self.high[axis] / CELL).ceil());
         let (east, north) = (range(0), range(1));
         north.flat_map(move |north| east.clone().map(move |east| [east, north]))
     }
@@ -126,9 +128,8 @@ impl MapArea {
     }
 
     /// Returns the box of all heights over the rectangle.
-    #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
     pub(crate) fn column(&self) -> Bounds {
-        let [low, high] = [self.low, self.high].map(|[x, y]| [x as f32, y as f32]);
+        let [low, high] = [self.low, self.high].map(to_f32s);
         let (bottom, top) = (-1e6, 1e6);
         Bounds { low: [low[0], low[1], bottom], high: [high[0], high[1], top] }
     }
@@ -151,9 +152,8 @@ pub(crate) fn square_area(number: [i32; 2], side: f64) -> MapArea {
 }
 
 /// Returns the number of the square of side `side` that contains a local position.
-#[expect(clippy::cast_possible_truncation, reason = "squares of a frame of kilometres; `as` saturates")]
 pub(crate) fn square_at(position: [f32; 2], side: f64) -> [i32; 2] {
-    position.map(|v| (f64::from(v) / side).floor() as i32)
+    position.map(|v| to_i32((f64::from(v) / side).floor()))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Files of a survey, and the test that they are unchanged since the plan was made.
 
 use belvedere::apps::ask::Remark;
+use belvedere::cast::to_i32;
 use belvedere::contradiction::FoundContradiction;
 use belvedere::io::{LasHead, OpenSource, ReadSeek, Source, hidden, read_las_head, web_address};
 use belvedere::{Bounds, Error, GpsTimeKind, Result};
@@ -58,10 +59,10 @@ pub(crate) type PieceCell = [i32; 4];
 pub(crate) const NOWHERE: PieceCell = [i32::MAX, i32::MAX, i32::MIN, i32::MIN];
 
 /// Widens a rectangle to hold a local position.
-#[expect(clippy::cast_possible_truncation, reason = "some kilometres; `as` saturates")]
 pub(crate) fn hold([west, south, east, north]: &mut PieceCell, [x, y, _]: [f32; 3]) {
-    (*west, *south) = ((*west).min(x.floor() as i32), (*south).min(y.floor() as i32));
-    (*east, *north) = ((*east).max(x.ceil() as i32), (*north).max(y.ceil() as i32));
+    let [x, y] = [x, y].map(f64::from);
+    (*west, *south) = ((*west).min(to_i32(x.floor())), (*south).min(to_i32(y.floor())));
+    (*east, *north) = ((*east).max(to_i32(x.ceil())), (*north).max(to_i32(y.ceil())));
 }
 
 /// Returns remarks on a file from its header.

@@ -1,6 +1,7 @@
 //! Points as the page gets them: squares of the map, positions in 16 bits, in random order.
 
 use belvedere::PointCloud;
+use belvedere::cast::{to_i64, to_index, to_u8};
 use belvedere::random::uniform;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -16,7 +17,7 @@ const FIRST: usize = 20_000;
 /// A square has many points from so many times [`FIRST`] on.
 const MANY: usize = 5;
 /// Steps of a chunk along each axis.
-const STEPS: f32 = 65_535.0;
+pub(crate) const STEPS: f32 = 65_535.0;
 /// Share of the points whose intensity is shown as the brightest.
 const BRIGHTEST: f64 = 0.02;
 
@@ -78,7 +79,7 @@ impl Chunks {
             let mut bytes = [0; 8];
             for axis in 0..3 {
                 let steps = ((cloud.positions[row][axis] - chunk.low[axis]) / chunk.step[axis]).round();
-                bytes[2 * axis..2 * axis + 2].copy_from_slice(&clamped(steps).to_le_bytes());
+                bytes[2 * axis..2 * axis + 2].copy_from_slice(&to_steps(steps).to_le_bytes());
             }
             let attributes = &cloud.attributes;
             bytes[6] = attributes.classification.as_ref().map_or(0, |classes| classes[row]);
@@ -145,9 +146,7 @@ impl Chunks {
 
     fn brightness(&self, intensity: u16) -> u8 {
         let share = f32::from(intensity) / f32::from(self.brightest.max(1));
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
-        let brightness = (share.min(1.0) * 255.0).round() as u8;
-        brightness
+        to_u8(f64::from((share.min(1.0) * 255.0).round()))
     }
 }
 
@@ -157,9 +156,8 @@ fn parts_of(rows: &[u32]) -> impl Iterator<Item = &[u32]> {
     Some(first).into_iter().filter(|first| !first.is_empty()).chain(rest.chunks(MAX))
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "numbers of squares")]
 fn square([x, y, _]: [f32; 3]) -> [i64; 2] {
-    [x, y].map(|v| (v / SIDE).floor() as i64)
+    [x, y].map(|v| to_i64(f64::from((v / SIDE).floor())))
 }
 
 fn chunk(cloud: &PointCloud, rows: &[u32], first: usize) -> PointChunk {
@@ -176,14 +174,13 @@ fn chunk(cloud: &PointCloud, rows: &[u32], first: usize) -> PointChunk {
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 16 bits")]
-fn clamped(steps: f32) -> u16 {
+pub(crate) fn to_steps(steps: f32) -> u16 {
     steps.clamp(0.0, STEPS) as u16
 }
 
 fn brightest(intensities: &[u16]) -> u16 {
     let mut values = intensities.to_vec();
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a length")]
-    let place = (values.len() as f64 * (1.0 - BRIGHTEST)) as usize;
+    let place = to_index(values.len() as f64 * (1.0 - BRIGHTEST));
     if place >= values.len() {
         return 1;
     }

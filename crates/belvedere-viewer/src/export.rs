@@ -181,7 +181,7 @@ fn viewpoints(
         if let Some(fault) = fault_of(&blockers, Some(ground), eye) {
             let value = format!("{} ({fault})", typed(place));
             let expected = "inside the cloud, above the ground and outside obstacles";
-            return Err(Error::InvalidParameter { parameter: Parameter::Viewpoint, value, expected });
+            return Err(Error::invalid(Parameter::Viewpoint, value, expected));
         }
         let observer = Observer { eye, limits: SightLimits::default() };
         let seen = viewshed(&blockers, &[observer], &sent.positions, &ViewshedParams::default(), control)?;

@@ -1,5 +1,6 @@
 //! Replies to the page: named values, bytes, and errors in words.
 
+use belvedere::cast::to_row;
 use serde_json::Value;
 
 /// Reply to a question.
@@ -59,8 +60,6 @@ impl QuestionReply {
     pub(crate) fn into_bytes(self) -> Vec<u8> {
         let mut head = self.head.to_string().into_bytes();
         head.resize(head.len().next_multiple_of(4), b' ');
-        #[expect(clippy::cast_possible_truncation, reason = "a head is kilobytes")]
-        let length = head.len() as u32;
-        [&length.to_le_bytes(), &head[..], &self.body].concat()
+        [&to_row(head.len()).to_le_bytes(), &head[..], &self.body].concat()
     }
 }

@@ -1,8 +1,10 @@
 //! Results of commands beside the cloud: points and cells with values, and shapes on the ground.
 
+use crate::chunks::{STEPS, to_steps};
 use crate::replies::QuestionReply;
 use crate::scene::PageScene;
 use belvedere::apps::ask::scene::KnownGround;
+use belvedere::cast::{to_index, to_u8};
 use belvedere::cloud::to_local;
 use belvedere::control::Control;
 use belvedere::io::{FeatureShape, Georeference, MapFeature, PlacedRaster, PointResults};
@@ -10,8 +12,6 @@ use belvedere::{Bounds, Error, Frame, Result};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Steps of positions along each axis.
-const STEPS: f32 = 65_535.0;
 /// Byte of a value that is none.
 const NONE: u8 = 255;
 /// Byte of the greatest value.
@@ -195,9 +195,7 @@ fn layer(positions: &[[f32; 3]], columns: &[(String, Vec<f32>)], size: Option<f6
     let mut body = Vec::with_capacity(positions.len() * (8 + columns.len()));
     for place in positions {
         for axis in 0..3 {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 16 bits")]
-            let steps = ((place[axis] - low[axis]) / step[axis]).round().clamp(0.0, STEPS) as u16;
-            body.extend(steps.to_le_bytes());
+            body.extend(to_steps(((place[axis] - low[axis]) / step[axis]).round()).to_le_bytes());
         }
         body.extend([0, 0]);
     }
@@ -209,8 +207,7 @@ fn layer(positions: &[[f32; 3]], columns: &[(String, Vec<f32>)], size: Option<f6
         let are_codes = min >= 0.0 && greatest <= 4.0 && finite.into_iter().all(|value| value.fract() == 0.0);
         let (from, to) = if are_codes { (0.0, GREATEST) } else { (min, greatest.max(min + f32::MIN_POSITIVE)) };
         body.extend(values.iter().map(|&value| {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 253")]
-            let byte = ((value - from) / (to - from) * GREATEST).round() as u8;
+            let byte = to_u8(f64::from(((value - from) / (to - from) * GREATEST).round()));
             if value.is_finite() { byte } else { NONE }
         }));
         described.push(json!({
@@ -248,9 +245,11 @@ fn line(corners: &[[f64; 3]], local: &dyn Fn(&[f64; 3]) -> [f64; 3], on_ground: 
     for pair in corners.windows(2) {
         let [a, b] = [&pair[0], &pair[1]].map(local);
         let is_flat = pair.iter().any(|corner| !corner[2].is_finite());
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
-        let count =
-            if is_flat { ((b[0] - a[0]).hypot(b[1] - a[1]) / PIECE).ceil().clamp(1.0, MAX_PIECES) as usize } else { 1 };
+        let count = if is_flat {
+            to_index(((b[0] - a[0]).hypot(b[1] - a[1]) / PIECE).ceil().clamp(1.0, MAX_PIECES))
+        } else {
+            1
+        };
         let at = |part: usize| -> [f64; 3] {
             let share = part as f64 / count as f64;
             let [x, y, z] = std::array::from_fn(|i| a[i] + share * (b[i] - a[i]));

@@ -3,7 +3,8 @@
 
 use crate::loading::Loading;
 use crate::plans::Plans;
-use crate::questions::{self, RequestContext};
+use crate::questions;
+use crate::questions::context::RequestContext;
 use crate::reading::ReadingChoice;
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::SceneText;

@@ -4,7 +4,7 @@
 //! OGC 12-128r19, GeoPackage 1.4.
 
 use super::wkb;
-use crate::source::Source;
+use crate::files::source::Source;
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Result};
 use geojson::{Feature, Geometry, GeometryValue};

@@ -5,45 +5,12 @@ use std::path::Path;
 use geojson::{GeoJson, Geometry, GeometryValue, Position};
 use serde_json::{Map, Value};
 
-use crate::source::{Source, refuse_other_shapes};
+use crate::files::source::{Source, refuse_other_shapes};
+use crate::map_features::features::{FeatureShape, MapFeature};
 
 use belvedere_data::crs::evidence::Comparison;
 use belvedere_data::crs::{Crs, CrsKind, GeographicProjection};
 use belvedere_data::{Error, Result};
-
-/// Geometry of a feature: absolute metres in the system of the cloud, height NaN if the file has none.
-#[derive(Clone, Debug, PartialEq)]
-pub enum FeatureShape {
-    /// A point.
-    Point([f64; 3]),
-    /// A line through corners.
-    Line(Vec<[f64; 3]>),
-    /// Outer ring and holes.
-    Polygon(Vec<Vec<[f64; 3]>>),
-}
-
-impl FeatureShape {
-    /// Its corners, one ring after the other.
-    pub fn corners(&self) -> impl Iterator<Item = &[f64; 3]> {
-        let (one, line, rings): (_, &[[f64; 3]], &[Vec<[f64; 3]>]) = match self {
-            Self::Point(place) => (Some(place), &[], &[]),
-            Self::Line(corners) => (None, corners, &[]),
-            Self::Polygon(rings) => (None, &[], rings),
-        };
-        one.into_iter().chain(line).chain(rings.iter().flatten())
-    }
-}
-
-/// A shape with its properties in the file. Features of several shapes give one for each.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MapFeature {
-    /// Its place.
-    pub shape: FeatureShape,
-    /// Its properties.
-    pub properties: Map<String, Value>,
-    /// Number in the file, from 0: parts of a shape of several share it.
-    pub number: usize,
-}
 
 /// Extensions of files of points, lines and polygons.
 pub const FEATURE_EXTENSIONS: [&str; 4] = ["geojson", "json", "gpkg", "shp"];
@@ -117,7 +84,7 @@ fn of_geopackage(source: Source<'_>) -> Result<RawFeatures> {
 
 #[cfg(feature = "shp")]
 fn of_shapefile(source: &Source<'_>) -> Result<RawFeatures> {
-    use crate::source::SystemBeside;
+    use crate::files::source::SystemBeside;
     let (features, beside) = super::shapefile::read(source)?;
     let system = match beside {
         Some(SystemBeside::Known { crs, .. }) => Some(crs),

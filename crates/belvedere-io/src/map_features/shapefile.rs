@@ -1,7 +1,7 @@
 //! Shapefile: points, lines and polygons, with the attributes of the table beside them.
 
-use crate::map_features::{FeatureShape, MapFeature};
-use crate::source::{Source, SystemBeside};
+use crate::files::source::{Source, SystemBeside};
+use crate::map_features::features::{FeatureShape, MapFeature};
 use belvedere_data::{Error, Result};
 use serde_json::{Map, Value};
 use shapefile::dbase::{CodePageMark, FieldValue, ReaderBuilder, Record};

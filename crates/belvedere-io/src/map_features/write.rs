@@ -5,8 +5,8 @@ use std::path::Path;
 use geojson::{Feature, FeatureCollection, Geometry, Position};
 use serde_json::{Map, Value};
 
-use crate::antimeridian;
-use crate::output::Output;
+use crate::files::output::Output;
+use crate::map_features::antimeridian;
 use belvedere_data::crs::{Crs, GeographicProjection};
 use belvedere_data::report::rounded;
 use belvedere_data::{Error, Result};

@@ -4,14 +4,48 @@
 //! RFC 7946 (GeoJSON, Butler et al. 2016), as WFS services answer; STAC API 1.0, item search; The National Map Access
 //! API 1 (U.S. Geological Survey), products.
 
+use serde::Serialize;
 use serde_json::Value;
+use std::path::Path;
 
-use super::tiles::SurveyTile;
-use crate::source::web_address;
+use super::table::without_key;
+use crate::files::source::web_address;
 use belvedere_data::shown::without_secrets;
 
 /// Ends of addresses of point clouds, the best first: windows of COPC are read without the rest, archives not at all.
 const ENDS: [&str; 5] = [".copc.laz", ".laz", ".las", ".laz.zip", ".las.zip"];
+
+/// A file of a survey.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SurveyTile {
+    /// Its address; without a key where it is written down.
+    #[serde(serialize_with = "without_key")]
+    pub address: String,
+    /// Its size, where the service or its server says it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bytes: Option<u64>,
+    /// Date by the service, such as "2020-03-01T00:00:00Z".
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub date: Option<String>,
+}
+
+impl SurveyTile {
+    /// Name for its file: the last part of the address, without letters that file systems do not have.
+    #[must_use]
+    pub fn file_name(&self) -> String {
+        let plain = self.address.split(['?', '#']).next().unwrap_or_default();
+        let last = plain.rsplit('/').next().unwrap_or_default();
+        let is_usual = |letter: char| letter.is_ascii_alphanumeric() || "._-".contains(letter);
+        let name: String = last.chars().map(|letter| if is_usual(letter) { letter } else { '_' }).collect();
+        name.trim_start_matches('.').to_owned()
+    }
+
+    /// True for archives, which must be unpacked before their points can be read.
+    #[must_use]
+    pub fn is_archive(&self) -> bool {
+        Path::new(&self.file_name()).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("zip"))
+    }
+}
 
 /// A page of a list.
 #[derive(Debug, PartialEq)]
@@ -54,7 +88,7 @@ fn no_list(text: &str) -> String {
 }
 
 fn is_address(text: &str) -> bool {
-    web_address(std::path::Path::new(text)).is_some()
+    web_address(Path::new(text)).is_some()
 }
 
 /// The point cloud that a row of a list names; `None` for other products.
@@ -183,5 +217,19 @@ mod tests {
         assert_eq!((page.row_count, page.total), (1, Some(7)));
         let relative = r#"{"features": [], "links": [{"rel": "next", "href": "?page=2"}]}"#;
         assert!(ListPage::parse(relative).unwrap_err().contains("no address"));
+    }
+
+    #[test]
+    fn names_of_files_stay_in_their_folder() {
+        let tile = |address: &str| SurveyTile { address: address.to_owned(), bytes: None, date: None };
+        for (address, name) in [
+            ("https://a/b/c.copc.laz?key=/x", "c.copc.laz"),
+            ("https://a/..", ""),
+            ("https://a/b/%2e%2e%2fc d.laz", "_2e_2e_2fc_d.laz"),
+            ("https://a/.hidden.laz", "hidden.laz"),
+        ] {
+            assert_eq!(tile(address).file_name(), name);
+        }
+        assert!(tile("https://a/b.las.ZIP").is_archive() && !tile("https://a/b.laz").is_archive());
     }
 }

@@ -8,6 +8,7 @@ mod table;
 mod tiles;
 mod transfer;
 
+pub use index::SurveyTile;
 pub use table::{MAX_CLOUD_RADIUS, OpenSurvey, SurveyArea, TileIndex, known_surveys, read_surveys};
-pub use tiles::{FoundSurvey, SurveyTile, best_covering, find_surveys, find_tiles, surveys_at};
+pub use tiles::{FoundSurvey, best_covering, find_surveys, find_tiles, surveys_at};
 pub use transfer::{download_tiles, read_area, write_origin};

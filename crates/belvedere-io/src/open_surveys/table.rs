@@ -1,9 +1,10 @@
 //! The table of open surveys, and the area that is wanted of them.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
+use std::path::Path;
 
-use super::tiles::without_key;
-use crate::source::Source;
+use crate::files::secrets::hidden;
+use crate::files::source::Source;
 use belvedere_data::parameter::Parameter;
 use belvedere_data::{Error, Result};
 
@@ -68,6 +69,11 @@ pub enum TileIndex {
     Page,
 }
 
+/// Writes an address without user, password and key.
+pub(super) fn without_key<S: Serializer>(address: &str, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+    serializer.collect_str(&hidden(Path::new(address)).display())
+}
+
 /// A square area around a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurveyArea {
@@ -84,18 +90,14 @@ impl SurveyArea {
     /// range of 1 m to 5 km.
     pub fn around([latitude_deg, longitude_deg]: [f64; 2], radius_m: f64) -> Result<Self> {
         if !(latitude_deg.abs() <= MAX_LATITUDE && longitude_deg.abs() <= 180.0) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::SurveyPlace,
-                value: format!("{latitude_deg}, {longitude_deg}"),
-                expected: "latitude (-85 to 85) and longitude (-180 to 180) in degrees, such as 52.01,4.36",
-            });
+            return Err(Error::invalid(
+                Parameter::SurveyPlace,
+                format!("{latitude_deg}, {longitude_deg}"),
+                "latitude (-85 to 85) and longitude (-180 to 180) in degrees, such as 52.01,4.36",
+            ));
         }
         if !(RADII[0]..=RADII[1]).contains(&radius_m) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::SurveyRadius,
-                value: format!("{radius_m} m"),
-                expected: "1 to 5000 m",
-            });
+            return Err(Error::invalid(Parameter::SurveyRadius, format!("{radius_m} m"), "1 to 5000 m"));
         }
         Ok(Self { latitude_deg, longitude_deg, radius_m })
     }
@@ -120,11 +122,11 @@ impl SurveyArea {
         if self.radius_m <= MAX_CLOUD_RADIUS {
             return Ok(());
         }
-        Err(Error::InvalidParameter {
-            parameter: Parameter::SurveyRadius,
-            value: format!("{} m", self.radius_m),
-            expected: "at most 1000 m for a single cloud; larger areas come as whole tiles",
-        })
+        Err(Error::invalid(
+            Parameter::SurveyRadius,
+            format!("{} m", self.radius_m),
+            "at most 1000 m for a single cloud; larger areas come as whole tiles",
+        ))
     }
 
     /// West, south, east and north, degrees.

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
-use super::index::ListPage;
+use super::index::{ListPage, SurveyTile};
 use super::table::{OpenSurvey, SurveyArea, TileIndex};
-use crate::remote;
-use crate::secrets::hidden;
+use crate::files::remote;
+use crate::files::secrets::hidden;
 use belvedere_data::control::Control;
 use belvedere_data::crs::{Crs, GeographicProjection};
 use belvedere_data::parameter::Parameter;
@@ -23,20 +23,6 @@ const COVERED: f64 = 0.9;
 /// Minimum share of an area whose tiles count as all of it, percent: boxes of tiles in degrees are rounded.
 const WHOLE_PERCENT: f64 = 99.0;
 
-/// A file of a survey.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SurveyTile {
-    /// Its address; without a key where it is written down.
-    #[serde(serialize_with = "without_key")]
-    pub address: String,
-    /// Its size, where the service or its server says it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub bytes: Option<u64>,
-    /// Date by the service, such as "2020-03-01T00:00:00Z".
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub date: Option<String>,
-}
-
 /// A survey that may cover a place.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FoundSurvey {
@@ -50,29 +36,6 @@ pub struct FoundSurvey {
     /// Reason why its tiles are not known, and advice.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
-}
-
-/// Writes an address without user, password and key.
-pub(super) fn without_key<S: Serializer>(address: &str, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-    serializer.collect_str(&hidden(Path::new(address)).display())
-}
-
-impl SurveyTile {
-    /// Name for its file: the last part of the address, without letters that file systems do not have.
-    #[must_use]
-    pub fn file_name(&self) -> String {
-        let plain = self.address.split(['?', '#']).next().unwrap_or_default();
-        let last = plain.rsplit('/').next().unwrap_or_default();
-        let is_usual = |letter: char| letter.is_ascii_alphanumeric() || "._-".contains(letter);
-        let name: String = last.chars().map(|letter| if is_usual(letter) { letter } else { '_' }).collect();
-        name.trim_start_matches('.').to_owned()
-    }
-
-    /// True for archives, which must be unpacked before their points can be read.
-    #[must_use]
-    pub fn is_archive(&self) -> bool {
-        Path::new(&self.file_name()).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("zip"))
-    }
 }
 
 /// The tiles of `surveys` in `area`. Surveys without tiles there are left out.
@@ -106,28 +69,28 @@ pub fn surveys_at(mut surveys: Vec<OpenSurvey>, name: Option<&str>, area: &Surve
         let names: Vec<String> = surveys.iter().map(|survey| survey.name.clone()).collect();
         surveys.retain(|survey| survey.name == name);
         if surveys.is_empty() {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::OpenSurvey,
-                value: format!("{name:?}, which is none of {}", names.join(", ")),
-                expected: "a survey of the table",
-            });
+            return Err(Error::invalid(
+                Parameter::OpenSurvey,
+                format!("{name:?}, which is none of {}", names.join(", ")),
+                "a survey of the table",
+            ));
         }
     }
     surveys.retain(|survey| survey.may_cover(area));
     if surveys.is_empty() {
         let [latitude, longitude] = area.middle_deg();
         if let Some(name) = name {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::OpenSurvey,
-                value: format!("{name}, which does not cover {latitude}, {longitude}"),
-                expected: "one that covers the place (latitude first), or left out",
-            });
+            return Err(Error::invalid(
+                Parameter::OpenSurvey,
+                format!("{name}, which does not cover {latitude}, {longitude}"),
+                "one that covers the place (latitude first), or left out",
+            ));
         }
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::SurveyPlace,
-            value: format!("{latitude}, {longitude}, where no survey of the table lies"),
-            expected: "in a survey of the table, latitude first; https://portal.opentopography.org/datasets lists others",
-        });
+        return Err(Error::invalid(
+            Parameter::SurveyPlace,
+            format!("{latitude}, {longitude}, where no survey of the table lies"),
+            "in a survey of the table, latitude first; https://portal.opentopography.org/datasets lists others",
+        ));
     }
     Ok(surveys)
 }
@@ -386,18 +349,5 @@ mod tests {
             "a?b=4.350000,52.000000,4.360000,52.010000"
         );
         assert_eq!(filled_box("{x_min} {y_max}", &[1.0, 2.0, 3.0, 4.04]), "1.0 4.0");
-    }
-
-    #[test]
-    fn names_of_files_stay_in_their_folder() {
-        for (address, name) in [
-            ("https://a/b/c.copc.laz?key=/x", "c.copc.laz"),
-            ("https://a/..", ""),
-            ("https://a/b/%2e%2e%2fc d.laz", "_2e_2e_2fc_d.laz"),
-            ("https://a/.hidden.laz", "hidden.laz"),
-        ] {
-            assert_eq!(tile(address, None).file_name(), name);
-        }
-        assert!(tile("https://a/b.las.ZIP", None).is_archive() && !tile("https://a/b.laz", None).is_archive());
     }
 }

@@ -1,6 +1,6 @@
 //! EnergyPlus weather.
 
-use super::lines::{DECIMAL_COMMAS, WeatherLine, WeatherLines};
+use super::lines::{DECIMAL_COMMAS, WeatherLine, WeatherLines, weather_at};
 use belvedere_data::Result;
 use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
 
@@ -40,17 +40,7 @@ pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
     if !(1..=60).contains(&per_hour) {
         return Err(periods.wrong(&format!("{per_hour} records an hour, but must be 1 to 60")));
     }
-    let mut weather = Weather {
-        format: "EPW",
-        latitude: latitude.to_radians(),
-        longitude: longitude.to_radians(),
-        height,
-        rows_hold: RowsHold::Means,
-        utc_offset: zone,
-        steps: Vec::new(),
-        left_out_count: 0,
-        notes: Vec::new(),
-    };
+    let mut weather = weather_at("EPW", [latitude, longitude], height, RowsHold::Means, zone);
     let mut first: Option<(usize, usize)> = None;
     for line in lines.all().skip(HEAD).filter(|line| !line.text.is_empty()) {
         let cells = line.cells();

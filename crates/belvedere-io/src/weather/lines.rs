@@ -1,6 +1,7 @@
 //! Lines of cells parted by commas, and errors that name them.
 
-use belvedere_data::weather::{CalendarDay, WeatherAir};
+use belvedere_data::cast::to_i32;
+use belvedere_data::weather::{CalendarDay, RowsHold, Weather, WeatherAir};
 use belvedere_data::{Error, Result};
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -87,9 +88,8 @@ impl<'a> WeatherLine<'a> {
     /// The same where a whole number is meant.
     pub(super) fn whole_in(&self, cells: &[&str], column: usize, name: &str) -> Result<i32> {
         let value = self.number_in(cells, column, name)?;
-        #[expect(clippy::cast_possible_truncation, reason = "tested to be whole and small")]
         if value.fract() == 0.0 && value.abs() < 1e6 {
-            Ok(value as i32)
+            Ok(to_i32(value))
         } else {
             Err(self.wrong(&format!("{name} is {value}, which is not a whole number")))
         }
@@ -135,4 +135,17 @@ impl<'a> WeatherLine<'a> {
 
 pub(super) fn shortened(text: &str) -> String {
     text.chars().take(40).collect()
+}
+
+/// Creates weather without rows yet, at a place in degrees.
+pub(super) fn weather_at(
+    format: &'static str,
+    [latitude, longitude]: [f64; 2],
+    height: f64,
+    rows_hold: RowsHold,
+    utc_offset: f64,
+) -> Weather {
+    let [latitude, longitude] = [latitude, longitude].map(f64::to_radians);
+    let (steps, notes) = (Vec::new(), Vec::new());
+    Weather { format, latitude, longitude, height, rows_hold, utc_offset, steps, left_out_count: 0, notes }
 }

@@ -14,7 +14,7 @@ mod nsrdb;
 mod pvgis;
 mod tmy3;
 
-use crate::source::{Input, Source};
+use crate::files::source::{Input, Source};
 use belvedere_data::weather::{Weather, WeatherStep};
 use belvedere_data::{Error, Result};
 use lines::WeatherLines;

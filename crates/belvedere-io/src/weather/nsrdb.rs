@@ -1,6 +1,6 @@
 //! Series and typical years of the National Solar Radiation Database.
 
-use super::lines::{WeatherLine, WeatherLines};
+use super::lines::{WeatherLine, WeatherLines, weather_at};
 use belvedere_data::Result;
 use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
 
@@ -26,17 +26,7 @@ pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
         [needed("Year")?, needed("Month")?, needed("Day")?, needed("Hour")?, needed("Minute")?, needed("GHI")?];
     let (direct, diffuse) = (column("DNI"), column("DHI"));
     let air = [column("Temperature"), column("Relative Humidity"), column("Wind Speed"), None];
-    let mut weather = Weather {
-        format: "NSRDB",
-        latitude: latitude.to_radians(),
-        longitude: longitude.to_radians(),
-        height,
-        rows_hold: RowsHold::Instants,
-        utc_offset: zone,
-        steps: Vec::new(),
-        left_out_count: 0,
-        notes: Vec::new(),
-    };
+    let mut weather = weather_at("NSRDB", [latitude, longitude], height, RowsHold::Instants, zone);
     // minutes of the day of all rows: their step is the least between two that follow each other
     let mut min_step = f64::INFINITY;
     let mut before: Option<f64> = None;

@@ -1,6 +1,6 @@
 //! Typical years and series of the Photovoltaic Geographical Information System.
 
-use super::lines::{WeatherLine, WeatherLines, shortened};
+use super::lines::{WeatherLine, WeatherLines, shortened, weather_at};
 use belvedere_data::Result;
 use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
 
@@ -68,17 +68,13 @@ pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
         return Err(names.wrong(&what));
     };
     let air = ["T2m", "RH", "WS10m", "IR(h)"].map(column);
-    let mut weather = Weather {
-        format: if matches!(found, RadiationColumns::Typical(_)) { "PVGIS, typical year" } else { "PVGIS, series" },
-        latitude: latitude.to_radians(),
-        longitude: longitude.to_radians(),
-        height: head.height,
-        rows_hold: RowsHold::Instants,
-        utc_offset: 0.0,
-        steps: Vec::new(),
-        left_out_count: 0,
-        notes: Vec::new(),
-    };
+    let mut weather = weather_at(
+        if matches!(found, RadiationColumns::Typical(_)) { "PVGIS, typical year" } else { "PVGIS, series" },
+        [latitude, longitude],
+        head.height,
+        RowsHold::Instants,
+        0.0,
+    );
     let is_row = |line: &WeatherLine<'_>| line.text.starts_with(|c: char| c.is_ascii_digit());
     for line in lines.all().skip(names.number).take_while(is_row) {
         match step(&line, &columns, found, air, head.offset)? {

@@ -1,6 +1,6 @@
 //! Typical years of the National Renewable Energy Laboratory, third edition.
 
-use super::lines::{WeatherLine, WeatherLines};
+use super::lines::{WeatherLine, WeatherLines, weather_at};
 use belvedere_data::Result;
 use belvedere_data::weather::{RowsHold, Weather, WeatherStep, unix_day};
 
@@ -18,17 +18,7 @@ pub(super) fn read(lines: &WeatherLines<'_>) -> Result<Weather> {
     let (date, time, global) = (needed("Date (MM/DD/YYYY)")?, needed("Time (HH:MM)")?, needed("GHI (W/m^2)")?);
     let (direct, diffuse) = (column("DNI (W/m^2)"), column("DHI (W/m^2)"));
     let air = [column("Dry-bulb (C)"), column("RHum (%)"), column("Wspd (m/s)"), None];
-    let mut weather = Weather {
-        format: "TMY3",
-        latitude: latitude.to_radians(),
-        longitude: longitude.to_radians(),
-        height,
-        rows_hold: RowsHold::Means,
-        utc_offset: zone,
-        steps: Vec::new(),
-        left_out_count: 0,
-        notes: Vec::new(),
-    };
+    let mut weather = weather_at("TMY3", [latitude, longitude], height, RowsHold::Means, zone);
     for line in lines.all().skip(2).filter(|line| !line.text.is_empty()) {
         let cells = line.row_of(&names)?;
         let text = |column: usize| cells.get(column).copied().unwrap_or_default();

@@ -1,7 +1,7 @@
 // A part of the cloud that is shown alone: between two heights, and between two corners on the map. All points stay in
 // the scene, and answers are the same.
+import { card } from "./card.js";
 import { escape } from "./charts.js";
-import { card } from "./questions.js";
 import { $, page } from "./state.js";
 import { cloud, draw, toFile, toLocal } from "./view.js";
 import { fixed, t } from "./words.js";

@@ -1,5 +1,5 @@
 // Lengths, heights and areas between clicked places.
-import { card } from "./questions.js";
+import { card } from "./card.js";
 import { csv, geojson, save } from "./save.js";
 import { page } from "./state.js";
 import { draw, toFile } from "./view.js";

@@ -1,10 +1,10 @@
 // What if: buildings that are drawn or loaded, areas that are cleared, and whether answers are those before, after, or
 // the change.
 import * as api from "./api.js";
+import { card, corners, remarks } from "./card.js";
 import { escape } from "./charts.js";
 import { report } from "./messages.js";
 import { paint } from "./paint.js";
-import { card, corners, remarks } from "./questions.js";
 import { save } from "./save.js";
 import { $, page } from "./state.js";
 import { cloud, draw, toFile } from "./view.js";

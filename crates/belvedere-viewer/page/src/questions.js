@@ -1,5 +1,6 @@
 // Choosing a question, clicking its places, and what is said of the answer.
 import * as api from "./api.js";
+import { card, corners, lifted, remarks } from "./card.js";
 import { escape } from "./charts.js";
 import * as colors from "./colors.js";
 import { cutAt, cutPanel } from "./cut.js";
@@ -14,7 +15,7 @@ import { $, canvas, page, toolOf, TOOLS } from "./state.js";
 import { changed } from "./change.js";
 import { clockText, setPlaying } from "./time.js";
 import { ASIDES } from "./tools.js";
-import { count, fixed, remarkText, t } from "./words.js";
+import { count, fixed, t } from "./words.js";
 import { cloud, complete, draw, placeAt, shownPlace, toFile } from "./view.js";
 
 export function choose(tool) {
@@ -52,31 +53,6 @@ export function choose(tool) {
   draw();
 }
 page.choose = (name) => choose(toolOf(name));
-function field() {
-  const { tool } = page;
-  if (!tool.height) return "";
-  tool.above ??= tool.height[1];
-  return `<div class="field"><label for="above">${tool.height[0]}</label><span><input id="above" type="number" step="0.1" value="${tool.above}"> m</span></div>`;
-}
-export function card(html, after) {
-  const box = $("card");
-  box.hidden = false;
-  box.innerHTML = `<header><h2>${escape(page.tool.title)}</h2><button aria-label="${t`Close`}" title="${t`Close`} (Esc)">×</button></header>${field()}${html}`;
-  box.querySelector("header button").onclick = () => choose(TOOLS[0]);
-  const above = box.querySelector("#above");
-  if (above) above.onchange = () => {
-    const value = Number.parseFloat(above.value);
-    if (!Number.isFinite(value)) return;
-    page.tool.above = value;
-    page.places.forEach((place, i) => { if (i === 0) place.local = lifted(place.clicked, value); });
-    if (page.last) ask();
-  };
-  after?.(box);
-}
-const lifted = ([x, y, z], above) => [x, y, z + above];
-
-export const corners = ({ length }) => `${length === 1 ? t`1 corner.` : t`${length} corners.`} ${length < 3 ? t`Click more.` : t`Click more, or go on with these.`}`;
-
 export function click(x, y) {
   const near = placeAt(x, y);
   if (!near) return hint(t`There is no point of the cloud at this place. Click on a point.`);
@@ -239,14 +215,6 @@ export async function ask(quick = false) {
 page.ask = ask;
 // Commands of which no word is broken where it fits into a line.
 const words = (commands) => commands.split("\n").map((command) => command.split(" ").map((word) => `<span>${escape(word)}</span>`).join(" ")).join("\n");
-// What must be known beside an answer, in the words of all faces.
-export const remarks = ({ remarks: all = [] }) => all.map((remark) => {
-  const { key, severity } = remark;
-  const text = remarkText(remark);
-  // names of files stay as they are
-  const sentence = /^\S+\.\w+:/.test(text) ? text : text[0].toUpperCase() + text.slice(1);
-  return `<p class="remark ${severity}" data-key="${escape(key)}">${severity === "warning" ? "⚠ " : ""}${escape(sentence)}.</p>`;
-}).join("");
 // Those of an answer and those of its files, each once.
 const together = (answer = [], files = []) => [...answer, ...files.filter(({ text }) => !answer.some((own) => own.text === text))];
 function showAnswer(tool, answer, places) {

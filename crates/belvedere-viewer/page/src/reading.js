@@ -1,9 +1,9 @@
 // How the cloud was read, and its up axis, unit and reference system: they are offered where they are in doubt, and all
 // of them in a card of the cloud.
 import * as api from "./api.js";
+import { card, remarks } from "./card.js";
 import { escape } from "./charts.js";
 import { report } from "./messages.js";
-import { card, remarks } from "./questions.js";
 import { $, page } from "./state.js";
 import { count, metres, t } from "./words.js";
 

@@ -1,6 +1,7 @@
 //! Certainty of the answers for many points: a probability for each.
 
 use belvedere::apps::ask::HowSure;
+use belvedere::cast::to_u8;
 
 /// Minimum probability of a certain answer.
 const CERTAIN_FROM: f64 = 0.9;
@@ -14,9 +15,8 @@ pub(super) fn how_sure(is_wanted: bool) -> HowSure {
     HowSure { probability: is_wanted, certain: is_wanted.then_some(CERTAIN_FROM) }
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "a probability is from 0 to 1")]
 pub(super) fn byte_of(probability: f32) -> u8 {
-    if probability.is_nan() { NO_PROBABILITY } else { (probability * SURE).round() as u8 }
+    if probability.is_nan() { NO_PROBABILITY } else { to_u8(f64::from((probability * SURE).round())) }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Day and solar noon: choice of the first shadow that the page shows.
 
-use super::RequestContext;
+use super::context::RequestContext;
 use crate::replies::{QuestionReply, Refusal};
 use belvedere::apps::sun::{Zone, parse_instant, sun_position, sun_times};
 use belvedere::report::rounded;

@@ -1,6 +1,6 @@
 //! Is B seen from A: the answer, the place that blocks, and the profile.
 
-use super::RequestContext;
+use super::context::RequestContext;
 use super::places::{local, number, rounded, shown};
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::typed;

@@ -1,6 +1,7 @@
 //! One file for each question. Each calls the library as the command line does, and says which command gives the same.
 
 mod certainty;
+pub(crate) mod context;
 mod daylight;
 mod line;
 mod places;
@@ -14,22 +15,10 @@ mod sun_area;
 mod surfaces;
 mod surroundings;
 
-use crate::plans::Plans;
+use crate::questions::context::RequestContext;
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene::PageScene;
-use crate::scene_text::SceneText;
-use belvedere::control::Control;
 use serde::de::DeserializeOwned;
-
-/// Context of every question.
-pub(crate) struct RequestContext<'a> {
-    pub(crate) scene: &'a PageScene,
-    /// The scene on command lines.
-    pub(crate) text: &'a SceneText,
-    /// Plans of all tabs.
-    pub(crate) plans: &'a Plans,
-    pub(crate) control: &'a Control<'a>,
-}
 
 /// Answers the question of that name.
 pub(crate) fn answer(name: &str, body: &[u8], context: &RequestContext<'_>) -> Result<QuestionReply, Refusal> {

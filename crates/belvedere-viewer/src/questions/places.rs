@@ -1,6 +1,6 @@
 //! Places in questions: coordinates of the file, as the command line takes them.
 
-use super::RequestContext;
+use super::context::RequestContext;
 use crate::replies::Refusal;
 use crate::scene_text::typed;
 use serde_json::{Value, json};

@@ -1,6 +1,6 @@
 //! Scenario: the scene with the drawn plan, for the questions that follow.
 
-use super::RequestContext;
+use super::context::RequestContext;
 use crate::plans::DrawnPlan;
 use crate::replies::{QuestionReply, Refusal};
 use belvedere::apps::ask::remark_on_cleared;

@@ -1,6 +1,6 @@
 //! Reverse viewshed: the cells from which a person would see the place.
 
-use super::RequestContext;
+use super::context::RequestContext;
 use super::places::{local, rounded};
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::typed;

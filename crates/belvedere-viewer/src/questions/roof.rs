@@ -1,6 +1,6 @@
 //! Energy of the roof here: of the plane that was clicked, under a year of clear sky.
 
-use super::RequestContext;
+use super::context::RequestContext;
 use super::places::{local, number, rounded};
 use crate::replies::{QuestionReply, Refusal};
 use belvedere::Error;

@@ -1,7 +1,7 @@
 //! Visibility from an eye: an answer for each point of the cloud, and its probability.
 
-use super::RequestContext;
 use super::certainty::{byte_of, how_sure};
+use super::context::RequestContext;
 use super::places::local;
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene::PointChoice;

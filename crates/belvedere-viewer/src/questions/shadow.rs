@@ -1,7 +1,7 @@
 //! Shadow at this time: for each point of the cloud whether the sun reaches it, and how likely.
 
-use super::RequestContext;
 use super::certainty::{byte_of, how_sure};
+use super::context::RequestContext;
 use super::places::rounded;
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene::PointChoice;

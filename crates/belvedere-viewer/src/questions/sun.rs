@@ -1,6 +1,6 @@
 //! Sun here: the sun's path over the horizon of a place, its hours, and the first and last light.
 
-use super::RequestContext;
+use super::context::RequestContext;
 use super::places::{command_at, local, number, rounded};
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::in_words;

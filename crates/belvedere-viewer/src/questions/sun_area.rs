@@ -1,6 +1,6 @@
 //! Sun hours of an area that was drawn: of the cells on the ground whose middle lies in it.
 
-use super::RequestContext;
+use super::context::RequestContext;
 use super::places::{local, number, rounded};
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::in_words;

@@ -1,6 +1,6 @@
 //! Surfaces of the buildings: the lines on which they end, and the plane of a roof that a point lies on.
 
-use super::RequestContext;
+use super::context::RequestContext;
 use super::places::{local, number};
 use crate::replies::{QuestionReply, Refusal};
 use belvedere::apps::roof_planes::MAX_LEVEL;

@@ -1,11 +1,12 @@
 //! Sky view and isovist here: how open a place is.
 
-use super::RequestContext;
+use super::context::RequestContext;
 use super::places::{command_at, local, number};
 use super::sun::target_at;
 use crate::replies::{QuestionReply, Refusal};
 use crate::scene_text::typed;
 use belvedere::apps::ask::{self, IsovistsQuestion, Places, Remark, SkyViewQuestion, Standing};
+use belvedere::cast::to_u8;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 use std::sync::Arc;
@@ -66,7 +67,5 @@ fn brightness(range: f32) -> u8 {
     if !range.is_finite() {
         return 0;
     }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 255")]
-    let code = (1.0 + 254.0 * (range.max(0.0) / FARTHEST).min(1.0).sqrt()).round() as u8;
-    code
+    to_u8(f64::from((1.0 + 254.0 * (range.max(0.0) / FARTHEST).min(1.0).sqrt()).round()))
 }

@@ -2,6 +2,7 @@
 
 use super::{HostFile, ask, build, give, open, scene_file, take};
 use crate::engine::{Engine, Host, OpenRequest, OpenedFile};
+use belvedere::cast::to_index;
 use belvedere::control::Control;
 use belvedere_viewer::ReadingChoice;
 use serde_json::json;
@@ -25,8 +26,7 @@ thread_local! {
 /// There is room for `length` bytes.
 pub(super) unsafe fn read(id: u32, at: f64, to: *mut u8, length: usize) -> i32 {
     let files = FILES.lock().unwrap();
-    #[expect(clippy::cast_sign_loss, clippy::cast_possible_truncation, reason = "a place in a file")]
-    let Some(rest) = files.get(id as usize).and_then(|file| file.get(at as usize..)) else { return -1 };
+    let Some(rest) = files.get(id as usize).and_then(|file| file.get(to_index(at)..)) else { return -1 };
     let count = rest.len().min(length);
     let count = if id as usize + 1 == files.len() { count.div_ceil(3) } else { count };
     // SAFETY: as promised

@@ -57,13 +57,13 @@ const ONE_HOME: [(&str, &str); 37] = [
     ("skrifa::", "figures/src/font.rs"),
     ("colorous::", "io/src/colors.rs"),
     ("las::", "io/src/"),
-    ("laz::", "io/src/laz"),
+    ("laz::", "io/src/las/"),
     ("npyz::", "io/src/"),
     ("zip::", "io/src/"),
-    ("csv::", "io/src/table.rs"),
-    ("e57::", "io/src/e57.rs"),
-    ("tiff::", "io/src/geotiff"),
-    ("flate2::", "io/src/geotiff_cog.rs"),
+    ("csv::", "io/src/text/table.rs"),
+    ("e57::", "io/src/e57/"),
+    ("tiff::", "io/src/geotiff/"),
+    ("flate2::", "io/src/geotiff/write_cog.rs"),
     ("geojson::", "io/src/map_features"),
     ("rusqlite::", "io/src/map_features/geopackage"),
     ("shapefile::", "io/src/map_features/shapefile"),
@@ -86,9 +86,9 @@ const ONE_HOME: [(&str, &str); 37] = [
     ("hyper_util::", "viewer/src/server.rs"),
     ("open::", "viewer/src/server.rs"),
     ("getrandom::", "viewer/src/guard.rs"),
-    ("rustls::", "io/src/remote.rs"),
-    ("rustls_native_certs::", "io/src/remote.rs"),
-    ("ureq::", "io/src/remote.rs"),
+    ("rustls::", "io/src/files/remote.rs"),
+    ("rustls_native_certs::", "io/src/files/remote.rs"),
+    ("ureq::", "io/src/files/remote.rs"),
 ];
 
 fn level(module: &str) -> Option<u8> {
@@ -192,7 +192,7 @@ fn crates_and_modules_import_downward_only_and_name_each_crate_in_one_place() {
                 // server is given up
                 let by_time = [
                     ("Instant::now", "viewer/src/connections.rs"),
-                    ("Instant::now", "io/src/remote.rs"),
+                    ("Instant::now", "io/src/files/remote.rs"),
                     ("SystemTime", "/src/cache/folder.rs"),
                 ];
                 if code.contains(forbidden) && !by_time.contains(&(forbidden, place.as_str())) {

@@ -1,0 +1,10 @@
+//! Answers to the questions of a plan on the cells of a tile.
+
+pub(crate) mod cell_answers;
+mod ground_cells;
+mod how_sure;
+pub(crate) mod lines;
+mod obstacles;
+mod parts;
+mod proof;
+mod strips;
