@@ -1,7 +1,7 @@
 //! `belvedere balls`.
 
-use super::{check_output, check_parent, extension, is_folder, is_written_back};
 use crate::arguments::{BallsArguments, CloudInput, Global, MethodChoice, SideChoice, Usage};
+use crate::outputs::formats::{check_output, check_parent, extension, is_folder, is_written_back};
 use crate::pipeline::{self, params};
 use crate::run::CommandContext;
 use crate::summary::{Summary, percent};
@@ -66,7 +66,7 @@ pub(crate) fn run(arguments: &BallsArguments, global: &Global) -> Result<Summary
 }
 
 /// The parts of a model with what made them, and of which clouds.
-pub(super) fn of_program(parts: ModelParts, input: &CloudInput) -> ModelParts {
+pub(crate) fn of_program(parts: ModelParts, input: &CloudInput) -> ModelParts {
     let program = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
     parts.with_provenance("program", program).with_provenance("input", input.names().join(" "))
 }

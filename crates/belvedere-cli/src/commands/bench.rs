@@ -1,7 +1,7 @@
 //! `belvedere bench`: how long each stage takes on this machine, from a file of points to a map of shadows.
 
-use super::run_command;
 use crate::arguments::{BenchArguments, Cli, Global, Usage};
+use crate::commands::run_command;
 use crate::help;
 use crate::memory;
 use crate::run::CommandContext;

@@ -1,7 +1,8 @@
 //! `belvedere calibrate`.
 
-use super::{balls, check_output, extension};
 use crate::arguments::{CalibrateArguments, CloudInput, Global, MethodChoice, Usage};
+use crate::commands::balls;
+use crate::outputs::formats::{check_output, extension};
 use crate::pipeline::{self, is_file, params};
 use crate::run::CommandContext;
 use crate::summary::Summary;

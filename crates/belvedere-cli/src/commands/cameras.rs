@@ -1,19 +1,18 @@
 //! `belvedere cameras`.
 
 mod camera_targets;
-mod places;
 mod results;
 
-use super::surroundings::ObserverUse;
-use super::{check_output, warn_of_geojson};
 use crate::arguments::{CamerasArguments, Global, Usage};
+use crate::inputs::camera_places::{self, candidates_on_path};
+use crate::inputs::observers::ObserverUse;
+use crate::outputs::formats::{check_output, extension, warn_of_geojson};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Ask, CameraGoal, Candidates};
 use belvedere::query::UnprovenAs;
-pub(super) use places::candidates_on_path;
 use results::CameraOutput;
 use std::path::PathBuf;
 
@@ -72,7 +71,7 @@ fn question(arguments: &CamerasArguments) -> Result<ask::CamerasQuestion> {
         search_limit: arguments.search_limit,
         candidates,
         camera_height: arguments.camera_height,
-        lens: places::lens(&arguments.lens),
+        lens: camera_places::lens(&arguments.lens),
         targets: ask::CameraTargets {
             height: arguments.targets.target_height.unwrap_or(usual.targets.height),
             ground: arguments.targets.ground.points(),
@@ -92,7 +91,7 @@ fn check(arguments: &CamerasArguments) -> Result<()> {
     let are_cells = camera_targets::are_cells(&arguments.targets);
     for output in &arguments.output {
         check_output("-o", output, &["geojson", "gpkg", "tif", "tiff", "png", "csv"])?;
-        let is_map = ["tif", "tiff", "png"].contains(&super::extension(output).as_str());
+        let is_map = ["tif", "tiff", "png"].contains(&extension(output).as_str());
         if is_map && !are_cells {
             let output = output.display();
             return Err(Usage(format!("{output}: rasters and maps need cells as targets; use .csv or .geojson")).into());

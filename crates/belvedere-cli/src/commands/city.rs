@@ -2,11 +2,11 @@
 
 mod questions;
 
-use super::{check_folder, check_output};
 use crate::arguments::{
     City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, FarTerrainArguments, Global, PlanArguments,
     ThroughTreesArguments, Usage,
 };
+use crate::outputs::formats::{check_folder, check_output};
 use crate::pipeline::areas;
 use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
@@ -22,7 +22,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 /// Name and version of the program, as plans say them.
-pub(super) const PROGRAM: &str = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
+pub(crate) const PROGRAM: &str = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
 /// Maximum number of failures that are listed one by one.
 const MAX_LISTED: usize = 10;
 
@@ -85,7 +85,7 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
 
 /// The plan with what will be built, before far terrain, and with light through trees at a latitude, radians, where one
 /// was typed.
-pub(super) fn planned(
+pub(crate) fn planned(
     plan: Plan,
     changes: &PlanArguments,
     far: Option<&FarTerrainArguments>,
@@ -130,7 +130,7 @@ fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
 }
 
 /// The error of a run of which something failed, with what to do.
-pub(super) fn refuse_failed(report: &RunReport, advice: &str) -> Result<()> {
+pub(crate) fn refuse_failed(report: &RunReport, advice: &str) -> Result<()> {
     if let Some((first, _)) = report.failed.split_first() {
         let listed = report.failed.iter().take(MAX_LISTED).map(|why| format!("\n  {why}")).collect::<String>();
         let more = report.failed.len().saturating_sub(MAX_LISTED);

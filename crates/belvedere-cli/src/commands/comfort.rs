@@ -1,10 +1,10 @@
 //! `belvedere comfort`.
 
-use super::check_output;
-use super::map_shapes::{TypedAre, shapes, wrong_shape};
-use super::sky_view::sky_parts;
-use super::windows::{FaceChoice, WindowColumn, WindowFile, coordinates};
 use crate::arguments::{ComfortArguments, CornersArgument, Global, Usage};
+use crate::commands::sky_view::sky_parts;
+use crate::inputs::map_shapes::{TypedAre, shapes, wrong_shape};
+use crate::inputs::windows::{FaceChoice, WindowColumn, WindowFile, coordinates};
+use crate::outputs::formats::check_output;
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;

@@ -1,7 +1,7 @@
 //! `belvedere demo`: a simulated town, all computations on it, and the accuracy of the answers.
 
-use super::check_folder;
 use crate::arguments::{CloudInput, Demo, Global, UpChoice};
+use crate::outputs::formats::check_folder;
 use crate::pipeline;
 use crate::run::CommandContext;
 use crate::simulated::{cloud_of, write_text};

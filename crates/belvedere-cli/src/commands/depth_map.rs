@@ -1,7 +1,7 @@
 //! `belvedere depth-map`.
 
-use super::{check_output, extension};
 use crate::arguments::{DepthMapArguments, Global, Usage};
+use crate::outputs::formats::{check_output, extension};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;

@@ -1,9 +1,9 @@
 //! `belvedere envelope`.
 
-use super::check_output;
-use super::heights::write_heights;
-use super::map_shapes::{NamedShape, TypedAre, shapes, wrong_shape};
 use crate::arguments::{CornersArgument, EnvelopeArguments, Global, Usage};
+use crate::inputs::map_shapes::{NamedShape, TypedAre, shapes, wrong_shape};
+use crate::outputs::formats::{check_output, extension};
+use crate::outputs::heights::write_heights;
 use crate::pipeline::{self, KeepPoints, LoadedScene, is_file, mesh_in};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -131,7 +131,7 @@ fn protect(arguments: &EnvelopeArguments, frame: &Frame, run: &mut CommandContex
     let mut all = Vec::new();
     for protect in &arguments.protect {
         if let CornersArgument::File(path) = protect
-            && super::extension(path) != "geojson"
+            && extension(path) != "geojson"
             && is_mesh(path)
             && !is_geojson(path)
         {
@@ -157,7 +157,7 @@ fn is_geojson(path: &Path) -> bool {
     let mut start = Vec::new();
     let read = Source::path(path).into_reader().map(|(file, _)| file.take(1 << 16).read_to_end(&mut start));
     let is_read = matches!(read, Ok(Ok(_)));
-    super::extension(path) == "json" && is_read && !String::from_utf8_lossy(&start).contains("CityJSON")
+    extension(path) == "json" && is_read && !String::from_utf8_lossy(&start).contains("CityJSON")
 }
 
 fn write_one(
@@ -167,7 +167,7 @@ fn write_one(
     tags: &[MetadataTag],
 ) -> Result<()> {
     let (frame, EnvelopeResults { envelope, ground }) = (scene.frame(), &answers.found);
-    match super::extension(output).as_str() {
+    match extension(output).as_str() {
         "ply" | "obj" => {
             let mut mesh = envelope.to_mesh(frame.origin)?;
             mesh.crs = frame.crs.clone();

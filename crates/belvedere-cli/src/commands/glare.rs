@@ -1,10 +1,10 @@
 //! `belvedere glare`.
 
-use super::result_columns::write_columns;
-use super::surroundings::min_count;
-use super::windows::{FaceChoice, WindowFile};
-use super::{check_output, extension};
 use crate::arguments::{GlareArguments, Global, Usage};
+use crate::inputs::observers::min_count;
+use crate::inputs::windows::{FaceChoice, WindowFile};
+use crate::outputs::formats::{check_output, extension};
+use crate::outputs::result_columns::write_columns;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;

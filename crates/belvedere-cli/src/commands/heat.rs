@@ -1,7 +1,7 @@
 //! `belvedere heat`.
 
-use super::targets::TargetOutput;
 use crate::arguments::{Global, HeatArguments};
+use crate::inputs::targets::TargetOutput;
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;

@@ -1,8 +1,8 @@
 //! `belvedere horizon`.
 
-use super::surroundings::min_count;
-use super::{check_output, extension};
 use crate::arguments::{BelowChoice, Global, HorizonArguments, Usage};
+use crate::inputs::observers::min_count;
+use crate::outputs::formats::{check_output, extension};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -106,7 +106,7 @@ fn write_columns(output: &Path, found: &HorizonResults) -> belvedere::Result<()>
     write_lines(output, std::iter::once(header).chain((0..*count).map(row)))
 }
 
-pub(super) fn write_lines(output: &Path, lines: impl Iterator<Item = String>) -> belvedere::Result<()> {
+pub(crate) fn write_lines(output: &Path, lines: impl Iterator<Item = String>) -> belvedere::Result<()> {
     let text: String = lines.map(|line| line + "\n").collect();
     atomic::write(output, |file| file.write_all(text.as_bytes()).map_err(belvedere::Error::io(output)))
 }

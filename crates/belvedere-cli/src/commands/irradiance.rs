@@ -2,12 +2,12 @@
 
 mod hours;
 mod planes;
-pub(super) mod radiation;
 
-use super::in_tiles::TypedCells;
-use super::targets::TargetOutput;
-use super::warn_of_geojson;
 use crate::arguments::{Global, IrradianceArguments, SkyOutputs, SkyPlaces, Usage};
+use crate::in_tiles::TypedCells;
+use crate::inputs::radiation;
+use crate::inputs::targets::TargetOutput;
+use crate::outputs::formats::warn_of_geojson;
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;

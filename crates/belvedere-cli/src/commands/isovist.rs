@@ -1,8 +1,8 @@
 //! `belvedere isovist`.
 
-use super::surroundings::{min_count, rows_as_given};
-use super::{check_output, extension};
 use crate::arguments::{Global, IsovistArguments, Usage};
+use crate::inputs::observers::{min_count, rows_as_given};
+use crate::outputs::formats::{check_output, extension};
 use crate::pipeline::scene_in_reach;
 use crate::run::CommandContext;
 use crate::summary::Summary;

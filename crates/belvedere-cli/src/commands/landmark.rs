@@ -1,11 +1,11 @@
 //! `belvedere landmark`.
 
-pub(super) mod landmark_shape;
 mod results;
 
-use super::surroundings::{ObserverUse, observer_rows, rows_as_given};
-use super::{check_output, extension};
 use crate::arguments::{Global, LandmarkArguments, Usage};
+use crate::inputs::landmark_shape;
+use crate::inputs::observers::{ObserverUse, observer_rows, rows_as_given};
+use crate::outputs::formats::{check_output, extension};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;

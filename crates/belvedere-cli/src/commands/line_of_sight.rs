@@ -1,10 +1,10 @@
 //! `belvedere line-of-sight`.
 
-use super::far_terrain::set_terrain;
-use super::outputs::warn_of_geojson;
-use super::surroundings::{ObserverUse, observer_rows};
-use super::{check_output, extension};
 use crate::arguments::{Global, LineOfSightArguments, LinesArguments, MapPosition, Usage};
+use crate::inputs::far_terrain::set_terrain;
+use crate::inputs::observers::{ObserverUse, observer_rows};
+use crate::outputs::formats::warn_of_geojson;
+use crate::outputs::formats::{check_output, extension};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -108,7 +108,7 @@ fn standing(place: [f64; 3]) -> Standing {
 }
 
 /// Observer and target of each line, and the rows of the table they are from.
-pub(super) fn pairs(
+pub(crate) fn pairs(
     lines: &LinesArguments,
     scene: &Scene,
     run: &CommandContext,

@@ -1,69 +1,50 @@
-//! The table of commands, a file for each; what they share has files of its own.
+//! The table of commands, a file or folder for each.
 
-mod balls;
+pub(crate) mod balls;
 mod bench;
 mod cache;
 mod calibrate;
 mod cameras;
-mod city;
+pub(crate) mod city;
 mod comfort;
 mod demo;
 mod depth_map;
 mod describe;
 mod difference;
-mod difference_of_tables;
 mod envelope;
-mod fading;
-mod far_terrain;
 mod fetch;
 mod glare;
 mod heat;
-mod heights;
-mod horizon;
-mod in_tiles;
+pub(crate) mod horizon;
 mod info;
 mod irradiance;
 mod isovist;
 mod landmark;
-mod line_of_sight;
-mod map_shapes;
-mod mesh_targets;
+pub(crate) mod line_of_sight;
 mod normals;
-mod north;
-mod outputs;
 mod protected_view;
-mod query;
+pub(crate) mod query;
 mod report;
-mod result_columns;
 mod shadow;
 mod simulate;
-mod sky_view;
-mod sun;
-mod sun_calendar;
+pub(crate) mod sky_view;
+pub(crate) mod sun_calendar;
 mod sun_hours;
 mod sun_position;
 mod surfaces;
-mod surroundings;
 mod survey_plan;
-mod targets;
 mod towers;
 mod trajectory;
-mod tree_light;
-mod typed_places;
 #[cfg(feature = "view")]
 mod view;
-mod view_obstacles;
-mod viewshed;
+pub(crate) mod viewshed;
 mod window_views;
-mod windows;
 
 use crate::arguments::{Cli, Command};
 use crate::help;
+use crate::inputs::typed_places;
 use crate::summary::Summary;
 use anyhow::{Context, Result};
-use outputs::{
-    NormalColumns, check_folder, check_output, check_parent, extension, is_folder, is_written_back, warn_of_geojson,
-};
 use std::io::Write;
 
 /// Runs the command that was typed.

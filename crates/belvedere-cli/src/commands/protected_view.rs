@@ -1,9 +1,9 @@
 //! `belvedere protected-view`.
 
-use super::heights::write_heights;
-use super::landmark::landmark_shape;
-use super::{check_output, extension};
 use crate::arguments::{Global, ProtectedViewArguments};
+use crate::inputs::landmark_shape;
+use crate::outputs::formats::{check_output, extension};
+use crate::outputs::heights::write_heights;
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;

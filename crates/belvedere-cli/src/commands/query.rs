@@ -1,7 +1,10 @@
 //! `belvedere query`.
 
-use super::{check_output, extension, mesh_targets, view_obstacles};
+mod mesh_targets;
+
 use crate::arguments::{Global, Query, Usage};
+use crate::inputs::view_obstacles;
+use crate::outputs::formats::{check_output, extension};
 use crate::pipeline::{self, KeepPoints, LoadedScene};
 use crate::run::CommandContext;
 use crate::summary::{Summary, percent, rounded};
@@ -148,7 +151,7 @@ fn rows_as_given(arguments: &Query, scene: &LoadedScene) -> Result<Option<TextRo
 }
 
 /// The rows of a table of points for an output that is a table too.
-pub(super) fn text_rows_for(path: &Path, output: &Path) -> Result<Option<TextRows>> {
+pub(crate) fn text_rows_for(path: &Path, output: &Path) -> Result<Option<TextRows>> {
     let is_table = |path: &Path| ["csv", "txt", "xyz"].contains(&extension(path).as_str());
     if is_table(path) && is_table(output) { Ok(Some(read_text_rows(path)?)) } else { Ok(None) }
 }
@@ -252,7 +255,7 @@ fn targets(
 }
 
 /// The points of a file as a cloud in the frame of the scene, read with these options.
-pub(super) fn points_of_file(
+pub(crate) fn points_of_file(
     path: &Path,
     options: &ReadOptions,
     frame: &Frame,

@@ -1,10 +1,10 @@
 //! `belvedere report`.
 
-use super::check_output;
-use super::map_shapes::{TypedAre, shapes, wrong_shape};
-use super::sun_calendar::refuse_mesh;
-use super::windows::{FaceChoice, WindowFile};
 use crate::arguments::{AreaChoice, CornersArgument, Global, ReportArguments, Usage};
+use crate::commands::sun_calendar::refuse_mesh;
+use crate::inputs::map_shapes::{TypedAre, shapes, wrong_shape};
+use crate::inputs::windows::{FaceChoice, WindowFile};
+use crate::outputs::formats::check_output;
 use crate::pipeline;
 use crate::run::CommandContext;
 use crate::summary::Summary;

@@ -1,10 +1,10 @@
 //! `belvedere shadow`.
 
-use super::fading::{UNPROVEN_COLOR, fade, faded};
-use super::in_tiles::TypedCells;
-use super::targets::{HighestPoints, TargetOutput};
-use super::{check_output, extension, warn_of_geojson};
 use crate::arguments::{Global, ShadowArguments, Usage};
+use crate::in_tiles::TypedCells;
+use crate::inputs::targets::{HighestPoints, TargetOutput};
+use crate::outputs::fading::{UNPROVEN_COLOR, fade, faded};
+use crate::outputs::formats::{check_output, extension, warn_of_geojson};
 use crate::pipeline;
 use crate::run::CommandContext;
 use crate::summary::Summary;

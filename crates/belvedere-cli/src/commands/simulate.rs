@@ -1,7 +1,7 @@
 //! `belvedere simulate`: a town, a survey of it, and what is true about both.
 
-use super::check_folder;
 use crate::arguments::{Global, PatternChoice, ScannerChoice, Simulate, Usage};
+use crate::outputs::formats::check_folder;
 use crate::run::CommandContext;
 use crate::simulated::{EPSG, SUNS_DEG, cloud_of, crs, write_text};
 use crate::summary::{Summary, percent, rounded, whole};

@@ -1,8 +1,8 @@
 //! `belvedere sky-view`.
 
-use super::in_tiles::TypedCells;
-use super::targets::TargetOutput;
 use crate::arguments::{Global, PatchesChoice, SkyViewArguments};
+use crate::in_tiles::TypedCells;
+use crate::inputs::targets::TargetOutput;
 use crate::pipeline;
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &SkyViewArguments, global: &Global) -> Result<Summa
 }
 
 /// Returns the division of the sky.
-pub(super) fn sky_parts(patches: Option<PatchesChoice>, directions: Option<usize>) -> SkyParts {
+pub(crate) fn sky_parts(patches: Option<PatchesChoice>, directions: Option<usize>) -> SkyParts {
     match patches {
         Some(PatchesChoice::Tregenza) => SkyParts::Tregenza,
         Some(PatchesChoice::Reinhart) => SkyParts::Reinhart,

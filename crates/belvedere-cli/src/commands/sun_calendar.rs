@@ -1,9 +1,9 @@
 //! `belvedere sun-calendar`.
 
-use super::check_output;
-use super::typed_places::on_map;
-use super::windows::{FaceChoice, WindowFile};
 use crate::arguments::{Global, MapPosition, SunCalendarArguments, Usage};
+use crate::inputs::typed_places::on_map;
+use crate::inputs::windows::{FaceChoice, WindowFile};
+use crate::outputs::formats::check_output;
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -60,7 +60,7 @@ pub(crate) fn run(arguments: &SunCalendarArguments, global: &Global) -> Result<S
 }
 
 /// Refuses windows that are the faces of a mesh, which are too many to list.
-pub(super) fn refuse_mesh(path: &std::path::Path) -> Result<()> {
+pub(crate) fn refuse_mesh(path: &std::path::Path) -> Result<()> {
     match is_mesh(path) {
         true => {
             Err(Usage("--windows: give a table (.csv); `belvedere comfort` takes the faces of a mesh".to_owned())

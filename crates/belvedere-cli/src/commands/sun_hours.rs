@@ -1,8 +1,8 @@
 //! `belvedere sun-hours`.
 
-use super::in_tiles::TypedCells;
-use super::targets::TargetOutput;
 use crate::arguments::{Global, SunHoursArguments, Usage};
+use crate::in_tiles::TypedCells;
+use crate::inputs::targets::TargetOutput;
 use crate::pipeline;
 use crate::run::CommandContext;
 use crate::summary::Summary;

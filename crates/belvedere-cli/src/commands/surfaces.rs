@@ -1,7 +1,7 @@
 //! `belvedere surfaces`.
 
-use super::{check_output, extension, warn_of_geojson};
 use crate::arguments::{Global, SurfacesArguments};
+use crate::outputs::formats::{check_output, extension, warn_of_geojson};
 use crate::pipeline::{self, params};
 use crate::run::CommandContext;
 use crate::summary::Summary;

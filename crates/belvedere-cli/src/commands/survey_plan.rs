@@ -1,10 +1,10 @@
 //! `belvedere survey-plan`.
 
-use super::cameras::candidates_on_path;
-use super::line_of_sight::pairs;
-use super::surroundings::{ObserverUse, observer_rows};
-use super::{check_output, extension, warn_of_geojson};
 use crate::arguments::{Global, SurveyPlanArguments};
+use crate::commands::line_of_sight::pairs;
+use crate::inputs::camera_places::candidates_on_path;
+use crate::inputs::observers::{ObserverUse, observer_rows};
+use crate::outputs::formats::{check_output, extension, warn_of_geojson};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;

@@ -1,7 +1,7 @@
 //! `belvedere trajectory`.
 
-use super::check_output;
 use crate::arguments::{Global, TrajectoryArguments, Usage};
+use crate::outputs::formats::check_output;
 use crate::pipeline;
 use crate::run::CommandContext;
 use crate::summary::{Summary, sections};

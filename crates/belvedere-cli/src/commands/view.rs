@@ -1,10 +1,10 @@
 //! `belvedere view`.
 
-use super::check_output;
 use crate::arguments::{CloudInput, Global, MapPosition, MethodChoice, SceneInput, UpChoice, Usage, ViewPage};
 use crate::environment::words;
 use crate::interrupt;
 use crate::memory::available_bytes;
+use crate::outputs::formats::check_output;
 use crate::pipeline::{self, KeepPoints, is_file, params};
 use crate::run::CommandContext;
 use crate::summary::{Summary, note};

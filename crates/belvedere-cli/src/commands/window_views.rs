@@ -2,9 +2,9 @@
 
 mod results;
 
-use super::windows::{FaceChoice, WindowFile};
-use super::{check_output, extension, warn_of_geojson};
 use crate::arguments::{Global, Usage, WindowViewsArguments};
+use crate::inputs::windows::{FaceChoice, WindowFile};
+use crate::outputs::formats::{check_output, extension, warn_of_geojson};
 use crate::pipeline::{self, KeepPoints, LoadedScene};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -98,7 +98,7 @@ fn take_classes(arguments: &WindowViewsArguments, scene: &mut LoadedScene, run: 
         );
     }
     let frame = &scene.cloud.frame;
-    let cloud = run.aside(|run| super::query::points_of_file(path, &ReadOptions::new(), frame, run)).0?;
+    let cloud = run.aside(|run| crate::commands::query::points_of_file(path, &ReadOptions::new(), frame, run)).0?;
     if !are_made_from(scene.model.balls(), &cloud.positions) {
         bail!("--classes-of {}: the balls were not built from this cloud", path.display());
     }

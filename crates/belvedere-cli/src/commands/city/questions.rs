@@ -1,7 +1,7 @@
 //! Converts flags to the questions of a plan.
 
 use crate::arguments::{AreaChoice, CellFor, CityPlan, MapPosition, Usage};
-use crate::commands::irradiance::radiation;
+use crate::inputs::radiation;
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::Error;

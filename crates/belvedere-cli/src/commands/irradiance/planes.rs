@@ -1,10 +1,10 @@
 //! Planes of roofs as files.
 
-use super::super::{check_output, check_parent, extension};
 use super::hours;
 use crate::arguments::{IrradianceArguments, PvArguments};
 use crate::commands::horizon::write_lines;
-use crate::commands::result_columns::write_columns;
+use crate::outputs::formats::{check_output, check_parent, extension};
+use crate::outputs::result_columns::write_columns;
 use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;

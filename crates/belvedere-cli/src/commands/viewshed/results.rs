@@ -1,8 +1,8 @@
 //! Viewsheds as files.
 
 use crate::arguments::Usage;
-use crate::commands::extension;
-use crate::commands::fading::{UNPROVEN_COLOR, fade, faded};
+use crate::outputs::fading::{UNPROVEN_COLOR, fade, faded};
+use crate::outputs::formats::extension;
 use anyhow::Result;
 use belvedere::apps::ask::UNCERTAIN;
 use belvedere::apps::targets::Measure;

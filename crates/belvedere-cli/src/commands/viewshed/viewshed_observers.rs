@@ -1,8 +1,8 @@
 //! Observers, from flags and files to places.
 
 use crate::arguments::{MapPosition, Usage, ViewshedArguments};
-use crate::commands::extension;
-use crate::commands::surroundings::{ObserverUse, min_count, observer_rows};
+use crate::inputs::observers::{ObserverUse, min_count, observer_rows};
+use crate::outputs::formats::extension;
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::apps::ask::{Standing, StandingObserver, ViewLimits};

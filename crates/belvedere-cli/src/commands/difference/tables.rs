@@ -1,6 +1,7 @@
 //! `belvedere difference` of two tables: rows of the same places, before and after a plan.
 
 use crate::arguments::{DifferenceArguments, Usage};
+use crate::outputs::formats::extension;
 use crate::run::CommandContext;
 use anyhow::{Result, bail};
 use belvedere::apps::difference::{Difference, DifferenceReport, difference};
@@ -41,7 +42,7 @@ pub(super) fn run(arguments: &DifferenceArguments, run: &mut CommandContext) -> 
     if let Some((flag, _)) = flags.into_iter().find(|(_, is_given)| *is_given) {
         return Err(Usage(format!("{flag} applies only to rasters")).into());
     }
-    if let Some(other) = arguments.output.iter().find(|output| super::extension(output) != "csv") {
+    if let Some(other) = arguments.output.iter().find(|output| extension(output) != "csv") {
         return Err(Usage(format!("-o {}: the difference of tables is a table (.csv)", other.display())).into());
     }
     let paths = [&arguments.before, &arguments.after].map(|path| path.as_path());

@@ -1,7 +1,8 @@
 //! Windows: from files to places.
 
-use super::landmark::landmark_shape::objects_of;
 use crate::arguments::Usage;
+use crate::inputs::landmark_shape::objects_of;
+use crate::outputs::formats::extension;
 use crate::pipeline::mesh_in;
 use crate::run::CommandContext;
 use anyhow::{Result, bail};
@@ -45,7 +46,7 @@ impl WindowFile {
                 return Err(Usage(format!("{flag} applies only to windows from a mesh")).into());
             }
         }
-        if !["csv", "txt"].contains(&super::extension(path).as_str()) {
+        if !["csv", "txt"].contains(&extension(path).as_str()) {
             bail!("{}: windows are a table (.csv .txt) or a mesh (.obj .json .ply with faces)", path.display());
         }
         table(path, frame)

@@ -35,7 +35,7 @@ impl FarTerrainArguments {
 }
 
 /// Puts the scene before the terrain of an elevation raster.
-pub(super) fn set_terrain(path: &Path, scene: &mut LoadedScene, run: &mut CommandContext) -> Result<()> {
+pub(crate) fn set_terrain(path: &Path, scene: &mut LoadedScene, run: &mut CommandContext) -> Result<()> {
     let model = std::mem::take(&mut scene.model);
     let frame = model.frame().clone();
     let terrain = run.stage("reading terrain", 0, |_| read_terrain(path, &frame))?;

@@ -1,13 +1,13 @@
 //! Targets of the sun and the sky: from flags and files to places, and from measures to files.
 
-use super::outputs::warn_of_geojson;
-use super::query::{points_of_file, text_rows_for};
-use super::surroundings::{ObserverUse, observer_rows, rows_as_given};
-use super::typed_places::on_map;
-use super::{check_output, extension};
 use crate::arguments::{
     AreaOutputs, CloudInput, FacingChoice, GroundChoice, MapPosition, SkyOutputs, SkyPlaces, Usage,
 };
+use crate::commands::query::{points_of_file, text_rows_for};
+use crate::inputs::observers::{ObserverUse, observer_rows, rows_as_given};
+use crate::inputs::typed_places::on_map;
+use crate::outputs::formats::warn_of_geojson;
+use crate::outputs::formats::{check_output, extension};
 use crate::pipeline::mesh_in;
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -378,7 +378,7 @@ impl<'a> TargetOutput<'a> {
 }
 
 /// Warns of a file that has room for one of several measures.
-pub(super) fn remark_on_first(output: &Path, measures: &[Measure]) -> Option<Remark> {
+pub(crate) fn remark_on_first(output: &Path, measures: &[Measure]) -> Option<Remark> {
     let (output, count, name) = (output.display(), measures.len(), &measures.first()?.name);
     let text = || format!("{output}: shows {name}, the first of {count} results; .tif and .csv hold all of them");
     (count > 1).then(|| Remark::note("one-result-of-several", text()).with("count", count as f64))

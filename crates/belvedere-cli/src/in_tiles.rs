@@ -1,13 +1,14 @@
 //! Questions on the cells of a survey that does not fit into memory: typed and written like those of one cloud, and
 //! answered in tiles.
 
-use super::targets::{HighestPoints, remark_on_first};
-use super::{city, extension};
 use crate::arguments::{
     FarTerrainArguments, GroundChoice, MemoryArgument, SceneInput, SkyOutputs, SkyPlaces, ThroughTreesArguments,
     UpChoice, Usage,
 };
+use crate::commands::city;
+use crate::inputs::targets::{HighestPoints, remark_on_first};
 use crate::memory;
+use crate::outputs::formats::extension;
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::Error;

@@ -1,7 +1,8 @@
 //! `belvedere query` for targets that are a mesh.
 
-use super::{check_output, extension, view_obstacles};
 use crate::arguments::{GivingWay, Global, MeshTargets, Query, Usage};
+use crate::inputs::view_obstacles;
+use crate::outputs::formats::{check_output, extension};
 use crate::pipeline::{self, KeepPoints, LoadedScene, mesh_in};
 use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};

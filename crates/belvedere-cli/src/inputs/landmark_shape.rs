@@ -1,7 +1,7 @@
 //! The landmark: a mesh, or points of the cloud.
 
 use crate::arguments::{LandmarkShapeArguments, Usage};
-use crate::commands::extension;
+use crate::outputs::formats::extension;
 use crate::pipeline::{LoadedScene, mesh_in};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -14,7 +14,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// The landmark of the flags, in the frame of a scene.
-pub(in crate::commands) fn shape(
+pub(crate) fn shape(
     arguments: &LandmarkShapeArguments,
     frame: &Frame,
     run: &mut CommandContext,
@@ -36,7 +36,7 @@ pub(in crate::commands) fn shape(
 }
 
 /// The surface of the landmark, and its middle on the map, local metres.
-pub(in crate::commands) fn surface(
+pub(crate) fn surface(
     arguments: &LandmarkShapeArguments,
     scene: &LoadedScene,
     run: &mut CommandContext,
@@ -50,7 +50,7 @@ pub(in crate::commands) fn surface(
 }
 
 /// The triangles of the objects named, all where none is.
-pub(in crate::commands) fn objects_of(mesh: Mesh, names: &[String], path: &Path) -> Result<Mesh> {
+pub(crate) fn objects_of(mesh: Mesh, names: &[String], path: &Path) -> Result<Mesh> {
     if names.is_empty() {
         return Ok(mesh);
     }

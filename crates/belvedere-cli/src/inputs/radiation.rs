@@ -9,7 +9,7 @@ use belvedere::io::read_weather;
 use std::path::Path;
 use std::sync::Arc;
 
-pub(in crate::commands) fn params(model: &RadiationModel) -> IrradianceParams {
+pub(crate) fn params(model: &RadiationModel) -> IrradianceParams {
     let usual = IrradianceParams::default();
     IrradianceParams::default()
         .with_sky(model.sky.map_or(usual.sky, Into::into))
@@ -29,7 +29,7 @@ fn clear_sky(choice: Option<ClearSkyChoice>, model: &RadiationModel, params: &Ir
 }
 
 /// Refuses a turbidity for a sky that knows none.
-pub(in crate::commands) fn check_linke(choice: Option<ClearSkyChoice>, model: &RadiationModel) -> Result<()> {
+pub(crate) fn check_linke(choice: Option<ClearSkyChoice>, model: &RadiationModel) -> Result<()> {
     if model.linke.is_some() && choice != Some(ClearSkyChoice::Ineichen) {
         return Err(Usage("--linke needs --clear-sky ineichen".to_owned()).into());
     }
@@ -37,7 +37,7 @@ pub(in crate::commands) fn check_linke(choice: Option<ClearSkyChoice>, model: &R
 }
 
 /// Returns the source of radiation; reads weather.
-pub(in crate::commands) fn of(
+pub(crate) fn of(
     (weather, choice): (Option<&Path>, Option<ClearSkyChoice>),
     model: &RadiationModel,
     year: i16,
