@@ -7,14 +7,12 @@ use belvedere::report;
 use belvedere::shown::{is_command, printable};
 use serde::Serialize;
 use serde_json::{Map, Value};
+use short::{REMARKS, plain};
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
 mod short;
-
-/// Key of the remarks.
-const REMARKS: &str = "remarks";
 
 /// Named figures and sections, in order, and those of them that are the answer.
 #[derive(Clone, Default)]
@@ -260,13 +258,6 @@ fn lines(section: &Map<String, Value>, depth: usize, text: &mut String) {
             }
             other => text.push_str(&format!("{indent}{name}: {}\n", plain(other))),
         }
-    }
-}
-
-fn plain(value: &Value) -> String {
-    match value {
-        Value::String(text) => text.clone(),
-        other => other.to_string(),
     }
 }
 

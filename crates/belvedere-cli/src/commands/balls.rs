@@ -1,6 +1,7 @@
 //! `belvedere balls`.
 
 use crate::arguments::{BallsArguments, CloudInput, Global, MethodChoice, SideChoice, Usage};
+use crate::outputs::balls::with_program;
 use crate::outputs::formats::{check_output, check_parent, extension, is_folder, is_written_back};
 use crate::pipeline::{self, params};
 use crate::run::CommandContext;
@@ -48,7 +49,7 @@ pub(crate) fn run(arguments: &BallsArguments, global: &Global) -> Result<Summary
                 SideChoice::Exterior => exterior(&arguments.input, &cloud, &params, &mut run)?,
             };
             run.summary.add("balls", model.balls.len());
-            let model = of_program(model, &arguments.input);
+            let model = with_program(model, &arguments.input);
             if model.pulses.is_some() && extension(&arguments.output) != "npz" {
                 run.summary.add("not_written", "pulses: only .npz keeps them, which unproven answers need");
             }
@@ -63,12 +64,6 @@ pub(crate) fn run(arguments: &BallsArguments, global: &Global) -> Result<Summary
         .headline("thinning keeps <thinning_kept_percent> % of the points");
     run.summary.add("written", arguments.output.display().to_string());
     Ok(run.finish())
-}
-
-/// The parts of a model with what made them, and of which clouds.
-pub(crate) fn of_program(parts: ModelParts, input: &CloudInput) -> ModelParts {
-    let program = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
-    parts.with_provenance("program", program).with_provenance("input", input.names().join(" "))
 }
 
 /// Refuses what cannot be written to the output, before any point is read.

@@ -1,8 +1,8 @@
 //! `belvedere comfort`.
 
 use crate::arguments::{ComfortArguments, CornersArgument, Global, Usage};
-use crate::commands::sky_view::sky_parts;
 use crate::inputs::map_shapes::{TypedAre, shapes, wrong_shape};
+use crate::inputs::sun::sky_parts;
 use crate::inputs::windows::{FaceChoice, WindowColumn, WindowFile, coordinates};
 use crate::outputs::formats::check_output;
 use crate::pipeline::{self, KeepPoints};

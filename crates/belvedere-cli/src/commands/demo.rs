@@ -2,9 +2,10 @@
 
 use crate::arguments::{CloudInput, Demo, Global, UpChoice};
 use crate::outputs::formats::check_folder;
+use crate::outputs::text::write_text;
 use crate::pipeline;
 use crate::run::CommandContext;
-use crate::simulated::{cloud_of, write_text};
+use crate::simulated::cloud_of;
 use crate::summary::{Summary, percent};
 use anyhow::Result;
 use belvedere::Frame;

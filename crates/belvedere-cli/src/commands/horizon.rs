@@ -3,13 +3,12 @@
 use crate::arguments::{BelowChoice, Global, HorizonArguments, Usage};
 use crate::inputs::observers::min_count;
 use crate::outputs::formats::{check_output, extension};
+use crate::outputs::text::write_lines;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Ask, BelowLevel, HorizonResults, Places};
 use belvedere::figures::{horizon_picture, write_png};
-use belvedere::io::atomic;
-use std::io::Write;
 use std::path::Path;
 
 pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summary> {
@@ -104,9 +103,4 @@ fn write_columns(output: &Path, found: &HorizonResults) -> belvedere::Result<()>
         })
     };
     write_lines(output, std::iter::once(header).chain((0..*count).map(row)))
-}
-
-pub(crate) fn write_lines(output: &Path, lines: impl Iterator<Item = String>) -> belvedere::Result<()> {
-    let text: String = lines.map(|line| line + "\n").collect();
-    atomic::write(output, |file| file.write_all(text.as_bytes()).map_err(belvedere::Error::io(output)))
 }

@@ -6,9 +6,9 @@ mod planes;
 use crate::arguments::{Global, IrradianceArguments, SkyOutputs, SkyPlaces, Usage};
 use crate::in_tiles::TypedCells;
 use crate::inputs::radiation;
-use crate::inputs::targets::TargetOutput;
 use crate::outputs::formats::warn_of_geojson;
-use crate::pipeline::{self, KeepPoints};
+use crate::outputs::targets::TargetOutput;
+use crate::pipeline::KeepPoints;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -76,13 +76,9 @@ pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Su
     if wants_places && cells.answered(ask::Question::Irradiance(question.clone()), None, &mut run)?.is_some() {
         return Ok(run.finish());
     }
-    arguments.places.check_on_map(&arguments.scene.input)?;
-    let needs_points = question.roofs.is_some() || arguments.places.needs_points();
-    let points = if needs_points { KeepPoints::Keep } else { KeepPoints::LetGo };
-    let mut scene = pipeline::scene(&arguments.scene, points, &mut run)?;
-    arguments.places.far.set(&mut scene, &mut run)?;
-    warn_of_geojson(&arguments.planes, &scene.cloud.frame.crs, &mut run.summary);
-    let scene = scene.into_question_scene(Some(&arguments.places.ground), arguments.shell.shell, &run)?;
+    let points = if question.roofs.is_some() { KeepPoints::Keep } else { arguments.places.needed_points() };
+    let scene = arguments.places.scene(&arguments.scene, arguments.shell.shell, points, &mut run)?;
+    warn_of_geojson(&arguments.planes, &scene.frame().crs, &mut run.summary);
     if let (Some(roofs), Some(path)) = (&mut question.roofs, &arguments.photovoltaics.footprints) {
         let footprints = run.stage("reading footprints", 0, |_| read_footprints(path.as_path(), scene.frame()))?;
         roofs.footprints = Some(Arc::new(footprints));

@@ -1,11 +1,11 @@
 //! The table of commands, a file or folder for each.
 
-pub(crate) mod balls;
+mod balls;
 mod bench;
 mod cache;
 mod calibrate;
 mod cameras;
-pub(crate) mod city;
+mod city;
 mod comfort;
 mod demo;
 mod depth_map;
@@ -15,20 +15,20 @@ mod envelope;
 mod fetch;
 mod glare;
 mod heat;
-pub(crate) mod horizon;
+mod horizon;
 mod info;
 mod irradiance;
 mod isovist;
 mod landmark;
-pub(crate) mod line_of_sight;
+mod line_of_sight;
 mod normals;
 mod protected_view;
-pub(crate) mod query;
+mod query;
 mod report;
 mod shadow;
 mod simulate;
-pub(crate) mod sky_view;
-pub(crate) mod sun_calendar;
+mod sky_view;
+mod sun_calendar;
 mod sun_hours;
 mod sun_position;
 mod surfaces;
@@ -37,7 +37,7 @@ mod towers;
 mod trajectory;
 #[cfg(feature = "view")]
 mod view;
-pub(crate) mod viewshed;
+mod viewshed;
 mod window_views;
 
 use crate::arguments::{Cli, Command};
@@ -70,7 +70,7 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         Command::Balls(arguments) => balls::run(arguments, global),
         Command::Calibrate(arguments) => calibrate::run(arguments, global),
         Command::Cache(arguments) => cache::run(arguments, global),
-        Command::Bench(arguments) => bench::run(arguments, global),
+        Command::Bench(arguments) => bench::run(arguments, global, run_command),
         Command::DepthMap(arguments) => depth_map::run(arguments, global),
         Command::Query(arguments) => query::run(arguments, global),
         Command::LineOfSight(arguments) => line_of_sight::run(arguments, global),

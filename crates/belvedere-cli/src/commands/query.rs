@@ -3,25 +3,24 @@
 mod mesh_targets;
 
 use crate::arguments::{Global, Query, Usage};
+use crate::inputs::points::points_of_file;
 use crate::inputs::view_obstacles;
-use crate::outputs::formats::{check_output, extension};
+use crate::outputs::formats::{check_output, extension, text_rows_for};
 use crate::pipeline::{self, KeepPoints, LoadedScene};
 use crate::run::CommandContext;
 use crate::summary::{Summary, percent, rounded};
 use anyhow::{Result, bail};
+use belvedere::PointCloud;
 use belvedere::apps::ask;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
 use belvedere::io::{
-    ExtraColumn, ExtraValues, ReadOptions, TextRows, UpAxis, WriteReport, is_mesh, read_cloud, read_text_rows,
-    write_cloud, write_npy_u8, write_text_rows,
+    ExtraColumn, ExtraValues, TextRows, UpAxis, WriteReport, is_mesh, write_cloud, write_npy_u8, write_text_rows,
 };
 use belvedere::model::SceneModel;
 use belvedere::query::{
     Answer, AnswerCounts, BlockRule, CertifiedReport, Scope, UnprovenAs, Viewer, query_points, random_targets,
 };
 use belvedere::view::View;
-use belvedere::{Frame, PointCloud};
-use std::path::Path;
 
 pub(crate) fn run(arguments: &Query, global: &Global) -> Result<Summary> {
     arguments.view.check()?;
@@ -150,12 +149,6 @@ fn rows_as_given(arguments: &Query, scene: &LoadedScene) -> Result<Option<TextRo
     }
 }
 
-/// The rows of a table of points for an output that is a table too.
-pub(crate) fn text_rows_for(path: &Path, output: &Path) -> Result<Option<TextRows>> {
-    let is_table = |path: &Path| ["csv", "txt", "xyz"].contains(&extension(path).as_str());
-    if is_table(path) && is_table(output) { Ok(Some(read_text_rows(path)?)) } else { Ok(None) }
-}
-
 /// Answers by exact lines of sight, separated into proven and unproven by pulses where these are known; and how likely
 /// targets are visible, where that is wanted.
 fn by_lines_of_sight(
@@ -252,19 +245,4 @@ fn targets(
         return Err(Usage("--self needs a cloud; a ball file has no points".to_owned()).into());
     }
     Ok(scene)
-}
-
-/// The points of a file as a cloud in the frame of the scene, read with these options.
-pub(crate) fn points_of_file(
-    path: &Path,
-    options: &ReadOptions,
-    frame: &Frame,
-    run: &mut CommandContext,
-) -> Result<PointCloud> {
-    let (cloud, report) =
-        run.stage("reading targets", 0, |control| read_cloud(&[path.to_owned()], options, control))?;
-    pipeline::check_every_row(&report)?;
-    run.summary.add("reading_targets", Summary::of(&report));
-    cloud.frame.crs.check_for(&frame.crs, "cloud of targets", path)?;
-    Ok(cloud.moved_to(frame))
 }

@@ -1,9 +1,8 @@
 //! `belvedere report`.
 
 use crate::arguments::{AreaChoice, CornersArgument, Global, ReportArguments, Usage};
-use crate::commands::sun_calendar::refuse_mesh;
 use crate::inputs::map_shapes::{TypedAre, shapes, wrong_shape};
-use crate::inputs::windows::{FaceChoice, WindowFile};
+use crate::inputs::windows::{FaceChoice, WindowFile, refuse_mesh};
 use crate::outputs::formats::check_output;
 use crate::pipeline;
 use crate::run::CommandContext;

@@ -2,10 +2,9 @@
 
 use crate::arguments::{Global, ShadowArguments, Usage};
 use crate::in_tiles::TypedCells;
-use crate::inputs::targets::{HighestPoints, TargetOutput};
 use crate::outputs::fading::{UNPROVEN_COLOR, fade, faded};
 use crate::outputs::formats::{check_output, extension, warn_of_geojson};
-use crate::pipeline;
+use crate::outputs::targets::{HighestPoints, TargetOutput};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -48,7 +47,8 @@ pub(crate) fn run(arguments: &ShadowArguments, global: &Global) -> Result<Summar
         warn_of_other_suns(arguments, answers.found.suns.len(), &mut run);
         return Ok(run.finish());
     }
-    let scene = pipeline::scene_of_places(&arguments.scene, &arguments.places, arguments.giving_way.shell, &mut run)?;
+    let points = arguments.places.needed_points();
+    let scene = arguments.places.scene(&arguments.scene, arguments.giving_way.shell, points, &mut run)?;
     let (places, source) = arguments.places.places(&scene, &mut run)?;
     let answers = run.ask(&scene, &question, &places)?;
     let shown = TargetOutput::new(&answers.found.on, source, &scene);

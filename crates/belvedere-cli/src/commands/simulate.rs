@@ -2,8 +2,9 @@
 
 use crate::arguments::{Global, PatternChoice, ScannerChoice, Simulate, Usage};
 use crate::outputs::formats::check_folder;
+use crate::outputs::text::write_text;
 use crate::run::CommandContext;
-use crate::simulated::{EPSG, SUNS_DEG, cloud_of, crs, write_text};
+use crate::simulated::{EPSG, SUNS_DEG, cloud_of, crs};
 use crate::summary::{Summary, percent, rounded, whole};
 use anyhow::{Result, bail};
 use belvedere::cloud::GpsTimeKind;

@@ -2,14 +2,13 @@
 
 use crate::arguments::{Global, MapPosition, SunCalendarArguments, Usage};
 use crate::inputs::typed_places::on_map;
-use crate::inputs::windows::{FaceChoice, WindowFile};
+use crate::inputs::windows::{FaceChoice, WindowFile, refuse_mesh};
 use crate::outputs::formats::check_output;
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Ask, Places, Reach, position_on_map, standing_on_map};
-use belvedere::io::is_mesh;
 use belvedere::results::write_calendar;
 
 pub(crate) fn run(arguments: &SunCalendarArguments, global: &Global) -> Result<Summary> {
@@ -57,15 +56,4 @@ pub(crate) fn run(arguments: &SunCalendarArguments, global: &Global) -> Result<S
     let written = arguments.output.iter().map(|path| path.display().to_string());
     run.summary.add("written", written.collect::<Vec<_>>());
     Ok(run.finish())
-}
-
-/// Refuses windows that are the faces of a mesh, which are too many to list.
-pub(crate) fn refuse_mesh(path: &std::path::Path) -> Result<()> {
-    match is_mesh(path) {
-        true => {
-            Err(Usage("--windows: give a table (.csv); `belvedere comfort` takes the faces of a mesh".to_owned())
-                .into())
-        }
-        false => Ok(()),
-    }
 }

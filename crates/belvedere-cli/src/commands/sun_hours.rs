@@ -2,8 +2,7 @@
 
 use crate::arguments::{Global, SunHoursArguments, Usage};
 use crate::in_tiles::TypedCells;
-use crate::inputs::targets::TargetOutput;
-use crate::pipeline;
+use crate::outputs::targets::TargetOutput;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -43,7 +42,8 @@ pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summ
     if cells.answered(ask::Question::SunHours(question.clone()), None, &mut run)?.is_some() {
         return Ok(run.finish());
     }
-    let scene = pipeline::scene_of_places(&arguments.scene, &arguments.places, arguments.shell.shell, &mut run)?;
+    let points = arguments.places.needed_points();
+    let scene = arguments.places.scene(&arguments.scene, arguments.shell.shell, points, &mut run)?;
     let (places, source) = arguments.places.places(&scene, &mut run)?;
     let answers = run.ask(&scene, &question, &places)?;
     let sun_of_year = match &arguments.hourly_sun {

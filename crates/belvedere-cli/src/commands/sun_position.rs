@@ -1,8 +1,8 @@
 //! `belvedere sun-position`.
 
 use crate::arguments::{Global, SunPositionArguments};
-use crate::commands::horizon::write_lines;
 use crate::outputs::formats::check_output;
+use crate::outputs::text::write_lines;
 use crate::pipeline;
 use crate::run::CommandContext;
 use crate::summary::Summary;

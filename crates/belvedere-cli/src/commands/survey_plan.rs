@@ -1,8 +1,8 @@
 //! `belvedere survey-plan`.
 
 use crate::arguments::{Global, SurveyPlanArguments};
-use crate::commands::line_of_sight::pairs;
 use crate::inputs::camera_places::candidates_on_path;
+use crate::inputs::line_pairs::pairs;
 use crate::inputs::observers::{ObserverUse, observer_rows};
 use crate::outputs::formats::{check_output, extension, warn_of_geojson};
 use crate::pipeline::{self, KeepPoints};

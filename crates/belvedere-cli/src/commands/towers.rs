@@ -1,9 +1,9 @@
 //! `belvedere towers`.
 
 use crate::arguments::{Global, SkyPlaces, TowersArguments, Usage};
-use crate::commands::viewshed::Sheet;
-use crate::inputs::targets::{TargetOutput, remark_on_first};
 use crate::outputs::formats::{check_folder, check_output, extension};
+use crate::outputs::sheet::Sheet;
+use crate::outputs::targets::{TargetOutput, remark_on_first};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;

@@ -6,9 +6,9 @@ mod viewshed_observers;
 use crate::arguments::{Global, GroundChoice, MapPosition, ViewshedArguments};
 use crate::in_tiles::TypedCells;
 use crate::inputs::far_terrain::set_terrain;
-use crate::inputs::targets::HighestPoints;
 use crate::outputs::formats::{check_output, extension, warn_of_geojson};
 use crate::outputs::heights::write_heights;
+use crate::outputs::targets::HighestPoints;
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -19,7 +19,6 @@ use belvedere::figures::Picture;
 use belvedere::query::UnprovenAs;
 use belvedere::results::UNPROVEN_BAND;
 use belvedere_tiles::SurveyCells;
-pub(crate) use results::Sheet;
 use results::{CellSurface, SeenCells, SeenMap, on_points, write_masks};
 use std::path::{Path, PathBuf};
 

@@ -98,7 +98,7 @@ fn take_classes(arguments: &WindowViewsArguments, scene: &mut LoadedScene, run: 
         );
     }
     let frame = &scene.cloud.frame;
-    let cloud = run.aside(|run| crate::commands::query::points_of_file(path, &ReadOptions::new(), frame, run)).0?;
+    let cloud = run.aside(|run| crate::inputs::points::points_of_file(path, &ReadOptions::new(), frame, run)).0?;
     if !are_made_from(scene.model.balls(), &cloud.positions) {
         bail!("--classes-of {}: the balls were not built from this cloud", path.display());
     }

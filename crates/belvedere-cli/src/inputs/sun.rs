@@ -1,8 +1,8 @@
-//! Location of a scene on earth, its clock, and the typed days.
+//! Location of a scene on earth, its clock, the typed days, and the division of the sky.
 
-use crate::arguments::{ElevationChoice, NorthArguments, SunPeriod, SunPlaceArguments, Usage};
+use crate::arguments::{ElevationChoice, NorthArguments, PatchesChoice, SunPeriod, SunPlaceArguments, Usage};
 use anyhow::Result;
-use belvedere::apps::ask;
+use belvedere::apps::ask::{self, SkyParts};
 use belvedere::apps::sun::Refraction;
 
 impl SunPlaceArguments {
@@ -57,5 +57,14 @@ impl SunPeriod {
     /// Returns true if any day was typed.
     pub(crate) fn is_given(&self) -> bool {
         !self.date.is_empty() || self.from.is_some()
+    }
+}
+
+/// Returns the division of the sky.
+pub(crate) fn sky_parts(patches: Option<PatchesChoice>, directions: Option<usize>) -> SkyParts {
+    match patches {
+        Some(PatchesChoice::Tregenza) => SkyParts::Tregenza,
+        Some(PatchesChoice::Reinhart) => SkyParts::Reinhart,
+        None => directions.map_or_else(SkyParts::default, SkyParts::Even),
     }
 }

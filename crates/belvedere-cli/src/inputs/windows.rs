@@ -125,3 +125,14 @@ pub(crate) fn coordinates(frame: &Frame, places: &[[f64; 3]]) -> Vec<WindowColum
     let axis = |i: usize| of_file.iter().map(|place| place[i]).collect();
     vec![("x", axis(0), 3), ("y", axis(1), 3), ("z", axis(2), 3)]
 }
+
+/// Refuses windows that are the faces of a mesh, which are too many to list.
+pub(crate) fn refuse_mesh(path: &Path) -> Result<()> {
+    match is_mesh(path) {
+        true => {
+            Err(Usage("--windows: give a table (.csv); `belvedere comfort` takes the faces of a mesh".to_owned())
+                .into())
+        }
+        false => Ok(()),
+    }
+}

@@ -4,7 +4,7 @@ use crate::arguments::Usage;
 use crate::summary::Summary;
 use anyhow::{Context, Result, bail};
 use belvedere::crs::Crs;
-use belvedere::io::{CLOUD_EXTENSIONS, ExtraColumn, ExtraValues, Source, atomic};
+use belvedere::io::{CLOUD_EXTENSIONS, ExtraColumn, ExtraValues, Source, TextRows, atomic, read_text_rows};
 use std::path::{Path, PathBuf};
 
 /// The extension of a path in lower case, empty where it has none.
@@ -95,4 +95,10 @@ pub(crate) fn check_folder(path: &Path) -> Result<()> {
 pub(crate) fn is_written_back(inputs: &[PathBuf], folder: &Path) -> bool {
     let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
     inputs.iter().any(|input| same(input, folder) || same(input, &folder.join("coords.npy")))
+}
+
+/// The rows of a table of points for an output that is a table too.
+pub(crate) fn text_rows_for(path: &Path, output: &Path) -> Result<Option<TextRows>> {
+    let is_table = |path: &Path| ["csv", "txt", "xyz"].contains(&extension(path).as_str());
+    if is_table(path) && is_table(output) { Ok(Some(read_text_rows(path)?)) } else { Ok(None) }
 }

@@ -1,6 +1,6 @@
 //! Flags of what is planned: a scene as it will be.
 
-use super::LoadedScene;
+use super::loaded_scene::LoadedScene;
 use crate::arguments::{AreaChoice, PlanArguments};
 use crate::run::CommandContext;
 use crate::summary::Summary;

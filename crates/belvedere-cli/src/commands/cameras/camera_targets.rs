@@ -1,8 +1,8 @@
 //! Targets of cameras and private places, from flags and files to a question.
 
 use crate::arguments::{CameraTargetsArguments, Usage};
-use crate::commands::query::points_of_file;
 use crate::inputs::observers::{ObserverUse, observer_rows};
+use crate::inputs::points::points_of_file;
 use crate::outputs::formats::extension;
 use crate::pipeline::mesh_in;
 use crate::run::CommandContext;

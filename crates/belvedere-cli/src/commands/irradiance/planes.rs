@@ -2,9 +2,9 @@
 
 use super::hours;
 use crate::arguments::{IrradianceArguments, PvArguments};
-use crate::commands::horizon::write_lines;
 use crate::outputs::formats::{check_output, check_parent, extension};
 use crate::outputs::result_columns::write_columns;
+use crate::outputs::text::write_lines;
 use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
