@@ -28,6 +28,7 @@ use belvedere::vector::to_f32;
 use belvedere::{Bounds, Error, PointCloud};
 use std::borrow::Cow;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Reads the cloud and reports on it.
 pub(crate) fn read(input: &CloudInput, run: &mut CommandContext) -> Result<PointCloud> {
@@ -170,15 +171,13 @@ fn present_scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandCo
         }
         run.summary.add("balls_read", parts.balls.len());
         let model = SceneModel::from_parts(parts)?;
-        let cloud = PointCloud::in_frame(model.frame().clone());
-        return Ok(LoadedScene { model, cloud, left_out: ReadReport::default(), profile, ground_store: None });
+        return Ok(LoadedScene::without_points(model, profile));
     }
     let balls = parameters.balls(MethodChoice::Carved)?;
     if points == KeepPoints::LetGo
         && let Some(model) = kept_scene(&arguments.input, &parameters, balls, run)?
     {
-        let cloud = PointCloud::in_frame(model.frame().clone());
-        return Ok(LoadedScene { model, cloud, left_out: ReadReport::default(), profile, ground_store: None });
+        return Ok(LoadedScene::without_points(model, profile));
     }
     let (read, notes) = run.aside(|run| read_counted(&arguments.input, run));
     let notes = notes.into_entries();
@@ -199,7 +198,7 @@ fn present_scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandCo
     let kept = run.cache.as_ref().zip(built.cloud.as_ref()).map(|(cache, contents)| cache.ground_of(contents));
     // the ground that is kept is that of lines fitted to each other
     let ground_store = kept.filter(|_| !parameters.cleaning.keep_strips);
-    Ok(LoadedScene { model: reported(built, run), cloud, left_out, profile, ground_store })
+    Ok(LoadedScene { model: reported(built, run), cloud: Arc::new(cloud), left_out, profile, ground_store })
 }
 
 /// The model of a cloud that was read from `input`: found in the cache, or built and kept there.

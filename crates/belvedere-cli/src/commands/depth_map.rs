@@ -31,9 +31,9 @@ pub(crate) fn run(arguments: &DepthMapArguments, global: &Global) -> Result<Summ
     let mut run = CommandContext::new(global);
     let mut scene = pipeline::scene(&arguments.scene, KeepPoints::LetGo, &mut run)?;
     scene.profile = arguments.shape.profile.map_or(scene.profile, Profile::from);
+    let scene = scene.into_question_scene(None, None, &run)?;
     let from = arguments.view.view_from(&scene, &mut run.summary)?;
     let question = ask::DepthMapQuestion { from: Some(from), ball_ids: arguments.balls_id.is_some() };
-    let scene = scene.into_question_scene(None, None, &run)?;
     let answers = run.ask(&scene, &question, &Places::Scene)?;
     let map = &answers.found;
     let place = match &from {

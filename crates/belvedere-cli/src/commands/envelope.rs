@@ -16,12 +16,13 @@ use belvedere::apps::solar_envelope::EnvelopeParams;
 use belvedere::apps::targets::Measure;
 use belvedere::figures::write_png;
 use belvedere::ground::highest_points;
-use belvedere::io::{FeatureShape, MetadataTag, ReadReport, Source, is_ball_file, is_mesh, write_mesh};
+use belvedere::io::{FeatureShape, MetadataTag, Source, is_ball_file, is_mesh, write_mesh};
 use belvedere::model::{ModelParts, SceneModel};
 use belvedere::results::{georeference, measure_map};
 use belvedere::vector::to_f32;
 use std::io::Read;
 use std::path::Path;
+use std::sync::Arc;
 
 pub(crate) fn run(arguments: &EnvelopeArguments, global: &Global) -> Result<Summary> {
     check_outputs(arguments)?;
@@ -104,13 +105,8 @@ fn scene(arguments: &EnvelopeArguments, run: &mut CommandContext) -> Result<Load
     let bounds = pipeline::bounds_of(&cloud)?;
     let parts = ModelParts { frame: cloud.frame.clone(), bounds, ..ModelParts::default() };
     let profile = arguments.scene.balls.parameters()?.profile();
-    Ok(LoadedScene {
-        model: SceneModel::from_parts(parts)?,
-        cloud,
-        left_out: ReadReport::default(),
-        profile,
-        ground_store: None,
-    })
+    let bare = LoadedScene::without_points(SceneModel::from_parts(parts)?, profile);
+    Ok(LoadedScene { cloud: Arc::new(cloud), ..bare })
 }
 
 /// Rings of the parcel, local metres.

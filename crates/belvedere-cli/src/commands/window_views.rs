@@ -3,6 +3,7 @@
 mod results;
 
 use crate::arguments::{Global, Usage, WindowViewsArguments};
+use crate::inputs::points::points_of_file;
 use crate::inputs::windows::{FaceChoice, WindowFile};
 use crate::outputs::formats::{check_output, extension, warn_of_geojson};
 use crate::pipeline::{self, KeepPoints, LoadedScene};
@@ -15,6 +16,7 @@ use belvedere::apps::window_views::{SeenKind, are_made_from};
 use belvedere::io::ReadOptions;
 use belvedere::query::UnprovenAs;
 use results::WindowOutput;
+use std::sync::Arc;
 
 pub(crate) fn run(arguments: &WindowViewsArguments, global: &Global) -> Result<Summary> {
     check(arguments)?;
@@ -98,10 +100,10 @@ fn take_classes(arguments: &WindowViewsArguments, scene: &mut LoadedScene, run: 
         );
     }
     let frame = &scene.cloud.frame;
-    let cloud = run.aside(|run| crate::inputs::points::points_of_file(path, &ReadOptions::new(), frame, run)).0?;
+    let cloud = run.aside(|run| points_of_file(path, &ReadOptions::new(), frame, run)).0?;
     if !are_made_from(scene.model.balls(), &cloud.positions) {
         bail!("--classes-of {}: the balls were not built from this cloud", path.display());
     }
-    scene.cloud = cloud;
+    scene.cloud = Arc::new(cloud);
     Ok(())
 }

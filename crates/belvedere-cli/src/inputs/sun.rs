@@ -5,6 +5,13 @@ use anyhow::Result;
 use belvedere::apps::ask::{self, SkyParts};
 use belvedere::apps::sun::Refraction;
 
+impl NorthArguments {
+    /// Returns the typed north.
+    pub(crate) fn choice(&self) -> ask::North {
+        if self.grid_north { ask::North::Grid } else { ask::North::True }
+    }
+}
+
 impl SunPlaceArguments {
     /// Returns the typed place, with the north of azimuths.
     pub(crate) fn place(&self, north: &NorthArguments) -> Result<ask::SunPlace> {

@@ -1,29 +1,17 @@
 //! Views on a scene, from flags.
 
 use crate::arguments::{SizeChoice, Usage, ViewChoice};
-use crate::pipeline::LoadedScene;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, ViewFrom};
+use belvedere::apps::ask::{self, Scene, ViewFrom};
 use belvedere::view::{CAMERA_FOV, CAMERA_SIZE, PANORAMA_WIDTH, View, default_pixel_size, to_sun};
 
 impl ViewChoice {
-    /// The views on a scene, reported: one, or the two halves of a panorama.
-    pub(crate) fn views(&self, scene: &LoadedScene, summary: &mut Summary) -> Result<Vec<View>> {
-        let from = self.view_from(scene, summary)?;
-        summary.remarks(from.remark(scene.model.coverage().as_ref()));
-        summary.add("view", Summary::of(&from.section()));
-        match from {
-            ViewFrom::View(view) => Ok(vec![view]),
-            ViewFrom::Panorama { eye, width } => Ok(View::panorama(eye, width)?.to_vec()),
-        }
-    }
-
     /// Returns the position and projection of a picture of a scene.
-    pub(crate) fn view_from(&self, scene: &LoadedScene, summary: &mut Summary) -> Result<ViewFrom> {
+    pub(crate) fn view_from(&self, scene: &Scene, summary: &mut Summary) -> Result<ViewFrom> {
         match self.kind.panorama {
             Some(eye) => {
-                let (eye, width) = (scene.local_from_file(eye.0), self.panorama_width()?);
+                let (eye, width) = (scene.frame().local_from_file(eye.0), self.panorama_width()?);
                 Ok(ViewFrom::Panorama { eye, width })
             }
             None => Ok(ViewFrom::View(self.view(scene, summary)?)),
@@ -54,7 +42,7 @@ impl ViewChoice {
     }
 
     /// Width of a panorama in pixels.
-    pub(crate) fn panorama_width(&self) -> Result<usize> {
+    fn panorama_width(&self) -> Result<usize> {
         match self.size {
             None => Ok(PANORAMA_WIDTH),
             Some(SizeChoice::Width(width)) => Ok(width),
@@ -80,31 +68,31 @@ impl ViewChoice {
         Ok(View::perspective(eye, look_at, fov, size, near, far)?)
     }
 
-    fn view(&self, scene: &LoadedScene, summary: &mut Summary) -> Result<View> {
-        let (low, high) = scene.model.bounds().corners();
+    fn view(&self, scene: &Scene, summary: &mut Summary) -> Result<View> {
+        let (low, high) = scene.model().bounds().corners();
         let pixel = self.pixel.unwrap_or_else(|| default_pixel_size(low, high));
         let view = if let Some(sun) = &self.kind.sun {
             let [azimuth, elevation] = sun.0.map(f64::to_radians);
-            let north = self.north.of_scene(scene);
-            north.report(summary);
-            let site = ask::SunPlace::default().site_of(scene.model.frame(), &scene.model.bounds(), None).ok();
+            let north = self.north.choice().of_scene(scene);
+            summary.add_report(&north.report()).remarks(north.remark());
+            let site = ask::SunPlace::default().site_of(scene.frame(), &scene.model().bounds(), None).ok();
             summary.remarks(ask::remark_on_sun(site.map(|(site, _)| site), sun.0));
             let sun = to_sun(azimuth - north.of_grid, elevation);
             View::parallel(sun.map(|v| -v), low, high, pixel)?
         } else if let Some(direction) = &self.kind.direction {
             View::parallel(direction.0, low, high, pixel)?
         } else if let Some(viewport) = &self.kind.viewport {
-            let scale = scene.model.frame().crs.metres_per_unit_xyz();
+            let scale = scene.frame().crs.metres_per_unit_xyz();
             let metres = |v: [f64; 3]| std::array::from_fn(|i| v[i] * scale[i]);
             let view = View::from_viewport(
-                scene.local_from_file(viewport.p0),
+                scene.frame().local_from_file(viewport.p0),
                 metres(viewport.vx),
                 metres(viewport.vy),
                 viewport.pixels_per_unit / scale[0],
             );
             view?
         } else if let Some(eye) = &self.kind.eye {
-            self.camera(eye.0, |place| scene.local_from_file(place))?
+            self.camera(eye.0, |place| scene.frame().local_from_file(place))?
         } else {
             return Err(Usage(
                 "a view is missing: give --viewport, --sun, --direction, --eye or --panorama".to_owned(),

@@ -18,7 +18,7 @@ use std::sync::Arc;
 pub(crate) struct LoadedScene {
     pub(crate) model: SceneModel,
     /// In the frame of the model; without points where it was read from a file or its points are not needed.
-    pub(crate) cloud: PointCloud,
+    pub(crate) cloud: Arc<PointCloud>,
     /// Rows of the files that reading left out.
     pub(crate) left_out: ReadReport,
     /// Shape that represents a ball.
@@ -28,9 +28,10 @@ pub(crate) struct LoadedScene {
 }
 
 impl LoadedScene {
-    /// Local metres of a place in the coordinates and unit of the file.
-    pub(crate) fn local_from_file(&self, place: [f64; 3]) -> [f64; 3] {
-        self.model.frame().local_from_file(place)
+    /// A model that comes without the points that it was made from.
+    pub(crate) fn without_points(model: SceneModel, profile: Profile) -> Self {
+        let cloud = Arc::new(PointCloud::in_frame(model.frame().clone()));
+        Self { model, cloud, left_out: ReadReport::default(), profile, ground_store: None }
     }
 
     /// The scene that questions are put to, with the ground and the shell of the flags.
@@ -46,8 +47,7 @@ impl LoadedScene {
         let usual = self.model.rule();
         let rule = BlockRule { profile: self.profile, shell: shell.map_or(usual.shell, f64::from), ..usual };
         let frame = self.cloud.frame.clone();
-        let scene =
-            ask::Scene::new(self.model, Arc::new(self.cloud)).with_rule(rule).with_ground_store(self.ground_store);
+        let scene = ask::Scene::new(self.model, self.cloud).with_rule(rule).with_ground_store(self.ground_store);
         let Some(GroundChoice::Cloud(path)) = ground else { return Ok(scene) };
         let (cloud, _) = run.stage("reading ground", 0, |control| {
             read_cloud(std::slice::from_ref(path), &ReadOptions::default(), control)
