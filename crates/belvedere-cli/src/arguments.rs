@@ -86,6 +86,11 @@ impl std::fmt::Display for Usage {
 
 impl std::error::Error for Usage {}
 
+/// Refuses what was typed.
+pub(crate) fn refuse<T>(what: impl Into<String>) -> anyhow::Result<T> {
+    Err(Usage(what.into()).into())
+}
+
 /// Visibility analysis directly on point clouds
 #[derive(Parser)]
 #[command(

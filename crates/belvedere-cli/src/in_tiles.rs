@@ -3,7 +3,7 @@
 
 use crate::arguments::{
     FarTerrainArguments, GroundChoice, MemoryArgument, PlanArguments, SceneInput, SkyOutputs, SkyPlaces,
-    ThroughTreesArguments, UpChoice, Usage,
+    ThroughTreesArguments, UpChoice, Usage, refuse,
 };
 use crate::memory;
 use crate::outputs::formats::extension;
@@ -104,11 +104,10 @@ impl<'a> TypedCells<'a> {
             return match self.memory.memory {
                 // one model is tried, as if there were no tiles
                 None => Ok(None),
-                Some(_) => Err(Usage(format!(
+                Some(_) => refuse(format!(
                     "{what} is not there in tiles, and {}; leave it out, or allow more memory",
                     large.in_words()
-                ))
-                .into()),
+                )),
             };
         }
         let options = input.read_options();

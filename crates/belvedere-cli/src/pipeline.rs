@@ -10,7 +10,7 @@ pub(crate) use plan::{areas, mesh_in, planned};
 pub(crate) use scene_in_reach::scene_in_reach;
 
 use crate::arguments::{
-    CloudInput, MethodChoice, PlanArguments, ProfileChoice, SceneInput, UnprovenChoice, UpChoice, Usage,
+    CloudInput, MethodChoice, PlanArguments, ProfileChoice, SceneInput, UnprovenChoice, UpChoice, refuse,
 };
 use crate::device::with_device;
 use crate::run::CommandContext;
@@ -63,7 +63,7 @@ pub(crate) fn refuse_part(input: &CloudInput) -> Result<()> {
                 "{flag}: this result has a row for each row of the file, of which only a part is read; leave it out, \
                  or give a format with coordinates"
             );
-            Err(Usage(what).into())
+            refuse(what)
         }
     }
 }
@@ -261,15 +261,14 @@ fn refuse_flags_of_clouds(arguments: &SceneInput, parameters: &BallParameters, p
     match given.into_iter().find(|(_, given)| *given) {
         Some(("--crs", _)) => {
             let path = path.display();
-            Err(Usage(format!(
+            refuse(format!(
                 "--crs is for building balls from a cloud, but {path} is a ball file: give --location LAT,LON where the sun needs a place, \
                  or make the ball file again with --crs"
             ))
-            .into())
         }
         Some((flag, _)) => {
             let path = path.display();
-            Err(Usage(format!("{flag} is for building balls from a cloud, but {path} is a ball file")).into())
+            refuse(format!("{flag} is for building balls from a cloud, but {path} is a ball file"))
         }
         None => parameters.refuse_file(path),
     }

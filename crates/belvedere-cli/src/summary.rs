@@ -57,6 +57,12 @@ impl Summary {
         self
     }
 
+    /// Adds the names of files.
+    pub(crate) fn add_paths(&mut self, name: &str, paths: impl IntoIterator<Item = impl AsRef<Path>>) -> &mut Self {
+        let names = paths.into_iter().map(|path| path.as_ref().display().to_string());
+        self.add(name, names.collect::<Vec<_>>())
+    }
+
     /// The remarks alone.
     pub(crate) fn only_remarks(self) -> Self {
         let entries = self.entries.into_iter().filter(|(name, _)| name == REMARKS).collect();

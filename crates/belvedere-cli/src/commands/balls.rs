@@ -1,6 +1,6 @@
 //! `belvedere balls`.
 
-use crate::arguments::{BallsArguments, CloudInput, Global, MethodChoice, SideChoice, Usage};
+use crate::arguments::{BallsArguments, CloudInput, Global, MethodChoice, SideChoice, refuse};
 use crate::outputs::balls::with_program;
 use crate::outputs::formats::{check_output, check_parent, extension, is_folder, is_written_back};
 use crate::pipeline::{self, params};
@@ -27,9 +27,9 @@ pub(crate) fn run(arguments: &BallsArguments, global: &Global) -> Result<Summary
     let balls = parameters.balls(method)?;
     let is_carved = matches!(balls, BallParams::Carved(_));
     if is_carved && (is_folder || arguments.side == SideChoice::Exterior) {
-        let what =
-            "--method carved builds interior balls in a ball file; a folder and --side exterior need tau or angles";
-        return Err(Usage(what.to_owned()).into());
+        return refuse(
+            "--method carved builds interior balls in a ball file; a folder and --side exterior need tau or angles",
+        );
     }
     let mut run = CommandContext::new(global);
     let cloud = if is_folder {
@@ -73,8 +73,7 @@ fn check(arguments: &BallsArguments, is_folder: bool) -> Result<()> {
         return Ok(());
     }
     if arguments.nan || arguments.simplify.is_some() {
-        let what = "--nan and --simplify write into a folder: give -o a name without extension";
-        return Err(Usage(what.to_owned()).into());
+        return refuse("--nan and --simplify write into a folder: give -o a name without extension");
     }
     check_output("-o", &arguments.output, &["npz", "ply", "laz", "las"])?;
     Ok(())

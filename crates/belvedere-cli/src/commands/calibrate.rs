@@ -1,6 +1,6 @@
 //! `belvedere calibrate`.
 
-use crate::arguments::{CalibrateArguments, CloudInput, Global, MethodChoice, Usage};
+use crate::arguments::{CalibrateArguments, CloudInput, Global, MethodChoice, refuse};
 use crate::outputs::balls::with_program;
 use crate::outputs::formats::{check_output, extension};
 use crate::outputs::text::write_text;
@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &CalibrateArguments, global: &Global) -> Result<Sum
         let parts = with_program(ask::with_reliability(built?.into_parts(), &answers.found), input);
         run.stage("writing balls", 0, |_| scenes.iter().try_for_each(|output| write_balls(*output, &parts)))?;
     }
-    run.summary.add("written", output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    run.summary.add_paths("written", output);
     Ok(run.finish())
 }
 
@@ -49,8 +49,7 @@ fn refuse_balls(input: &CloudInput) -> Result<()> {
     match input.clouds.iter().find(|path| is_file(path) && is_ball_file(*path).unwrap_or(false)) {
         Some(path) => {
             let path = path.display();
-            Err(Usage(format!("{path} is a ball file, which has no points: give the cloud that it was made from"))
-                .into())
+            refuse(format!("{path} is a ball file, which has no points: give the cloud that it was made from"))
         }
         None => Ok(()),
     }

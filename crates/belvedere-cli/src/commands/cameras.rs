@@ -3,7 +3,7 @@
 mod camera_targets;
 mod results;
 
-use crate::arguments::{CamerasArguments, Global, Usage};
+use crate::arguments::{CamerasArguments, Global, refuse};
 use crate::inputs::camera_places::{self, candidates_on_path};
 use crate::inputs::observers::ObserverUse;
 use crate::outputs::formats::{check_output, extension, warn_of_geojson};
@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &CamerasArguments, global: &Global) -> Result<Summa
     if let Some(output) = &arguments.footprints {
         run.stage("writing", 0, |_| shown.write_footprints(output))?;
     }
-    run.summary.add("written", written.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    run.summary.add_paths("written", &written);
     Ok(run.finish())
 }
 
@@ -94,7 +94,7 @@ fn check(arguments: &CamerasArguments) -> Result<()> {
         let is_map = ["tif", "tiff", "png"].contains(&extension(output).as_str());
         if is_map && !are_cells {
             let output = output.display();
-            return Err(Usage(format!("{output}: rasters and maps need cells as targets; use .csv or .geojson")).into());
+            return refuse(format!("{output}: rasters and maps need cells as targets; use .csv or .geojson"));
         }
     }
     if let Some(output) = &arguments.curve {
@@ -103,7 +103,7 @@ fn check(arguments: &CamerasArguments) -> Result<()> {
     if let Some(output) = &arguments.footprints {
         check_output("--footprints", output, &["geojson", "gpkg"])?;
         if !are_cells {
-            return Err(Usage("--footprints needs cells as targets".to_owned()).into());
+            return refuse("--footprints needs cells as targets");
         }
     }
     camera_targets::check(&arguments.targets, are_cells)

@@ -2,7 +2,9 @@
 
 mod questions;
 
-use crate::arguments::{City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, Global, PlanArguments, Usage};
+use crate::arguments::{
+    City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, Global, PlanArguments, Usage, refuse,
+};
 use crate::in_tiles::{PROGRAM, planned, refuse_failed};
 use crate::outputs::formats::{check_folder, check_output};
 use crate::run::CommandContext;
@@ -113,7 +115,7 @@ fn merge_tiles(arguments: &CityMerge, global: &Global) -> Result<Summary> {
     let names = || plan.questions.iter().map(TileQuestion::name).collect::<Vec<_>>().join(", ");
     let question = match (&arguments.result, &plan.questions[..]) {
         (None, [only]) => only,
-        (None, _) => return Err(Usage(format!("--result is missing: give one of {}", names())).into()),
+        (None, _) => return refuse(format!("--result is missing: give one of {}", names())),
         (Some(name), questions) => questions
             .iter()
             .find(|question| question.name() == name)

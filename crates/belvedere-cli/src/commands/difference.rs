@@ -82,7 +82,7 @@ pub(crate) fn run(arguments: &DifferenceArguments, global: &Global) -> Result<Su
         )
         .headline("mean <difference.mean_before> before, <difference.mean_after> after")
         .headline("largest gain <difference.largest_gain>, largest loss <difference.largest_loss>");
-    run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    run.summary.add_paths("written", &arguments.output);
     Ok(run.finish())
 }
 

@@ -1,6 +1,6 @@
 //! `belvedere envelope`.
 
-use crate::arguments::{CornersArgument, EnvelopeArguments, Global, Usage};
+use crate::arguments::{CornersArgument, EnvelopeArguments, Global, refuse};
 use crate::inputs::map_shapes::{NamedShape, TypedAre, shapes, wrong_shape};
 use crate::outputs::formats::{check_output, extension};
 use crate::outputs::heights::write_heights;
@@ -48,8 +48,7 @@ pub(crate) fn run(arguments: &EnvelopeArguments, global: &Global) -> Result<Summ
             write_heights(output, &tops, (&envelope.grid, frame), what, &run.tags)
         })?;
     }
-    let written = arguments.output.iter().chain(&arguments.tops).map(|path| path.display().to_string());
-    run.summary.add("written", written.collect::<Vec<_>>());
+    run.summary.add_paths("written", arguments.output.iter().chain(&arguments.tops));
     Ok(run.finish())
 }
 
@@ -66,12 +65,10 @@ fn check_outputs(arguments: &EnvelopeArguments) -> Result<()> {
         check_output("--tops", output, &["tif", "tiff", "npy"])?;
     }
     if arguments.sun.is_empty() && !arguments.when.is_given() {
-        return Err(
-            Usage("protected suns are missing: give --date DAY, --from and --to, or --sun AZ,EL".to_owned()).into()
-        );
+        return refuse("protected suns are missing: give --date DAY, --from and --to, or --sun AZ,EL");
     }
     if !arguments.credit_shade && arguments.shell.shell.is_some() {
-        return Err(Usage("--shell needs --credit-shade".to_owned()).into());
+        return refuse("--shell needs --credit-shade");
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 mod hours;
 mod planes;
 
-use crate::arguments::{Global, IrradianceArguments, SkyOutputs, SkyPlaces, Usage};
+use crate::arguments::{Global, IrradianceArguments, SkyOutputs, SkyPlaces, refuse};
 use crate::in_tiles::TypedCells;
 use crate::inputs::radiation;
 use crate::outputs::formats::warn_of_geojson;
@@ -33,7 +33,7 @@ fn refuse_flags_of_places(arguments: &IrradianceArguments, outputs: &SkyOutputs)
         ("--facing", facing.is_some()),
     ];
     match given.into_iter().find(|(_, is_given)| *is_given) {
-        Some((flag, _)) => Err(Usage(format!("{flag} needs -o")).into()),
+        Some((flag, _)) => refuse(format!("{flag} needs -o")),
         None => Ok(()),
     }
 }

@@ -2,7 +2,7 @@
 
 mod results;
 
-use crate::arguments::{Global, LandmarkArguments, Usage};
+use crate::arguments::{Global, LandmarkArguments, refuse};
 use crate::inputs::landmark_shape;
 use crate::inputs::observers::{ObserverUse, observer_rows, rows_as_given};
 use crate::outputs::formats::{check_output, extension};
@@ -70,10 +70,7 @@ fn check_outputs(arguments: &LandmarkArguments) -> Result<()> {
         check_output("-o", output, &["csv", "tif", "tiff", "png"])?;
         if arguments.observers.is_some() && extension(output) != "csv" {
             let output = output.display();
-            return Err(Usage(format!(
-                "{output}: rasters and maps need a grid of observers; with --observers use .csv"
-            ))
-            .into());
+            return refuse(format!("{output}: rasters and maps need a grid of observers; with --observers use .csv"));
         }
     }
     Ok(())

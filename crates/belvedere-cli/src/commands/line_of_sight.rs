@@ -1,6 +1,6 @@
 //! `belvedere line-of-sight`.
 
-use crate::arguments::{Global, LineOfSightArguments, MapPosition, Usage};
+use crate::arguments::{Global, LineOfSightArguments, MapPosition, refuse};
 use crate::inputs::far_terrain::set_terrain;
 use crate::inputs::line_pairs::{ENDS, pairs};
 use crate::inputs::observers::{ObserverUse, observer_rows};
@@ -50,11 +50,10 @@ pub(crate) fn run(arguments: &LineOfSightArguments, global: &Global) -> Result<S
     for output in &arguments.outputs {
         run.stage("writing", 0, |_| write(output, found, &scene, &rows))?;
     }
-    let written: Vec<String> = arguments.outputs.iter().map(|path| path.display().to_string()).collect();
-    if let [one] = &written[..] {
-        run.summary.add("written", one.clone());
-    } else if !written.is_empty() {
-        run.summary.add("written", written);
+    match &arguments.outputs[..] {
+        [] => {}
+        [one] => drop(run.summary.add("written", one.display().to_string())),
+        several => drop(run.summary.add_paths("written", several)),
     }
     warn_of_geojson(&arguments.outputs, &scene.frame().crs, &mut run.summary);
     if let (Some(output), Some(profile)) = (&arguments.profile_out, &found.profile) {
@@ -79,14 +78,15 @@ fn question(arguments: &LineOfSightArguments) -> Result<LinesOfSightQuestion> {
 
 fn check(arguments: &LineOfSightArguments, question: &LinesOfSightQuestion) -> Result<()> {
     if arguments.max_distance.is_some() && arguments.among.is_none() {
-        return Err(Usage("--max-distance limits the pairs of --among, which is missing".to_owned()).into());
+        return refuse("--max-distance limits the pairs of --among, which is missing");
     }
     for output in &arguments.outputs {
         check_output("-o", output, &["csv", "geojson", "gpkg", "graphml"])?;
         if extension(output) == "graphml" && arguments.among.is_none() {
-            let what =
-                format!("-o {}: a network is one of places that may see each other: give --among", output.display());
-            return Err(Usage(what).into());
+            return refuse(format!(
+                "-o {}: a network is one of places that may see each other: give --among",
+                output.display()
+            ));
         }
     }
     if let Some(profile) = &arguments.profile_out {

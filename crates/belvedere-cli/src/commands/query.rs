@@ -1,6 +1,6 @@
 //! `belvedere query`.
 
-use crate::arguments::{Global, Query, Usage};
+use crate::arguments::{Global, Query, refuse};
 use crate::inputs::points::points_of_file;
 use crate::outputs::formats::{check_output, extension, text_rows_for};
 use crate::pipeline::{self, KeepPoints, mesh_in};
@@ -90,7 +90,7 @@ fn check(arguments: &Query, is_mesh: bool) -> Result<Profile> {
         (arguments.view.is_central() && profile != Profile::Sphere)
             .then(|| "--ball-profile: the paper's cone is for parallel views only".to_owned())
     };
-    wrong.map_or(Ok(profile), |what| Err(Usage(what).into()))
+    wrong.map_or(Ok(profile), refuse)
 }
 
 /// Writes points with their answers, or the answers alone.
@@ -149,7 +149,7 @@ fn targets(
         return points_of_file(path, &whole.read_options().with_up(UpAxis::Z), frame, run).map(Arc::new);
     }
     if own.is_empty() {
-        return Err(Usage("--self needs a cloud; a ball file has no points".to_owned()).into());
+        return refuse("--self needs a cloud; a ball file has no points");
     }
     Ok(own)
 }

@@ -1,6 +1,6 @@
 //! `belvedere shadow`.
 
-use crate::arguments::{Global, ShadowArguments, Usage};
+use crate::arguments::{Global, ShadowArguments, refuse};
 use crate::in_tiles::TypedCells;
 use crate::outputs::fading::{UNPROVEN_COLOR, fade, faded};
 use crate::outputs::formats::{check_output, extension, warn_of_geojson};
@@ -164,8 +164,7 @@ fn question(arguments: &ShadowArguments) -> Result<ask::ShadowQuestion> {
 fn check(arguments: &ShadowArguments, question: &ask::ShadowQuestion) -> Result<()> {
     arguments.places.check(&arguments.outputs)?;
     if matches!(&question.suns, Suns::Days(days) if days.is_empty()) {
-        let what = "suns are missing: give --time TIME, --date DAY, --from and --to, or --sun AZ,EL";
-        return Err(Usage(what.to_owned()).into());
+        return refuse("suns are missing: give --time TIME, --date DAY, --from and --to, or --sun AZ,EL");
     }
     ask::Ask::check(question)?;
     if let Some(film) = &arguments.film {
@@ -175,11 +174,11 @@ fn check(arguments: &ShadowArguments, question: &ask::ShadowQuestion) -> Result<
         check_output("--outlines", output, &["geojson", "gpkg"])?;
     }
     if arguments.casters && arguments.places.places.targets.as_deref().is_some_and(is_mesh) {
-        return Err(Usage("--casters applies only to cells and points".to_owned()).into());
+        return refuse("--casters applies only to cells and points");
     }
     let needs_grid = arguments.film.is_some() || arguments.frames.is_some() || arguments.outlines.is_some();
     if needs_grid && !arguments.places.is_grid() {
-        return Err(Usage("--film, --frames and --outlines apply only to a grid".to_owned()).into());
+        return refuse("--film, --frames and --outlines apply only to a grid");
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! `belvedere sun-calendar`.
 
-use crate::arguments::{Global, MapPosition, SunCalendarArguments, Usage};
+use crate::arguments::{Global, MapPosition, SunCalendarArguments, refuse};
 use crate::inputs::typed_places::on_map;
 use crate::inputs::windows::{FaceChoice, WindowFile, refuse_mesh};
 use crate::outputs::formats::check_output;
@@ -18,7 +18,7 @@ pub(crate) fn run(arguments: &SunCalendarArguments, global: &Global) -> Result<S
     let typed = &arguments.places.at;
     MapPosition::refuse_twice("--at", typed)?;
     if arguments.rule.is_none() && !arguments.when.is_given() {
-        return Err(Usage("days are missing: give --date DAY, --from and --to, or --rule RULE".to_owned()).into());
+        return refuse("days are missing: give --date DAY, --from and --to, or --rule RULE");
     }
     let mut question = ask::SunCalendarQuestion {
         days: arguments.when.days(),
@@ -53,7 +53,6 @@ pub(crate) fn run(arguments: &SunCalendarArguments, global: &Global) -> Result<S
     for output in &arguments.output {
         run.stage("writing", 0, |_| write_calendar(output, &answers.found, &names))?;
     }
-    let written = arguments.output.iter().map(|path| path.display().to_string());
-    run.summary.add("written", written.collect::<Vec<_>>());
+    run.summary.add_paths("written", &arguments.output);
     Ok(run.finish())
 }

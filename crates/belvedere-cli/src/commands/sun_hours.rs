@@ -1,6 +1,6 @@
 //! `belvedere sun-hours`.
 
-use crate::arguments::{Global, SunHoursArguments, Usage};
+use crate::arguments::{Global, SunHoursArguments, refuse};
 use crate::in_tiles::TypedCells;
 use crate::outputs::targets::TargetOutput;
 use crate::run::CommandContext;
@@ -26,7 +26,7 @@ pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summ
     question.check()?;
     if let Some(folder) = &arguments.hourly_sun {
         if !arguments.places.is_grid() {
-            return Err(Usage("--hourly-sun applies only to a grid".to_owned()).into());
+            return refuse("--hourly-sun applies only to a grid");
         }
         let others = arguments.outputs.output.iter().chain(&arguments.places.edge_mask);
         check_months(folder, &others.map(PathBuf::as_path).collect::<Vec<_>>())?;
@@ -104,9 +104,7 @@ fn check_months(folder: &Path, others: &[&Path]) -> Result<()> {
             && (1..=12).any(|month| path.file_name() == month_file(folder, month).file_name())
     };
     match others.iter().find(is_month) {
-        Some(path) => {
-            Err(Usage(format!("{}: a file of --hourly-sun has this name; choose another", path.display())).into())
-        }
+        Some(path) => refuse(format!("{}: a file of --hourly-sun has this name; choose another", path.display())),
         None => Ok(()),
     }
 }

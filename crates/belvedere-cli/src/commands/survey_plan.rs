@@ -57,8 +57,7 @@ pub(crate) fn run(arguments: &SurveyPlanArguments, global: &Global) -> Result<Su
     for output in &arguments.output {
         run.stage("writing", 0, |_| write(output, &answers.found, &scene))?;
     }
-    let written: Vec<String> = arguments.output.iter().map(|path| path.display().to_string()).collect();
-    run.summary.add("written", written);
+    run.summary.add_paths("written", &arguments.output);
     Ok(run.finish())
 }
 

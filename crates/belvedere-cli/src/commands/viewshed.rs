@@ -54,7 +54,7 @@ pub(crate) fn run(arguments: &ViewshedArguments, global: &Global) -> Result<Summ
     write(arguments, &answers.found, &scene, &mut run)?;
     let written =
         arguments.output.iter().chain(&arguments.far_output).chain(&arguments.heights).chain(&arguments.masks);
-    run.summary.add("written", written.map(|path| path.display().to_string()).collect::<Vec<_>>());
+    run.summary.add_paths("written", written);
     Ok(run.finish())
 }
 

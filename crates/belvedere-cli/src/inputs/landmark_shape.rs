@@ -1,6 +1,6 @@
 //! The landmark: a mesh, or points of the cloud.
 
-use crate::arguments::{LandmarkShapeArguments, Usage};
+use crate::arguments::{LandmarkShapeArguments, refuse};
 use crate::outputs::formats::extension;
 use crate::pipeline::{LoadedScene, mesh_in};
 use crate::run::CommandContext;
@@ -28,10 +28,7 @@ pub(crate) fn shape(
         }
         (None, Some(class), _) => Ok(ask::LandmarkShape::Class(class)),
         (None, None, Some(path)) => Ok(ask::LandmarkShape::Inside { polygons: polygons_of(path, frame)? }),
-        (None, None, None) => {
-            let what = "the landmark is missing: give --targets, --target-class or --target-polygon";
-            Err(Usage(what.to_owned()).into())
-        }
+        (None, None, None) => refuse("the landmark is missing: give --targets, --target-class or --target-polygon"),
     }
 }
 
@@ -95,11 +92,7 @@ fn polygons_of(path: &Path, frame: &Frame) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
             vec![vec![ring]]
         }
         _ => {
-            return Err(Usage(format!(
-                "--target-polygon {}: use .geojson .json .gpkg .shp .csv or .txt",
-                path.display()
-            ))
-            .into());
+            return refuse(format!("--target-polygon {}: use .geojson .json .gpkg .shp .csv or .txt", path.display()));
         }
     };
     if polygons.is_empty() {

@@ -1,6 +1,6 @@
 //! Ends of lines of sight: typed, random, or from a file.
 
-use crate::arguments::{LinesArguments, MapPosition, Usage};
+use crate::arguments::{LinesArguments, MapPosition, refuse};
 use crate::outputs::formats::extension;
 use crate::run::CommandContext;
 use anyhow::{Result, bail};
@@ -35,9 +35,7 @@ pub(crate) fn pairs(
         return Ok((pairs.into_iter().map(|ends| ends.map(standing)).collect(), TextRows::default()));
     }
     let Some(path) = &lines.pairs else {
-        return Err(
-            Usage("lines of sight are missing: give --pairs, --random, or --observer and --target".to_owned()).into()
-        );
+        return refuse("lines of sight are missing: give --pairs, --random, or --observer and --target");
     };
     if FEATURE_EXTENSIONS.contains(&extension(path).as_str()) {
         let features = run.stage("reading pairs", 0, |_| read_features(path, &frame.crs))?;

@@ -1,6 +1,6 @@
 //! Converts flags and weather files to the source of radiation.
 
-use crate::arguments::{ClearSkyChoice, RadiationModel, Usage};
+use crate::arguments::{ClearSkyChoice, RadiationModel, refuse};
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::apps::ask::Radiation;
@@ -31,7 +31,7 @@ fn clear_sky(choice: Option<ClearSkyChoice>, model: &RadiationModel, params: &Ir
 /// Refuses a turbidity for a sky that knows none.
 pub(crate) fn check_linke(choice: Option<ClearSkyChoice>, model: &RadiationModel) -> Result<()> {
     if model.linke.is_some() && choice != Some(ClearSkyChoice::Ineichen) {
-        return Err(Usage("--linke needs --clear-sky ineichen".to_owned()).into());
+        return refuse("--linke needs --clear-sky ineichen");
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! Location of a scene on earth, its clock, the typed days, and the division of the sky.
 
-use crate::arguments::{ElevationChoice, NorthArguments, PatchesChoice, SunPeriod, SunPlaceArguments, Usage};
+use crate::arguments::{ElevationChoice, NorthArguments, PatchesChoice, SunPeriod, SunPlaceArguments, refuse};
 use anyhow::Result;
 use belvedere::apps::ask::{self, SkyParts};
 use belvedere::apps::sun::Refraction;
@@ -36,9 +36,7 @@ impl SunPlaceArguments {
     /// Returns the refraction of the sun by the air.
     pub(crate) fn refraction(&self) -> Result<Refraction> {
         match (self.elevation, &self.air) {
-            (ElevationChoice::Geometric, Some(_)) => {
-                Err(Usage("--air needs --sun-elevation apparent".to_owned()).into())
-            }
+            (ElevationChoice::Geometric, Some(_)) => refuse("--air needs --sun-elevation apparent"),
             (ElevationChoice::Geometric, None) => Ok(Refraction::Without),
             (ElevationChoice::Apparent, None) => Ok(Refraction::Standard),
             (ElevationChoice::Apparent, Some(air)) => {

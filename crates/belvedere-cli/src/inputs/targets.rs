@@ -1,6 +1,8 @@
 //! Targets of the sun and the sky: from flags and files to places.
 
-use crate::arguments::{CloudInput, FacingChoice, GroundChoice, MapPosition, SceneInput, SkyOutputs, SkyPlaces, Usage};
+use crate::arguments::{
+    CloudInput, FacingChoice, GroundChoice, MapPosition, SceneInput, SkyOutputs, SkyPlaces, refuse,
+};
 use crate::inputs::observers::{ObserverUse, observer_rows, rows_as_given};
 use crate::inputs::points::points_of_file;
 use crate::inputs::typed_places::on_map;
@@ -70,12 +72,10 @@ impl SkyPlaces {
             ("--spacing", self.spacing.is_some(), !mesh && !in_file, "a mesh, and lines of a file"),
         ];
         if let Some((flag, .., what)) = refused.into_iter().find(|(_, given, wrong, _)| *given && *wrong) {
-            return Err(Usage(format!("{flag} applies only to targets on {what}")).into());
+            return refuse(format!("{flag} applies only to targets on {what}"));
         }
         if self.facing == Some(FacingChoice::Normals) && !mesh && !points {
-            return Err(
-                Usage("--facing normals applies only to points and meshes; cells are horizontal".to_owned()).into()
-            );
+            return refuse("--facing normals applies only to points and meshes; cells are horizontal");
         }
         Ok(())
     }
@@ -163,8 +163,7 @@ impl SkyPlaces {
         let cloud = Arc::new(points_of_file(path, &ReadOptions::new(), scene.frame(), run)?);
         let normals = match (self.facing, &cloud.attributes.normals) {
             (Some(FacingChoice::Normals), None) => {
-                let what = "--facing normals: the points have none; `belvedere normals` estimates them";
-                return Err(Usage(what.to_owned()).into());
+                return refuse("--facing normals: the points have none; `belvedere normals` estimates them");
             }
             (Some(FacingChoice::Normals), Some(normals)) => Some(normals.clone()),
             _ => None,

@@ -1,6 +1,6 @@
 //! Views on a scene, from flags.
 
-use crate::arguments::{SizeChoice, Usage, ViewChoice};
+use crate::arguments::{SizeChoice, ViewChoice, refuse};
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Scene, ViewFrom};
@@ -48,18 +48,18 @@ impl ViewChoice {
             Some(SizeChoice::Width(width)) => Ok(width),
             Some(SizeChoice::WidthAndHeight([width, height])) if height * 2 == width => Ok(width),
             Some(SizeChoice::WidthAndHeight(_)) => {
-                Err(Usage("--size: a panorama is twice as wide as high; give only its width".to_owned()).into())
+                refuse("--size: a panorama is twice as wide as high; give only its width")
             }
         }
     }
 
     fn camera(&self, eye: [f64; 3], to_local: impl Fn([f64; 3]) -> [f64; 3]) -> Result<View> {
-        let Some(look_at) = self.look_at else { return Err(Usage("--eye needs --look-at".to_owned()).into()) };
+        let Some(look_at) = self.look_at else { return refuse("--eye needs --look-at") };
         let size = match self.size {
             None => CAMERA_SIZE,
             Some(SizeChoice::WidthAndHeight(size)) => size,
             Some(SizeChoice::Width(_)) => {
-                return Err(Usage("--size: --eye needs width and height, such as 1280x720".to_owned()).into());
+                return refuse("--size: --eye needs width and height, such as 1280x720");
             }
         };
         let fov = self.fov.map_or(CAMERA_FOV, f64::to_radians);
@@ -94,10 +94,7 @@ impl ViewChoice {
         } else if let Some(eye) = &self.kind.eye {
             self.camera(eye.0, |place| scene.frame().local_from_file(place))?
         } else {
-            return Err(Usage(
-                "a view is missing: give --viewport, --sun, --direction, --eye or --panorama".to_owned(),
-            )
-            .into());
+            return refuse("a view is missing: give --viewport, --sun, --direction, --eye or --panorama");
         };
         Ok(view)
     }

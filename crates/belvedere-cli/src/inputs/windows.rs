@@ -1,6 +1,6 @@
 //! Windows: from files to places.
 
-use crate::arguments::Usage;
+use crate::arguments::refuse;
 use crate::inputs::landmark_shape::objects_of;
 use crate::outputs::formats::extension;
 use crate::pipeline::mesh_in;
@@ -43,7 +43,7 @@ impl WindowFile {
         }
         for (flag, is_given) in [("--spacing", choice.spacing.is_some()), ("--object", !choice.objects.is_empty())] {
             if is_given {
-                return Err(Usage(format!("{flag} applies only to windows from a mesh")).into());
+                return refuse(format!("{flag} applies only to windows from a mesh"));
             }
         }
         if !["csv", "txt"].contains(&extension(path).as_str()) {
@@ -129,10 +129,7 @@ pub(crate) fn coordinates(frame: &Frame, places: &[[f64; 3]]) -> Vec<WindowColum
 /// Refuses windows that are the faces of a mesh, which are too many to list.
 pub(crate) fn refuse_mesh(path: &Path) -> Result<()> {
     match is_mesh(path) {
-        true => {
-            Err(Usage("--windows: give a table (.csv); `belvedere comfort` takes the faces of a mesh".to_owned())
-                .into())
-        }
+        true => refuse("--windows: give a table (.csv); `belvedere comfort` takes the faces of a mesh"),
         false => Ok(()),
     }
 }

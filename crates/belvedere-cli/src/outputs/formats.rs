@@ -1,6 +1,6 @@
 //! Outputs of commands: formats by their extensions, and what is refused before hours of work go into it.
 
-use crate::arguments::Usage;
+use crate::arguments::refuse;
 use crate::summary::Summary;
 use anyhow::{Context, Result, bail};
 use belvedere::crs::Crs;
@@ -45,7 +45,7 @@ pub(crate) fn is_folder(path: &Path) -> bool {
 pub(crate) fn check_output(flag: &str, path: &Path, known: &[&str]) -> Result<()> {
     if !known.contains(&extension(path).as_str()) {
         let known = known.join(" .");
-        return Err(Usage(format!("{flag} {}: the extension must be one of .{known}", path.display())).into());
+        return refuse(format!("{flag} {}: the extension must be one of .{known}", path.display()));
     }
     check_parent(path)
 }
@@ -76,12 +76,11 @@ pub(crate) fn check_parent(path: &Path) -> Result<()> {
 pub(crate) fn check_folder(path: &Path) -> Result<()> {
     let is_new = !path.exists();
     if is_new && CLOUD_EXTENSIONS.contains(&extension(path).as_str()) {
-        let what = format!(
+        return refuse(format!(
             "-o {}: results are several files in a folder; give it a name without .{}",
             path.display(),
             extension(path)
-        );
-        return Err(Usage(what).into());
+        ));
     }
     atomic::make_folder(path)?;
     if is_new {

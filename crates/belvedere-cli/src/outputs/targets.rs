@@ -1,6 +1,6 @@
 //! Answers at targets, as files.
 
-use crate::arguments::{AreaOutputs, SkyOutputs, Usage};
+use crate::arguments::{AreaOutputs, SkyOutputs, refuse};
 use crate::outputs::formats::{extension, text_rows_for, warn_of_geojson};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -131,7 +131,7 @@ impl<'a> TargetOutput<'a> {
         let frame = &self.on.targets.frame;
         let areas_read = areas_of(&read_features(areas, &frame.crs)?);
         if areas_read.is_empty() {
-            return Err(Usage(format!("--areas: {} has no polygons", areas.display())).into());
+            return refuse(format!("--areas: {} has no polygons", areas.display()));
         }
         let local =
             |ring: &Vec<[f64; 2]>| ring.iter().map(|[x, y]| [x - frame.origin[0], y - frame.origin[1]]).collect();

@@ -1,6 +1,6 @@
 //! A scene that a command read.
 
-use crate::arguments::{GroundChoice, Usage};
+use crate::arguments::{GroundChoice, refuse};
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::PointCloud;
@@ -42,7 +42,7 @@ impl LoadedScene {
         run: &CommandContext,
     ) -> Result<ask::Scene> {
         if shell.is_some() && !self.model.is_carved() {
-            return Err(Usage("--shell applies only to carved balls, and these are not carved".to_owned()).into());
+            return refuse("--shell applies only to carved balls, and these are not carved");
         }
         let usual = self.model.rule();
         let rule = BlockRule { profile: self.profile, shell: shell.map_or(usual.shell, f64::from), ..usual };

@@ -52,8 +52,7 @@ pub(super) fn write(
             _ => write_outlines(output, roofs, frame, site),
         })?;
     }
-    run.summary
-        .add("planes_written", arguments.planes.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    run.summary.add_paths("planes_written", &arguments.planes);
     let PvArguments { buildings, hourly, .. } = &arguments.photovoltaics;
     if let Some(output) = buildings {
         run.stage("writing", 0, |_| write_columns(output, None, &building_columns(roofs.as_rows())))?;

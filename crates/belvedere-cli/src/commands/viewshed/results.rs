@@ -1,6 +1,6 @@
 //! Viewsheds as files.
 
-use crate::arguments::Usage;
+use crate::arguments::refuse;
 use crate::outputs::fading::{UNPROVEN_COLOR, fade, faded};
 use crate::outputs::formats::extension;
 use crate::outputs::sheet::Sheet;
@@ -216,7 +216,7 @@ pub(super) fn write_masks(output: &Path, seen: &Viewshed, ground: &Ground, cloud
         return Ok(write_npy_u32_bands(output, &seen.masks, grid.width, grid.height)?);
     }
     let [band] = &seen.masks[..] else {
-        return Err(Usage("--masks: a .tif holds 32 observers; use .npy".to_owned()).into());
+        return refuse("--masks: a .tif holds 32 observers; use .npy");
     };
     let raster = Raster::from_values(grid.width, grid.height, band.clone())?;
     let what = "bit i: observer i sees the cell";
