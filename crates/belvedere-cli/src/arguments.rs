@@ -29,11 +29,11 @@ mod view_page;
 mod window_views;
 
 pub(crate) use balls::{
-    BallsArguments, Cleaning, MethodChoice, NeighborChoice, NormalsArguments, OrientChoice, OrientedPoints, Orienting,
-    Shrinking, SideChoice, SurfacesArguments,
+    BallsArguments, Cleaning, MethodChoice, NeighborChoice, NormalsArguments, OrientedPoints, Orienting, Shrinking,
+    SideChoice, SurfacesArguments,
 };
 pub(crate) use cameras::{CameraLensArguments, CameraTargetsArguments, CamerasArguments};
-pub(crate) use city::{CellFor, City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, MemoryAmount};
+pub(crate) use city::{CellFor, City, CityMerge, CityPlan, CityRun, CityStatus, CityStep};
 pub(crate) use difference::DifferenceArguments;
 pub(crate) use envelope::{ComfortArguments, CornersArgument, EnvelopeArguments};
 pub(crate) use fetch::FetchArguments;
@@ -41,15 +41,15 @@ pub(crate) use glare::GlareArguments;
 pub(crate) use heat::HeatArguments;
 pub(crate) use irradiance::{ClearSkyChoice, IrradianceArguments, PvArguments, RadiationModel};
 pub(crate) use numbers::{Numbers, Rectangle};
-use numbers::{above_zero, at_least_one, at_most, finite, height, known_crs, length, location, rectangle};
+pub(crate) use numbers::{above_zero, at_least_one, at_most, finite, height, known_crs, length, location, rectangle};
 pub(crate) use observers::{
     Earth, GivingWay, GroundChoice, HowSureArguments, IntervalArgument, LineOfSightArguments, LinesArguments,
-    MapPosition, Radio, Shell, ViewshedArguments,
+    MapPosition, Radio, Shell, UnprovenChoice, ViewshedArguments,
 };
-pub(crate) use query::{DepthMapArguments, Query, UnprovenChoice};
+pub(crate) use query::{DepthMapArguments, Query};
 pub(crate) use scene::{
-    AreaChoice, BallShape, CalibrateArguments, CloudInput, MemoryArgument, PlanArguments, ProfileChoice, SceneBalls,
-    SceneConfig, SceneInput, UpChoice,
+    AreaChoice, BallShape, CalibrateArguments, CloudInput, MemoryAmount, MemoryArgument, OrientChoice, PlanArguments,
+    ProfileChoice, SceneBalls, SceneConfig, SceneInput, UpChoice,
 };
 pub(crate) use shadow::ShadowArguments;
 pub(crate) use sky::{
@@ -85,6 +85,11 @@ impl std::fmt::Display for Usage {
 }
 
 impl std::error::Error for Usage {}
+
+/// Refuses what was typed.
+pub(crate) fn refuse<T>(what: impl Into<String>) -> anyhow::Result<T> {
+    Err(Usage(what.into()).into())
+}
 
 /// Visibility analysis directly on point clouds
 #[derive(Parser)]

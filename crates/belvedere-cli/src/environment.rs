@@ -1,6 +1,6 @@
 //! Settings from arguments and the environment: threads, instructions of the processor, and the folder of kept scenes.
 
-use crate::arguments::{Global, MAX_THREADS, Usage};
+use crate::arguments::{Global, MAX_THREADS, refuse};
 use anyhow::{Result, anyhow};
 use belvedere::cache::SceneCache;
 use belvedere::io::hidden_text;
@@ -27,7 +27,7 @@ pub(crate) fn apply(global: &Global) -> Result<()> {
     match env::var(AVX2).as_deref() {
         Err(_) | Ok("" | "on") => {}
         Ok("off") => Instructions::turn_avx2_off(),
-        Ok(other) => return Err(Usage(format!("the variable {AVX2} is {other:?}, but must be on or off")).into()),
+        Ok(other) => return refuse(format!("the variable {AVX2} is {other:?}, but must be on or off")),
     }
     let threads = match global.threads {
         Some(threads) => threads,
@@ -52,13 +52,14 @@ fn threads_of(variable: Option<&str>) -> Result<usize> {
     let threads = variable.and_then(|text| text.trim().parse::<u64>().ok()).unwrap_or(0);
     match usize::try_from(threads) {
         Ok(threads) if threads <= MAX_THREADS => Ok(threads),
-        _ => Err(Usage(format!("the variable {THREADS} is {threads}, but must be at most {MAX_THREADS}")).into()),
+        _ => refuse(format!("the variable {THREADS} is {threads}, but must be at most {MAX_THREADS}")),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arguments::Usage;
 
     #[test]
     fn threads_of_the_environment_are_bounded() {

@@ -1,15 +1,16 @@
 //! Converts arguments to clouds, scene models and views. Calls the library; decides and computes nothing itself.
 
+mod loaded_scene;
 pub(crate) mod params;
 mod plan;
 mod scene_in_reach;
 
+pub(crate) use loaded_scene::LoadedScene;
 pub(crate) use plan::{areas, mesh_in, planned};
 pub(crate) use scene_in_reach::scene_in_reach;
 
 use crate::arguments::{
-    CloudInput, GroundChoice, MethodChoice, PlanArguments, ProfileChoice, SceneInput, SizeChoice, SkyPlaces,
-    UnprovenChoice, UpChoice, Usage, ViewChoice,
+    CloudInput, MethodChoice, PlanArguments, ProfileChoice, SceneInput, UnprovenChoice, UpChoice, refuse,
 };
 use crate::device::with_device;
 use crate::run::CommandContext;
@@ -17,15 +18,13 @@ use crate::scene_config::BallParameters;
 use crate::summary::Summary;
 use anyhow::{Result, anyhow, bail};
 use belvedere::apps::ask::scene::GroundStore;
-use belvedere::apps::ask::{self, ViewFrom};
+use belvedere::apps::ask::{self};
 use belvedere::cache::{BuiltScene, ReadBefore, model_of_balls, scene_model};
-use belvedere::crs::CrsKind;
 use belvedere::depth::Profile;
-use belvedere::io::{ReadOptions, ReadReport, UpAxis, is_ball_file, read_cloud, web_address};
+use belvedere::io::{ReadReport, UpAxis, is_ball_file, read_cloud, web_address};
 use belvedere::model::{BallParams, ModelParams, SceneModel};
-use belvedere::query::{BlockRule, UnprovenAs};
+use belvedere::query::UnprovenAs;
 use belvedere::vector::to_f32;
-use belvedere::view::{CAMERA_FOV, CAMERA_SIZE, PANORAMA_WIDTH, View, default_pixel_size, to_sun};
 use belvedere::{Bounds, Error, Parameter, PointCloud};
 use serde_json::{Map, Value};
 use std::borrow::Cow;
@@ -65,7 +64,7 @@ pub(crate) fn refuse_part(input: &CloudInput) -> Result<()> {
                 "{flag}: this result has a row for each row of the file, of which only a part is read; leave it out, \
                  or give a format with coordinates"
             );
-            Err(Usage(what).into())
+            refuse(what)
         }
     }
 }
@@ -112,72 +111,6 @@ pub(crate) fn advised(input: &CloudInput, error: Error) -> anyhow::Error {
         Error::NoSurface { .. } => anyhow::Error::from(error).context(names()),
         other => other.into(),
     }
-}
-
-/// A scene model, and the cloud it was made from unless it was read from a file.
-#[derive(Clone)]
-pub(crate) struct LoadedScene {
-    pub(crate) model: SceneModel,
-    /// In the frame of the model; without points where it was read from a file or its points are not needed.
-    pub(crate) cloud: PointCloud,
-    /// Rows of the files that reading left out.
-    pub(crate) left_out: ReadReport,
-    /// Shape that represents a ball.
-    pub(crate) profile: Profile,
-    /// Keeps the ground of the cloud; `None` without a cache, and where the cloud is not as it was read.
-    pub(crate) ground_store: Option<Arc<dyn GroundStore>>,
-}
-
-impl LoadedScene {
-    /// Local metres of a place in the coordinates and unit of the file.
-    pub(crate) fn local_from_file(&self, place: [f64; 3]) -> [f64; 3] {
-        self.model.frame().local_from_file(place)
-    }
-}
-
-impl LoadedScene {
-    /// The scene that questions are put to, with the ground and the shell of the flags.
-    pub(crate) fn into_question_scene(
-        self,
-        ground: Option<&GroundChoice>,
-        shell: Option<f32>,
-        run: &CommandContext,
-    ) -> Result<ask::Scene> {
-        if shell.is_some() && !self.model.is_carved() {
-            return Err(Usage("--shell applies only to carved balls, and these are not carved".to_owned()).into());
-        }
-        let usual = self.model.rule();
-        let rule = BlockRule { profile: self.profile, shell: shell.map_or(usual.shell, f64::from), ..usual };
-        let frame = self.cloud.frame.clone();
-        let scene =
-            ask::Scene::new(self.model, Arc::new(self.cloud)).with_rule(rule).with_ground_store(self.ground_store);
-        let Some(GroundChoice::Cloud(path)) = ground else { return Ok(scene) };
-        let (cloud, _) = run.stage("reading ground", 0, |control| {
-            read_cloud(std::slice::from_ref(path), &ReadOptions::default(), control)
-        })?;
-        cloud.frame.crs.check_for(&frame.crs, "ground", path)?;
-        // a scene that knows no system takes that of its ground
-        let own = Some(cloud.frame.crs.clone()).filter(|crs| crs.kind != CrsKind::Unknown);
-        let mut cloud = cloud.moved_to(&frame);
-        if let Some(crs) = own {
-            cloud.frame.crs = crs;
-        }
-        Ok(scene.with_ground_of(Arc::new(cloud))?)
-    }
-}
-
-/// The scene of questions about sun and sky, before the far terrain of the flags.
-pub(crate) fn scene_of_places(
-    input: &SceneInput,
-    places: &SkyPlaces,
-    shell: Option<f32>,
-    run: &mut CommandContext,
-) -> Result<ask::Scene> {
-    places.check_on_map(&input.input)?;
-    let points = if places.needs_points() { KeepPoints::Keep } else { KeepPoints::LetGo };
-    let mut scene = scene(input, points, run)?;
-    places.far.set(&mut scene, run)?;
-    scene.into_question_scene(Some(&places.ground), shell, run)
 }
 
 /// Choice to keep the points that the balls of a scene were made from.
@@ -233,15 +166,13 @@ fn present_scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandCo
         let model = model_of_balls(path, run.cache.as_ref(), &run.control())
             .map_err(|error| with_file_of_exterior_balls(error, path))?;
         run.summary.add("balls_read", model.balls().len());
-        let cloud = PointCloud::in_frame(model.frame().clone());
-        return Ok(LoadedScene { model, cloud, left_out: ReadReport::default(), profile, ground_store: None });
+        return Ok(LoadedScene::without_points(model, profile));
     }
     let balls = parameters.balls(MethodChoice::Carved)?;
     if points == KeepPoints::LetGo
         && let Some(model) = kept_scene(&arguments.input, &parameters, balls, run)?
     {
-        let cloud = PointCloud::in_frame(model.frame().clone());
-        return Ok(LoadedScene { model, cloud, left_out: ReadReport::default(), profile, ground_store: None });
+        return Ok(LoadedScene::without_points(model, profile));
     }
     let (mut cloud, left_out, notes) = match kept_points(&arguments.input, run) {
         Some((cloud, notes)) => (cloud, ReadReport::default(), notes),
@@ -270,7 +201,7 @@ fn present_scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandCo
     let kept = run.cache.as_ref().zip(built.cloud.as_ref()).map(|(cache, contents)| cache.ground_of(contents));
     // the ground that is kept is that of lines fitted to each other
     let ground_store = kept.filter(|_| !parameters.cleaning.keep_strips);
-    Ok(LoadedScene { model: reported(built, run), cloud, left_out, profile, ground_store })
+    Ok(LoadedScene { model: reported(built, run), cloud: Arc::new(cloud), left_out, profile, ground_store })
 }
 
 /// Adds the name of a file of exterior balls to the error that refuses them.
@@ -352,15 +283,14 @@ fn refuse_flags_of_clouds(arguments: &SceneInput, parameters: &BallParameters, p
     match given.into_iter().find(|(_, given)| *given) {
         Some(("--crs", _)) => {
             let path = path.display();
-            Err(Usage(format!(
+            refuse(format!(
                 "--crs is for building balls from a cloud, but {path} is a ball file: give --location LAT,LON where the sun needs a place, \
                  or make the ball file again with --crs"
             ))
-            .into())
         }
         Some((flag, _)) => {
             let path = path.display();
-            Err(Usage(format!("{flag} is for building balls from a cloud, but {path} is a ball file")).into())
+            refuse(format!("{flag} is for building balls from a cloud, but {path} is a ball file"))
         }
         None => parameters.refuse_file(path),
     }
@@ -396,114 +326,6 @@ impl From<ProfileChoice> for Profile {
             ProfileChoice::Sphere => Self::Sphere,
             ProfileChoice::PaperCone => Self::PaperCone,
         }
-    }
-}
-
-impl ViewChoice {
-    /// The views on a scene, reported: one, or the two halves of a panorama.
-    pub(crate) fn views(&self, scene: &LoadedScene, summary: &mut Summary) -> Result<Vec<View>> {
-        let from = self.view_from(scene, summary)?;
-        summary.remarks(from.remark(scene.model.coverage().as_ref()));
-        summary.add("view", Summary::of(&from.section()));
-        match from {
-            ViewFrom::View(view) => Ok(vec![view]),
-            ViewFrom::Panorama { eye, width } => Ok(View::panorama(eye, width)?.to_vec()),
-        }
-    }
-
-    /// Returns the position and projection of a picture of a scene.
-    pub(crate) fn view_from(&self, scene: &LoadedScene, summary: &mut Summary) -> Result<ViewFrom> {
-        match self.kind.panorama {
-            Some(eye) => {
-                let (eye, width) = (scene.local_from_file(eye.0), self.panorama_width()?);
-                Ok(ViewFrom::Panorama { eye, width })
-            }
-            None => Ok(ViewFrom::View(self.view(scene, summary)?)),
-        }
-    }
-
-    /// Refuses what no scene could be seen with, before one is read.
-    pub(crate) fn check(&self) -> Result<()> {
-        let kind = &self.kind;
-        if let Some(eye) = kind.panorama {
-            View::panorama(eye.0, self.panorama_width()?)?;
-        } else if let Some(eye) = kind.eye {
-            self.camera(eye.0, |place| place)?;
-        } else if let Some(direction) = kind.direction {
-            View::parallel(direction.0, [0.0; 3], [1.0; 3], 1.0)?;
-        } else if let Some(sun) = kind.sun {
-            ask::check_sun(sun.0, ask::SunRange::NotBelowHorizon)?;
-        } else if let Some(viewport) = &kind.viewport {
-            let (vx, vy) = (viewport.vx, viewport.vy);
-            View::from_viewport(viewport.p0, vx, vy, viewport.pixels_per_unit)?;
-        }
-        Ok(())
-    }
-
-    /// Returns true if the view is from an eye.
-    pub(crate) fn is_central(&self) -> bool {
-        self.kind.panorama.is_some() || self.kind.eye.is_some()
-    }
-
-    /// Width of a panorama in pixels.
-    pub(crate) fn panorama_width(&self) -> Result<usize> {
-        match self.size {
-            None => Ok(PANORAMA_WIDTH),
-            Some(SizeChoice::Width(width)) => Ok(width),
-            Some(SizeChoice::WidthAndHeight([width, height])) if height * 2 == width => Ok(width),
-            Some(SizeChoice::WidthAndHeight(_)) => {
-                Err(Usage("--size: a panorama is twice as wide as high; give only its width".to_owned()).into())
-            }
-        }
-    }
-
-    fn camera(&self, eye: [f64; 3], to_local: impl Fn([f64; 3]) -> [f64; 3]) -> Result<View> {
-        let Some(look_at) = self.look_at else { return Err(Usage("--eye needs --look-at".to_owned()).into()) };
-        let size = match self.size {
-            None => CAMERA_SIZE,
-            Some(SizeChoice::WidthAndHeight(size)) => size,
-            Some(SizeChoice::Width(_)) => {
-                return Err(Usage("--size: --eye needs width and height, such as 1280x720".to_owned()).into());
-            }
-        };
-        let fov = self.fov.map_or(CAMERA_FOV, f64::to_radians);
-        let (near, far) = (self.near.map_or(0.0, f64::from), self.far.unwrap_or(f64::INFINITY));
-        let [eye, look_at] = [eye, look_at.0].map(to_local);
-        Ok(View::perspective(eye, look_at, fov, size, near, far)?)
-    }
-
-    fn view(&self, scene: &LoadedScene, summary: &mut Summary) -> Result<View> {
-        let (low, high) = scene.model.bounds().corners();
-        let pixel = self.pixel.unwrap_or_else(|| default_pixel_size(low, high));
-        let view = if let Some(sun) = &self.kind.sun {
-            let [azimuth, elevation] = sun.0.map(f64::to_radians);
-            let north = self.north.of_scene(scene);
-            north.report(summary);
-            let site = ask::SunPlace::default().site_of(scene.model.frame(), &scene.model.bounds(), None).ok();
-            summary.remarks(ask::remark_on_sun(site.map(|(site, _)| site), sun.0));
-            let sun = to_sun(azimuth - north.of_grid, elevation);
-            View::parallel(sun.map(|v| -v), low, high, pixel)?
-        } else if let Some(direction) = &self.kind.direction {
-            View::parallel(direction.0, low, high, pixel)?
-        } else if let Some(viewport) = &self.kind.viewport {
-            let scale = scene.model.frame().crs.metres_per_unit_xyz();
-            let metres = |v: [f64; 3]| std::array::from_fn(|i| v[i] * scale[i]);
-            let view = View::from_viewport(
-                scene.local_from_file(viewport.p0),
-                metres(viewport.vx),
-                metres(viewport.vy),
-                viewport.pixels_per_unit / scale[0],
-            );
-            view?
-        } else if let Some(eye) = &self.kind.eye {
-            self.camera(eye.0, |place| scene.local_from_file(place))?
-        } else {
-            return Err(Usage(
-                "a view is missing: give --viewport, --sun, --direction, --eye or --panorama".to_owned(),
-            )
-            .into());
-        };
-        Ok(view)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::arguments::{
     BallShape, BallsArguments, Cleaning, OrientedPoints, Orienting, ProfileChoice, SceneBalls, SceneConfig, Shrinking,
-    Usage,
+    Usage, refuse,
 };
 use crate::help::BALL_FLAGS;
 use crate::parameter_flags::flags_of;
@@ -94,9 +94,7 @@ impl BallParameters {
         let Some(file) = &self.file else { return Ok(()) };
         let Some(key) = file.keys.iter().find(|key| *key != "ball_profile") else { return Ok(()) };
         let (config, path) = (file.path.display(), path.display());
-        let what =
-            format!("--scene-config {config}: {key} is for building balls from a cloud, but {path} is a ball file");
-        Err(Usage(what).into())
+        refuse(format!("--scene-config {config}: {key} is for building balls from a cloud, but {path} is a ball file"))
     }
 
     /// Names the file and its keys in an error about flags that were not typed.

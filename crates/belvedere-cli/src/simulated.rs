@@ -4,10 +4,7 @@ use anyhow::Result;
 use belvedere::Frame;
 use belvedere::cloud::{Attributes, GpsTimeKind, PointCloud, centre_rounded, to_local};
 use belvedere::crs::Crs;
-use belvedere::io::atomic;
 use belvedere_scenes::Scan;
-use std::io::Write;
-use std::path::Path;
 
 /// Code of the reference system that simulated towns lie in: the Dutch grid with heights above NAP.
 pub(crate) const EPSG: u32 = 7415;
@@ -41,10 +38,4 @@ pub(crate) fn cloud_of(scan: &Scan) -> Result<PointCloud> {
         },
         ..PointCloud::default()
     })
-}
-
-/// Writes a text file that appears only when it is complete.
-pub(crate) fn write_text(path: &Path, text: &str) -> Result<()> {
-    atomic::write(path, |file| file.write_all(text.as_bytes()).map_err(belvedere::Error::io(path)))?;
-    Ok(())
 }

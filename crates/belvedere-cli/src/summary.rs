@@ -7,14 +7,12 @@ use belvedere::report;
 use belvedere::shown::{is_command, printable};
 use serde::Serialize;
 use serde_json::{Map, Value};
+use short::{REMARKS, plain};
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
 mod short;
-
-/// Key of the remarks.
-const REMARKS: &str = "remarks";
 
 /// Named figures and sections, in order, and those of them that are the answer.
 #[derive(Clone, Default)]
@@ -57,6 +55,12 @@ impl Summary {
     pub(crate) fn add(&mut self, name: &str, value: impl Into<Value>) -> &mut Self {
         self.entries.insert(name.to_owned(), value.into());
         self
+    }
+
+    /// Adds the names of files.
+    pub(crate) fn add_paths(&mut self, name: &str, paths: impl IntoIterator<Item = impl AsRef<Path>>) -> &mut Self {
+        let names = paths.into_iter().map(|path| path.as_ref().display().to_string());
+        self.add(name, names.collect::<Vec<_>>())
     }
 
     /// The remarks alone.
@@ -260,13 +264,6 @@ fn lines(section: &Map<String, Value>, depth: usize, text: &mut String) {
             }
             other => text.push_str(&format!("{indent}{name}: {}\n", plain(other))),
         }
-    }
-}
-
-fn plain(value: &Value) -> String {
-    match value {
-        Value::String(text) => text.clone(),
-        other => other.to_string(),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Inputs are there, no output replaces an input, and no file gets two results. Checked for all commands at once, on
 //! what was typed, before anything is read.
 
-use crate::arguments::{CornersArgument, Usage};
+use crate::arguments::{CornersArgument, refuse};
 use anyhow::Result;
 use belvedere::io::{Source, web_address};
 use clap::parser::ValueSource;
@@ -46,16 +46,13 @@ pub(crate) fn check(program: &Command, matches: &ArgMatches) -> Result<()> {
         let path = output.path.display();
         if let Some(input) = inputs.iter().find(|input| is_same(&input.path, &output.path)) {
             let (flag, input) = (&output.flag, input.path.display());
-            return Err(Usage(format!(
+            return refuse(format!(
                 "{flag} {path}: the same file as the input {input}, which it would replace; choose another name"
-            ))
-            .into());
+            ));
         }
         if let Some(earlier) = outputs[..i].iter().find(|other| is_same(&other.path, &output.path)) {
             let (flag, other) = (&output.flag, &earlier.flag);
-            return Err(
-                Usage(format!("{flag} {path}: given for two results (also {other}); choose another name")).into()
-            );
+            return refuse(format!("{flag} {path}: given for two results (also {other}); choose another name"));
         }
     }
     Ok(())

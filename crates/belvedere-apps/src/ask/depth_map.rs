@@ -73,6 +73,15 @@ pub struct PictureSection {
 }
 
 impl ViewFrom {
+    /// Refuses a question without a view.
+    pub(super) fn given(from: Option<Self>) -> Result<Self> {
+        from.ok_or_else(|| Error::InvalidParameter {
+            parameter: Parameter::View,
+            value: "missing".to_owned(),
+            expected: "given: the sun, a direction, a camera or a panorama",
+        })
+    }
+
     /// Returns the position of the eye, local metres; `None` for parallel views.
     #[must_use]
     pub fn eye(&self) -> Option<[f64; 3]> {
@@ -130,13 +139,7 @@ impl Ask for DepthMapQuestion {
         context: &mut Context,
         control: &Control<'_>,
     ) -> Result<Answers<DepthMapResults>> {
-        let Some(from) = self.from else {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::View,
-                value: "missing".to_owned(),
-                expected: "given: the sun, a direction, a camera or a panorama",
-            });
-        };
+        let from = ViewFrom::given(self.from)?;
         context.add(from.remark(scene.model().coverage().as_ref()));
         let view = from.section();
         let (items, profile) =

@@ -53,6 +53,7 @@ mod survey_plan;
 mod terrain_heights;
 mod towers;
 mod trees;
+mod view_targets;
 mod viewer;
 mod viewshed;
 mod window_views;
@@ -104,6 +105,7 @@ pub use survey_plan::{PlannedStation, SurveyPlanQuestion, SurveyPlanResults};
 pub use terrain_heights::remark_on_terrain;
 pub use towers::{FarTowers, GivenTower, MAX_WIRELINES, TowerWirelines, TowersQuestion, TowersResults, TowersSection};
 pub use trees::{ThroughTrees, density_at, remark_on_leaves};
+pub use view_targets::{FacesSection, TargetsSection, ViewTargetsQuestion, ViewTargetsResults};
 pub use viewer::{
     remark_on_axis, remark_on_cleared, remark_on_doubt, remark_on_eye, remark_on_faces, remark_on_inside,
     remark_on_mesh, remark_on_outside, remark_on_roofs, remark_on_targets_beside, remark_on_targets_inside,
@@ -167,6 +169,8 @@ pub enum Question {
     SurveyPlan(SurveyPlanQuestion),
     /// The distance to the first surface for each pixel of a view.
     DepthMap(DepthMapQuestion),
+    /// Targets of one view.
+    ViewTargets(ViewTargetsQuestion),
     /// Sun and sky along routes and at windows.
     Comfort(ComfortQuestion),
     /// Maximum building height that keeps protected sun.
@@ -216,6 +220,7 @@ one_of_all! {
     Cameras: CamerasQuestion,
     SurveyPlan: SurveyPlanQuestion,
     DepthMap: DepthMapQuestion,
+    ViewTargets: ViewTargetsQuestion,
     Comfort: ComfortQuestion,
     Envelope: EnvelopeQuestion,
 }

@@ -160,7 +160,7 @@ impl Places {
 }
 
 /// Refuses places of another kind than a question is about.
-fn other<T>(parameter: Parameter, value: &str, expected: &'static str) -> Result<T> {
+pub(super) fn other<T>(parameter: Parameter, value: &str, expected: &'static str) -> Result<T> {
     Err(Error::InvalidParameter { parameter, value: value.to_owned(), expected })
 }
 

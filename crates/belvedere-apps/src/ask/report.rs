@@ -21,6 +21,7 @@ use super::sight_network::NetworkSection;
 use super::single_places::PlaceSection;
 use super::survey_plan::SurveyPlanSection;
 use super::towers::TowersSection;
+use super::view_targets::{FacesSection, TargetsSection};
 use super::viewshed::SeenSection;
 use super::window_views::{ViewsSection, WindowsSection};
 use crate::eyes::EyesReport;
@@ -139,6 +140,12 @@ pub struct Report {
     /// Content of a picture.
     #[serde(flatten)]
     pub picture: Option<PictureSection>,
+    /// Answers of points in a view.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub answers: Option<TargetsSection>,
+    /// Visibility of the faces of a mesh.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub faces: Option<FacesSection>,
     /// Sun and sky along routes or at windows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exposure: Option<ExposureSection>,

@@ -1,9 +1,10 @@
 //! Flags of `normals`, `surfaces` and `balls`, which are also the keys of `--scene-config`. Other commands have only a
 //! few of them.
 
-use super::{CloudInput, Numbers, SceneConfig, above_zero};
+use super::scene::trees;
+use super::{CloudInput, OrientChoice, SceneConfig, above_zero};
 use belvedere::medial::{Rule, Trees};
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::TypedValueParser;
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Deserializer};
 use std::path::PathBuf;
@@ -121,20 +122,6 @@ pub(crate) struct Orienting {
     pub(crate) orient: Option<OrientChoice>,
 }
 
-/// The ways to represent crowns, by their names.
-pub(super) fn trees() -> impl TypedValueParser<Value = Trees> {
-    let possible = Trees::ALL.map(|trees| {
-        PossibleValue::new(trees.name()).help(match trees {
-            Trees::Opaque => "Solid from the highest to the lowest return, as in leaf",
-            Trees::Porous => "Twigs with gaps between them, as in winter",
-            Trees::Measured => "Each part by the share of pulses that passed through it",
-        })
-    });
-    // the parser lets no other name through
-    PossibleValuesParser::new(possible)
-        .map(|name| Trees::ALL.into_iter().find(|trees| trees.name() == name).unwrap_or_default())
-}
-
 fn rule(name: &str) -> Result<Rule, String> {
     Rule::ALL
         .into_iter()
@@ -242,53 +229,6 @@ impl FromStr for NeighborChoice {
         match text {
             "adaptive" => Ok(Self::Adaptive),
             _ => text.parse().map(Self::Fixed).map_err(|_| "not a number of neighbours or `adaptive`".to_owned()),
-        }
-    }
-}
-
-#[derive(Clone, Deserialize)]
-#[serde(try_from = "String")]
-pub(crate) enum OrientChoice {
-    Auto,
-    Given,
-    Up,
-    Scanner,
-    ScannerAt([f64; 3]),
-    Stations(PathBuf),
-    Trajectory(PathBuf),
-    Pulses,
-    Mesh(PathBuf),
-}
-
-impl TryFrom<String> for OrientChoice {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
-        text.parse()
-    }
-}
-
-impl FromStr for OrientChoice {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text.split_once('=') {
-            None => match text {
-                "auto" => Ok(Self::Auto),
-                "given" => Ok(Self::Given),
-                "up" => Ok(Self::Up),
-                "scanner" => Ok(Self::Scanner),
-                "pulses" => Ok(Self::Pulses),
-                _ => Err(
-                    "use auto, given, up, scanner, scanner=X,Y,Z, stations=FILE, trajectory=FILE, pulses or mesh=FILE"
-                        .to_owned(),
-                ),
-            },
-            Some(("scanner", position)) => Ok(Self::ScannerAt(position.parse::<Numbers<3>>()?.0)),
-            Some(("stations", file)) => Ok(Self::Stations(file.into())),
-            Some(("trajectory", file)) => Ok(Self::Trajectory(file.into())),
-            Some(("mesh", file)) => Ok(Self::Mesh(file.into())),
-            Some(_) => Err("use scanner=X,Y,Z, stations=FILE, trajectory=FILE or mesh=FILE".to_owned()),
         }
     }
 }

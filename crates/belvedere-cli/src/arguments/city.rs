@@ -2,8 +2,8 @@
 
 use super::scene::day;
 use super::{
-    AreaChoice, ClearSkyChoice, FarTerrainArguments, MapPosition, NorthArguments, Numbers, RadiationModel, SunPeriod,
-    SunPlaceArguments, ThroughTreesArguments, above_zero, at_least_one, height, known_crs,
+    AreaChoice, ClearSkyChoice, FarTerrainArguments, MapPosition, MemoryAmount, NorthArguments, Numbers,
+    RadiationModel, SunPeriod, SunPlaceArguments, ThroughTreesArguments, above_zero, at_least_one, height, known_crs,
 };
 use belvedere::weather::CalendarDay;
 use belvedere_tiles::{Plan, Topic};
@@ -213,27 +213,6 @@ pub(crate) struct CityMerge {
     /// Raster of all tiles (.tif)
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
-}
-
-/// An amount of memory, bytes.
-#[derive(Clone, Copy)]
-pub(crate) struct MemoryAmount(pub(crate) u64);
-
-impl FromStr for MemoryAmount {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let wrong = || "must be a size such as 3G or 800M".to_owned();
-        let unit = text.chars().next_back().map(|c| c.to_ascii_uppercase());
-        let scale: f64 = match unit {
-            Some('G') => 1e9,
-            Some('M') => 1e6,
-            _ => return Err(wrong()),
-        };
-        let number: f64 = text.get(..text.len() - 1).and_then(|number| number.parse().ok()).ok_or_else(wrong)?;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
-        if number > 0.0 && number.is_finite() { Ok(Self((number * scale) as u64)) } else { Err(wrong()) }
-    }
 }
 
 /// The side of the cells of one kind of result, metres.

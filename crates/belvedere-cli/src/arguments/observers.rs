@@ -1,8 +1,6 @@
 //! Flags of lines of sight and viewsheds.
 
-use super::{
-    MemoryArgument, NorthArguments, Numbers, SceneInput, UnprovenChoice, Usage, above_zero, at_most, height, length,
-};
+use super::{MemoryArgument, NorthArguments, Numbers, SceneInput, Usage, above_zero, at_most, height, length};
 use belvedere::apps::ask::HowSure;
 use belvedere::ground::GroundPoints;
 use belvedere::query::{Curvature, MAX_RANDOM_PAIRS};
@@ -382,4 +380,14 @@ impl FromStr for GroundChoice {
             _ => Err("use auto, classed, found or cloud=FILE".to_owned()),
         }
     }
+}
+
+#[derive(Clone, Copy, ValueEnum, PartialEq, Eq)]
+pub(crate) enum UnprovenChoice {
+    /// As a value of their own: 2
+    Report,
+    /// As visible: 1
+    AsVisible,
+    /// As blocked: 0
+    AsBlocked,
 }

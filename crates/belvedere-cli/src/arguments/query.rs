@@ -1,8 +1,8 @@
 //! Flags of depth maps and of targets in a view.
 
-use super::{BallShape, MeshTargets, SceneInput, ViewChoice, at_most, finite, length};
+use super::{BallShape, MeshTargets, SceneInput, UnprovenChoice, ViewChoice, at_most, finite, length};
 use belvedere::query::MAX_RANDOM_TARGETS;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::path::PathBuf;
 
 #[derive(Args)]
@@ -82,14 +82,4 @@ pub(crate) struct TargetsArguments {
     /// Query all points of the cloud, in their order
     #[arg(long = "self")]
     pub(crate) own: bool,
-}
-
-#[derive(Clone, Copy, ValueEnum, PartialEq, Eq)]
-pub(crate) enum UnprovenChoice {
-    /// As a value of their own: 2
-    Report,
-    /// As visible: 1
-    AsVisible,
-    /// As blocked: 0
-    AsBlocked,
 }

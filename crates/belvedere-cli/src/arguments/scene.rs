@@ -1,13 +1,14 @@
 //! Flags of the scene that a command works on: clouds to build balls from, or a ball file.
 
-use super::balls::trees;
-use super::{MemoryAmount, OrientChoice, Rectangle, known_crs, rectangle};
+use super::{Numbers, Rectangle, known_crs, rectangle};
 use belvedere::io::{ReadOptions, Within};
 use belvedere::medial::Trees;
 use belvedere::weather::CalendarDay;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use serde::Deserialize;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 /// Farther than any height, in any unit.
 const FAR: f64 = 1e9;
@@ -269,7 +270,7 @@ pub(crate) enum AreaChoice {
     File(PathBuf),
 }
 
-impl std::str::FromStr for AreaChoice {
+impl FromStr for AreaChoice {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -325,6 +326,88 @@ mod tests {
         }
         for text in ["", "2021-13", "2021-02-30", "2022..2021", "2021-1-1-1", "spring"] {
             assert!(dates(text).is_err(), "{text}");
+        }
+    }
+}
+
+/// An amount of memory, bytes.
+#[derive(Clone, Copy)]
+pub(crate) struct MemoryAmount(pub(crate) u64);
+
+impl FromStr for MemoryAmount {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let wrong = || "must be a size such as 3G or 800M".to_owned();
+        let unit = text.chars().next_back().map(|c| c.to_ascii_uppercase());
+        let scale: f64 = match unit {
+            Some('G') => 1e9,
+            Some('M') => 1e6,
+            _ => return Err(wrong()),
+        };
+        let number: f64 = text.get(..text.len() - 1).and_then(|number| number.parse().ok()).ok_or_else(wrong)?;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
+        if number > 0.0 && number.is_finite() { Ok(Self((number * scale) as u64)) } else { Err(wrong()) }
+    }
+}
+
+/// The ways to represent crowns, by their names.
+pub(super) fn trees() -> impl TypedValueParser<Value = Trees> {
+    let possible = Trees::ALL.map(|trees| {
+        PossibleValue::new(trees.name()).help(match trees {
+            Trees::Opaque => "Solid from the highest to the lowest return, as in leaf",
+            Trees::Porous => "Twigs with gaps between them, as in winter",
+            Trees::Measured => "Each part by the share of pulses that passed through it",
+        })
+    });
+    // the parser lets no other name through
+    PossibleValuesParser::new(possible)
+        .map(|name| Trees::ALL.into_iter().find(|trees| trees.name() == name).unwrap_or_default())
+}
+
+#[derive(Clone, Deserialize)]
+#[serde(try_from = "String")]
+pub(crate) enum OrientChoice {
+    Auto,
+    Given,
+    Up,
+    Scanner,
+    ScannerAt([f64; 3]),
+    Stations(PathBuf),
+    Trajectory(PathBuf),
+    Pulses,
+    Mesh(PathBuf),
+}
+
+impl TryFrom<String> for OrientChoice {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl FromStr for OrientChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            None => match text {
+                "auto" => Ok(Self::Auto),
+                "given" => Ok(Self::Given),
+                "up" => Ok(Self::Up),
+                "scanner" => Ok(Self::Scanner),
+                "pulses" => Ok(Self::Pulses),
+                _ => Err(
+                    "use auto, given, up, scanner, scanner=X,Y,Z, stations=FILE, trajectory=FILE, pulses or mesh=FILE"
+                        .to_owned(),
+                ),
+            },
+            Some(("scanner", position)) => Ok(Self::ScannerAt(position.parse::<Numbers<3>>()?.0)),
+            Some(("stations", file)) => Ok(Self::Stations(file.into())),
+            Some(("trajectory", file)) => Ok(Self::Trajectory(file.into())),
+            Some(("mesh", file)) => Ok(Self::Mesh(file.into())),
+            Some(_) => Err("use scanner=X,Y,Z, stations=FILE, trajectory=FILE or mesh=FILE".to_owned()),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! `belvedere balls`.
 
-use super::{check_output, check_parent, extension, is_folder, is_written_back};
-use crate::arguments::{BallsArguments, CloudInput, Global, MethodChoice, SideChoice, Usage};
+use crate::arguments::{BallsArguments, CloudInput, Global, MethodChoice, SideChoice, refuse};
+use crate::outputs::balls::with_program;
+use crate::outputs::formats::{check_output, check_parent, extension, is_folder, is_written_back};
 use crate::pipeline::{self, params};
 use crate::run::CommandContext;
 use crate::summary::{Summary, percent};
@@ -26,9 +27,9 @@ pub(crate) fn run(arguments: &BallsArguments, global: &Global) -> Result<Summary
     let balls = parameters.balls(method)?;
     let is_carved = matches!(balls, BallParams::Carved(_));
     if is_carved && (is_folder || arguments.side == SideChoice::Exterior) {
-        let what =
-            "--method carved builds interior balls in a ball file; a folder and --side exterior need tau or angles";
-        return Err(Usage(what.to_owned()).into());
+        return refuse(
+            "--method carved builds interior balls in a ball file; a folder and --side exterior need tau or angles",
+        );
     }
     let mut run = CommandContext::new(global);
     let cloud = if is_folder {
@@ -48,7 +49,7 @@ pub(crate) fn run(arguments: &BallsArguments, global: &Global) -> Result<Summary
                 SideChoice::Exterior => exterior(&arguments.input, &cloud, &params, &mut run)?,
             };
             run.summary.add("balls", model.balls.len());
-            let model = of_program(model, &arguments.input);
+            let model = with_program(model, &arguments.input);
             if model.pulses.is_some() && extension(&arguments.output) != "npz" {
                 run.summary.add("not_written", "pulses: only .npz keeps them, which unproven answers need");
             }
@@ -65,12 +66,6 @@ pub(crate) fn run(arguments: &BallsArguments, global: &Global) -> Result<Summary
     Ok(run.finish())
 }
 
-/// The parts of a model with what made them, and of which clouds.
-pub(super) fn of_program(parts: ModelParts, input: &CloudInput) -> ModelParts {
-    let program = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
-    parts.with_provenance("program", program).with_provenance("input", input.names().join(" "))
-}
-
 /// Refuses what cannot be written to the output, before any point is read.
 fn check(arguments: &BallsArguments, is_folder: bool) -> Result<()> {
     if is_folder {
@@ -78,8 +73,7 @@ fn check(arguments: &BallsArguments, is_folder: bool) -> Result<()> {
         return Ok(());
     }
     if arguments.nan || arguments.simplify.is_some() {
-        let what = "--nan and --simplify write into a folder: give -o a name without extension";
-        return Err(Usage(what.to_owned()).into());
+        return refuse("--nan and --simplify write into a folder: give -o a name without extension");
     }
     check_output("-o", &arguments.output, &["npz", "ply", "laz", "las"])?;
     Ok(())

@@ -1,6 +1,5 @@
 //! `belvedere bench`: how long each stage takes on this machine, from a file of points to a map of shadows.
 
-use super::run_command;
 use crate::arguments::{BenchArguments, Cli, Global, Usage};
 use crate::help;
 use crate::memory;
@@ -20,14 +19,17 @@ const DENSITY: &str = "10";
 /// The question put to the scene: sun, and cells of a raster of its ground.
 const SHADOW: [&str; 6] = ["--sun", "200,35", "--cell", "1", "--no-cache", "-o"];
 
-pub(crate) fn run(arguments: &BenchArguments, global: &Global) -> Result<Summary> {
+/// Runs a command that was parsed.
+type RunCommand = fn(&Cli) -> Result<Summary>;
+
+pub(crate) fn run(arguments: &BenchArguments, global: &Global, run_command: RunCommand) -> Result<Summary> {
     let folder = WorkFolder::new()?;
     let cloud = match &arguments.cloud {
         Some(path) => path.clone(),
         None => {
             let mut words: Vec<OsString> = ["simulate", "town", "--density", DENSITY, "-o"].map(OsString::from).into();
             words.extend([folder.0.join("town").into(), "--extent".into(), arguments.extent.to_string().into()]);
-            measured(&words, global)?;
+            measured(&words, global, run_command)?;
             folder.0.join("town").join("cloud.laz")
         }
     };
@@ -36,7 +38,7 @@ pub(crate) fn run(arguments: &BenchArguments, global: &Global) -> Result<Summary
     words.push(folder.0.join("shadow.tif").into());
     words.extend(arguments.flags.iter().cloned());
     let before = memory::processor_seconds();
-    let found = measured(&words, global)?.into_entries();
+    let found = measured(&words, global, run_command)?.into_entries();
     let processor = memory::processor_seconds().zip(before).map(|(after, before)| after - before);
 
     let points = found.get("points").and_then(serde_json::Value::as_f64).unwrap_or(0.0);
@@ -68,7 +70,7 @@ pub(crate) fn run(arguments: &BenchArguments, global: &Global) -> Result<Summary
 }
 
 /// Runs a command of this program as if it were typed.
-fn measured(words: &[OsString], global: &Global) -> Result<Summary> {
+fn measured(words: &[OsString], global: &Global, run_command: RunCommand) -> Result<Summary> {
     let typed = std::iter::once(OsString::from("belvedere")).chain(words.iter().cloned());
     let program = help::command();
     let matches = program.clone().try_get_matches_from(typed).map_err(|error| Usage(error.to_string()))?;

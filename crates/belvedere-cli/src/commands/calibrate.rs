@@ -1,7 +1,9 @@
 //! `belvedere calibrate`.
 
-use super::{balls, check_output, extension};
-use crate::arguments::{CalibrateArguments, CloudInput, Global, MethodChoice, Usage};
+use crate::arguments::{CalibrateArguments, CloudInput, Global, MethodChoice, refuse};
+use crate::outputs::balls::with_program;
+use crate::outputs::formats::{check_output, extension};
+use crate::outputs::text::write_text;
 use crate::pipeline::{self, is_file, params};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -9,9 +11,8 @@ use anyhow::Result;
 use belvedere::Error;
 use belvedere::apps::ask;
 use belvedere::apps::survey_reliability::{ReliabilityParams, SurveyReliability};
-use belvedere::io::{atomic, is_ball_file, write_balls};
+use belvedere::io::{is_ball_file, write_balls};
 use std::borrow::Cow;
-use std::io::Write;
 use std::path::Path;
 
 pub(crate) fn run(arguments: &CalibrateArguments, global: &Global) -> Result<Summary> {
@@ -36,10 +37,10 @@ pub(crate) fn run(arguments: &CalibrateArguments, global: &Global) -> Result<Sum
     if !scenes.is_empty() {
         // what answers come from has all pulses
         let (built, _) = run.aside(|run| pipeline::model_of(Cow::Owned(cloud), &model, input, run));
-        let parts = balls::of_program(ask::with_reliability(built?.into_parts(), &answers.found), input);
+        let parts = with_program(ask::with_reliability(built?.into_parts(), &answers.found), input);
         run.stage("writing balls", 0, |_| scenes.iter().try_for_each(|output| write_balls(*output, &parts)))?;
     }
-    run.summary.add("written", output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    run.summary.add_paths("written", output);
     Ok(run.finish())
 }
 
@@ -48,8 +49,7 @@ fn refuse_balls(input: &CloudInput) -> Result<()> {
     match input.clouds.iter().find(|path| is_file(path) && is_ball_file(*path).unwrap_or(false)) {
         Some(path) => {
             let path = path.display();
-            Err(Usage(format!("{path} is a ball file, which has no points: give the cloud that it was made from"))
-                .into())
+            refuse(format!("{path} is a ball file, which has no points: give the cloud that it was made from"))
         }
         None => Ok(()),
     }
@@ -68,5 +68,5 @@ fn name_clouds(input: &CloudInput, error: Error) -> anyhow::Error {
 
 fn write_report(output: &Path, found: &SurveyReliability) -> belvedere::Result<()> {
     let report = serde_json::Value::from(Summary::of(found));
-    atomic::write(output, |file| writeln!(file, "{report:#}").map_err(Error::io(output)))
+    write_text(output, &format!("{report:#}\n"))
 }

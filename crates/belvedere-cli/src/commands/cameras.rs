@@ -1,19 +1,18 @@
 //! `belvedere cameras`.
 
 mod camera_targets;
-mod places;
 mod results;
 
-use super::surroundings::ObserverUse;
-use super::{check_output, warn_of_geojson};
-use crate::arguments::{CamerasArguments, Global, Usage};
+use crate::arguments::{CamerasArguments, Global, refuse};
+use crate::inputs::camera_places::{self, candidates_on_path};
+use crate::inputs::observers::ObserverUse;
+use crate::outputs::formats::{check_output, extension, warn_of_geojson};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Ask, CameraGoal, Candidates};
 use belvedere::query::UnprovenAs;
-pub(super) use places::candidates_on_path;
 use results::CameraOutput;
 use std::path::PathBuf;
 
@@ -50,7 +49,7 @@ pub(crate) fn run(arguments: &CamerasArguments, global: &Global) -> Result<Summa
     if let Some(output) = &arguments.footprints {
         run.stage("writing", 0, |_| shown.write_footprints(output))?;
     }
-    run.summary.add("written", written.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    run.summary.add_paths("written", &written);
     Ok(run.finish())
 }
 
@@ -72,7 +71,7 @@ fn question(arguments: &CamerasArguments) -> Result<ask::CamerasQuestion> {
         search_limit: arguments.search_limit,
         candidates,
         camera_height: arguments.camera_height,
-        lens: places::lens(&arguments.lens),
+        lens: camera_places::lens(&arguments.lens),
         targets: ask::CameraTargets {
             height: arguments.targets.target_height.unwrap_or(usual.targets.height),
             ground: arguments.targets.ground.points(),
@@ -92,10 +91,10 @@ fn check(arguments: &CamerasArguments) -> Result<()> {
     let are_cells = camera_targets::are_cells(&arguments.targets);
     for output in &arguments.output {
         check_output("-o", output, &["geojson", "gpkg", "tif", "tiff", "png", "csv"])?;
-        let is_map = ["tif", "tiff", "png"].contains(&super::extension(output).as_str());
+        let is_map = ["tif", "tiff", "png"].contains(&extension(output).as_str());
         if is_map && !are_cells {
             let output = output.display();
-            return Err(Usage(format!("{output}: rasters and maps need cells as targets; use .csv or .geojson")).into());
+            return refuse(format!("{output}: rasters and maps need cells as targets; use .csv or .geojson"));
         }
     }
     if let Some(output) = &arguments.curve {
@@ -104,7 +103,7 @@ fn check(arguments: &CamerasArguments) -> Result<()> {
     if let Some(output) = &arguments.footprints {
         check_output("--footprints", output, &["geojson", "gpkg"])?;
         if !are_cells {
-            return Err(Usage("--footprints needs cells as targets".to_owned()).into());
+            return refuse("--footprints needs cells as targets");
         }
     }
     camera_targets::check(&arguments.targets, are_cells)

@@ -2,29 +2,22 @@
 
 mod questions;
 
-use super::{check_folder, check_output};
 use crate::arguments::{
-    City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, FarTerrainArguments, Global, PlanArguments,
-    ThroughTreesArguments, Usage,
+    City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, Global, PlanArguments, Usage, refuse,
 };
-use crate::pipeline::areas;
+use crate::in_tiles::{PROGRAM, planned, refuse_failed};
+use crate::outputs::formats::{check_folder, check_output};
 use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
-use anyhow::{Result, bail};
+use anyhow::Result;
 use belvedere::apps::ask::remark_on_cleared;
 use belvedere::io::Insistence;
 use belvedere::{Error, Parameter};
 use belvedere_tiles::{
-    Plan, PlanParams, RunParams, RunReport, Shard, SideFile, Steps, TileQuestion, UnfinishedRun, merge,
-    run as run_tiles, status as status_of,
+    Plan, PlanParams, RunParams, Shard, Steps, TileQuestion, UnfinishedRun, merge, run as run_tiles,
+    status as status_of,
 };
-use std::path::PathBuf;
 use std::time::Instant;
-
-/// Name and version of the program, as plans say them.
-pub(super) const PROGRAM: &str = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
-/// Maximum number of failures that are listed one by one.
-const MAX_LISTED: usize = 10;
 
 pub(crate) fn run(arguments: &City, global: &Global) -> Result<Summary> {
     match &arguments.step {
@@ -83,34 +76,6 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
     Ok(run.finish())
 }
 
-/// The plan with what will be built, before far terrain, and with light through trees at a latitude, radians, where one
-/// was typed.
-pub(super) fn planned(
-    plan: Plan,
-    changes: &PlanArguments,
-    far: Option<&FarTerrainArguments>,
-    trees: Option<(&ThroughTreesArguments, Option<f64>)>,
-) -> Result<Plan> {
-    let meshes = changes.add.iter().map(|path| SideFile::new(path)).collect::<belvedere::Result<Vec<_>>>()?;
-    let plan = plan.with_meshes(meshes)?;
-    let frame = plan.frame()?;
-    let mut cleared = Vec::new();
-    for choice in &changes.clear {
-        cleared.extend(areas(choice, &frame)?);
-    }
-    let plan = plan.with_cleared(cleared)?;
-    let side = |path: &Option<PathBuf>| path.as_deref().map(SideFile::new).transpose();
-    let plan = match far {
-        Some(far) => plan.with_far_terrain(side(&far.terrain)?, side(&far.horizon)?)?,
-        None => plan,
-    };
-    let Some((trees, latitude)) = trees else { return Ok(plan) };
-    match trees.choice()?.crowns(plan.knows_crowns(), plan.crown_density(latitude)?)? {
-        Some(crowns) => Ok(plan.with_light_through_trees(crowns)?),
-        None => Ok(plan),
-    }
-}
-
 fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
     let plan = Plan::read(&arguments.run)?;
     let mut run = CommandContext::new(global);
@@ -127,20 +92,6 @@ fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
         .headline("balls of <balls_made> tiles made, and <answers_made> tiles of results")
         .headline("done before: <already_done>");
     Ok(run.finish())
-}
-
-/// The error of a run of which something failed, with what to do.
-pub(super) fn refuse_failed(report: &RunReport, advice: &str) -> Result<()> {
-    if let Some((first, _)) = report.failed.split_first() {
-        let listed = report.failed.iter().take(MAX_LISTED).map(|why| format!("\n  {why}")).collect::<String>();
-        let more = report.failed.len().saturating_sub(MAX_LISTED);
-        let more = if more > 0 { format!("\n  and {more} more (belvedere city status)") } else { String::new() };
-        if report.failed.len() == 1 {
-            bail!("{first}; all else is done; {advice}");
-        }
-        bail!("{} steps failed; all else is done; {advice}:{listed}{more}", report.failed.len());
-    }
-    Ok(())
 }
 
 fn status(arguments: &CityStatus) -> Result<Summary> {
@@ -164,7 +115,7 @@ fn merge_tiles(arguments: &CityMerge, global: &Global) -> Result<Summary> {
     let names = || plan.questions.iter().map(TileQuestion::name).collect::<Vec<_>>().join(", ");
     let question = match (&arguments.result, &plan.questions[..]) {
         (None, [only]) => only,
-        (None, _) => return Err(Usage(format!("--result is missing: give one of {}", names())).into()),
+        (None, _) => return refuse(format!("--result is missing: give one of {}", names())),
         (Some(name), questions) => questions
             .iter()
             .find(|question| question.name() == name)

@@ -1,10 +1,10 @@
 //! `belvedere comfort`.
 
-use super::check_output;
-use super::map_shapes::{TypedAre, shapes, wrong_shape};
-use super::sky_view::sky_parts;
-use super::windows::{FaceChoice, WindowColumn, WindowFile, coordinates};
-use crate::arguments::{ComfortArguments, CornersArgument, Global, Usage};
+use crate::arguments::{ComfortArguments, CornersArgument, Global, refuse};
+use crate::inputs::map_shapes::{TypedAre, shapes, wrong_shape};
+use crate::inputs::sun::sky_parts;
+use crate::inputs::windows::{FaceChoice, WindowColumn, WindowFile, coordinates};
+use crate::outputs::formats::check_output;
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &ComfortArguments, global: &Global) -> Result<Summa
         output.map_or(Ok(()), |output| check_output(flag, output, &["csv"]))?;
     }
     if !arguments.when.is_given() {
-        return Err(Usage("a period is missing: give --date DAY, or --from and --to".to_owned()).into());
+        return refuse("a period is missing: give --date DAY, or --from and --to");
     }
     let mut question = question(arguments, global)?;
     question.check()?;
@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &ComfortArguments, global: &Global) -> Result<Summa
             question.along = RoutesOrWindows::Windows(file.given.clone());
             PlaceSource::Windows(file)
         }
-        (None, None) => return Err(Usage("targets are missing: give --route or --windows".to_owned()).into()),
+        (None, None) => return refuse("targets are missing: give --route or --windows"),
     };
     let answers = run.ask(&scene, &question, &Places::Scene)?;
     let shown = ComfortOutput { found: &answers.found, source, frame: scene.frame() };
@@ -59,8 +59,7 @@ pub(crate) fn run(arguments: &ComfortArguments, global: &Global) -> Result<Summa
     if let Some(output) = &arguments.times {
         shown.write_times(output)?;
     }
-    let written = outputs.into_iter().filter_map(|(_, path)| path).map(|path| path.display().to_string());
-    run.summary.add("written", written.collect::<Vec<_>>());
+    run.summary.add_paths("written", outputs.into_iter().filter_map(|(_, path)| path));
     Ok(run.finish())
 }
 

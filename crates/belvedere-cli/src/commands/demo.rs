@@ -1,10 +1,11 @@
 //! `belvedere demo`: a simulated town, all computations on it, and the accuracy of the answers.
 
-use super::check_folder;
 use crate::arguments::{CloudInput, Demo, Global, UpChoice};
+use crate::outputs::formats::check_folder;
+use crate::outputs::text::write_text;
 use crate::pipeline;
 use crate::run::CommandContext;
-use crate::simulated::{cloud_of, write_text};
+use crate::simulated::cloud_of;
 use crate::summary::{Summary, percent};
 use anyhow::Result;
 use belvedere::Frame;

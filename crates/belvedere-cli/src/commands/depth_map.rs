@@ -1,7 +1,7 @@
 //! `belvedere depth-map`.
 
-use super::{check_output, extension};
-use crate::arguments::{DepthMapArguments, Global, Usage};
+use crate::arguments::{DepthMapArguments, Global, refuse};
+use crate::outputs::formats::{check_output, extension};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -25,15 +25,15 @@ pub(crate) fn run(arguments: &DepthMapArguments, global: &Global) -> Result<Summ
         check_output("--ball-ids", path, &["tif", "tiff", "npy"])?;
     }
     if !arguments.scene.plan.add.is_empty() {
-        return Err(Usage("--add: depth maps show only balls; use `belvedere query`".to_owned()).into());
+        return refuse("--add: depth maps show only balls; use `belvedere query`");
     }
     arguments.view.check()?;
     let mut run = CommandContext::new(global);
     let mut scene = pipeline::scene(&arguments.scene, KeepPoints::LetGo, &mut run)?;
     scene.profile = arguments.shape.profile.map_or(scene.profile, Profile::from);
+    let scene = scene.into_question_scene(None, None, &run)?;
     let from = arguments.view.view_from(&scene, &mut run.summary)?;
     let question = ask::DepthMapQuestion { from: Some(from), ball_ids: arguments.balls_id.is_some() };
-    let scene = scene.into_question_scene(None, None, &run)?;
     let answers = run.ask(&scene, &question, &Places::Scene)?;
     let map = &answers.found;
     let place = match &from {
@@ -47,7 +47,7 @@ pub(crate) fn run(arguments: &DepthMapArguments, global: &Global) -> Result<Summ
             _ => write_tif_f32(output, &map.depth, place.as_ref(), Some(NOTHING_HIT), Some(description(&from))),
         })?;
     }
-    run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    run.summary.add_paths("written", &arguments.output);
     if let (Some(path), Some(balls)) = (&arguments.balls_id, &map.balls) {
         run.stage("writing", 0, |_| match extension(path).as_str() {
             "npy" => write_npy_u32_2d(path, balls),

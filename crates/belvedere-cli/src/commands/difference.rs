@@ -1,7 +1,9 @@
 //! `belvedere difference` of two rasters.
 
-use super::{check_output, extension};
+mod tables;
+
 use crate::arguments::{DifferenceArguments, Global};
+use crate::outputs::formats::{check_output, extension};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
@@ -25,7 +27,7 @@ pub(crate) fn run(arguments: &DifferenceArguments, global: &Global) -> Result<Su
     }
     let mut run = CommandContext::new(global);
     if [&arguments.before, &arguments.after].iter().all(|path| extension(path) == "csv") {
-        super::difference_of_tables::run(arguments, &mut run)?;
+        tables::run(arguments, &mut run)?;
         return Ok(run.finish());
     }
     let read = |path: &Path, run: &mut CommandContext| run.stage("reading", 0, |_| read_tif(path));
@@ -80,7 +82,7 @@ pub(crate) fn run(arguments: &DifferenceArguments, global: &Global) -> Result<Su
         )
         .headline("mean <difference.mean_before> before, <difference.mean_after> after")
         .headline("largest gain <difference.largest_gain>, largest loss <difference.largest_loss>");
-    run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    run.summary.add_paths("written", &arguments.output);
     Ok(run.finish())
 }
 

@@ -1,9 +1,9 @@
 //! `belvedere envelope`.
 
-use super::check_output;
-use super::heights::write_heights;
-use super::map_shapes::{NamedShape, TypedAre, shapes, wrong_shape};
-use crate::arguments::{CornersArgument, EnvelopeArguments, Global, Usage};
+use crate::arguments::{CornersArgument, EnvelopeArguments, Global, refuse};
+use crate::inputs::map_shapes::{NamedShape, TypedAre, shapes, wrong_shape};
+use crate::outputs::formats::{check_output, extension};
+use crate::outputs::heights::write_heights;
 use crate::pipeline::{self, KeepPoints, LoadedScene, is_file, mesh_in};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -16,12 +16,13 @@ use belvedere::apps::solar_envelope::EnvelopeParams;
 use belvedere::apps::targets::Measure;
 use belvedere::figures::write_png;
 use belvedere::ground::highest_points;
-use belvedere::io::{FeatureShape, MetadataTag, ReadReport, Source, is_ball_file, is_mesh, write_mesh};
+use belvedere::io::{FeatureShape, MetadataTag, Source, is_ball_file, is_mesh, write_mesh};
 use belvedere::model::{ModelParts, SceneModel};
 use belvedere::results::{georeference, measure_map};
 use belvedere::vector::to_f32;
 use std::io::Read;
 use std::path::Path;
+use std::sync::Arc;
 
 pub(crate) fn run(arguments: &EnvelopeArguments, global: &Global) -> Result<Summary> {
     check_outputs(arguments)?;
@@ -47,8 +48,7 @@ pub(crate) fn run(arguments: &EnvelopeArguments, global: &Global) -> Result<Summ
             write_heights(output, &tops, (&envelope.grid, frame), what, &run.tags)
         })?;
     }
-    let written = arguments.output.iter().chain(&arguments.tops).map(|path| path.display().to_string());
-    run.summary.add("written", written.collect::<Vec<_>>());
+    run.summary.add_paths("written", arguments.output.iter().chain(&arguments.tops));
     Ok(run.finish())
 }
 
@@ -65,12 +65,10 @@ fn check_outputs(arguments: &EnvelopeArguments) -> Result<()> {
         check_output("--tops", output, &["tif", "tiff", "npy"])?;
     }
     if arguments.sun.is_empty() && !arguments.when.is_given() {
-        return Err(
-            Usage("protected suns are missing: give --date DAY, --from and --to, or --sun AZ,EL".to_owned()).into()
-        );
+        return refuse("protected suns are missing: give --date DAY, --from and --to, or --sun AZ,EL");
     }
     if !arguments.credit_shade && arguments.shell.shell.is_some() {
-        return Err(Usage("--shell needs --credit-shade".to_owned()).into());
+        return refuse("--shell needs --credit-shade");
     }
     Ok(())
 }
@@ -104,13 +102,8 @@ fn scene(arguments: &EnvelopeArguments, run: &mut CommandContext) -> Result<Load
     let bounds = pipeline::bounds_of(&cloud)?;
     let parts = ModelParts { frame: cloud.frame.clone(), bounds, ..ModelParts::default() };
     let profile = arguments.scene.balls.parameters()?.profile();
-    Ok(LoadedScene {
-        model: SceneModel::from_parts(parts)?,
-        cloud,
-        left_out: ReadReport::default(),
-        profile,
-        ground_store: None,
-    })
+    let bare = LoadedScene::without_points(SceneModel::from_parts(parts)?, profile);
+    Ok(LoadedScene { cloud: Arc::new(cloud), ..bare })
 }
 
 /// Rings of the parcel, local metres.
@@ -131,7 +124,7 @@ fn protect(arguments: &EnvelopeArguments, frame: &Frame, run: &mut CommandContex
     let mut all = Vec::new();
     for protect in &arguments.protect {
         if let CornersArgument::File(path) = protect
-            && super::extension(path) != "geojson"
+            && extension(path) != "geojson"
             && is_mesh(path)
             && !is_geojson(path)
         {
@@ -157,7 +150,7 @@ fn is_geojson(path: &Path) -> bool {
     let mut start = Vec::new();
     let read = Source::path(path).into_reader().map(|(file, _)| file.take(1 << 16).read_to_end(&mut start));
     let is_read = matches!(read, Ok(Ok(_)));
-    super::extension(path) == "json" && is_read && !String::from_utf8_lossy(&start).contains("CityJSON")
+    extension(path) == "json" && is_read && !String::from_utf8_lossy(&start).contains("CityJSON")
 }
 
 fn write_one(
@@ -167,7 +160,7 @@ fn write_one(
     tags: &[MetadataTag],
 ) -> Result<()> {
     let (frame, EnvelopeResults { envelope, ground }) = (scene.frame(), &answers.found);
-    match super::extension(output).as_str() {
+    match extension(output).as_str() {
         "ply" | "obj" => {
             let mut mesh = envelope.to_mesh(frame.origin)?;
             mesh.crs = frame.crs.clone();

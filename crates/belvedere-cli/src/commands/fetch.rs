@@ -1,7 +1,7 @@
 //! `belvedere fetch`: open surveys of a place, and their points.
 
-use super::{check_folder, check_output, is_folder};
 use crate::arguments::{FetchArguments, Global};
+use crate::outputs::formats::{check_folder, check_output, is_folder};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;

@@ -1,10 +1,10 @@
 //! `belvedere glare`.
 
-use super::result_columns::write_columns;
-use super::surroundings::min_count;
-use super::windows::{FaceChoice, WindowFile};
-use super::{check_output, extension};
-use crate::arguments::{GlareArguments, Global, Usage};
+use crate::arguments::{GlareArguments, Global, refuse};
+use crate::inputs::observers::min_count;
+use crate::inputs::windows::{FaceChoice, WindowFile};
+use crate::outputs::formats::{check_output, extension};
+use crate::outputs::result_columns::write_columns;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &GlareArguments, global: &Global) -> Result<Summary
         check_output("--by-hour", output, &["csv"])?;
     }
     if is_mesh(&arguments.reflectors) {
-        return Err(Usage("--reflectors: give a table (.csv) of rectangles, not a mesh".to_owned()).into());
+        return refuse("--reflectors: give a table (.csv) of rectangles, not a mesh");
     }
     check_charts(arguments, min_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
     let mut run = CommandContext::new(global);
@@ -50,12 +50,10 @@ pub(crate) fn run(arguments: &GlareArguments, global: &Global) -> Result<Summary
             _ => write_columns(output, None, &found.columns(&names)),
         })?;
     }
-    let mut written: Vec<String> = arguments.output.iter().map(|path| path.display().to_string()).collect();
     if let Some(output) = &arguments.by_hour {
         run.stage("writing", 0, |_| write_columns(output, None, &found.columns_by_hour()))?;
-        written.push(output.display().to_string());
     }
-    run.summary.add("written", written);
+    run.summary.add_paths("written", arguments.output.iter().chain(&arguments.by_hour));
     Ok(run.finish())
 }
 
@@ -92,8 +90,7 @@ fn check_charts(arguments: &GlareArguments, count: usize) -> Result<()> {
     match arguments.output.iter().find(|output| count > 1 && extension(output) == "png") {
         Some(output) => {
             let output = output.display();
-            let what = format!("{output}: a chart is of a single observer, but there are {count}; use .csv");
-            Err(Usage(what).into())
+            refuse(format!("{output}: a chart is of a single observer, but there are {count}; use .csv"))
         }
         None => Ok(()),
     }
@@ -103,8 +100,7 @@ fn check_charts(arguments: &GlareArguments, count: usize) -> Result<()> {
 fn check_days(arguments: &GlareArguments, count: usize) -> Result<()> {
     match arguments.output.iter().find(|output| count > MAX_DAYS && extension(output) == "png") {
         Some(output) => {
-            let what = format!("{}: a chart holds two years, but there are {count} days; use .csv", output.display());
-            Err(Usage(what).into())
+            refuse(format!("{}: a chart holds two years, but there are {count} days; use .csv", output.display()))
         }
         None => Ok(()),
     }

@@ -1,8 +1,8 @@
 //! `belvedere heat`.
 
-use super::targets::TargetOutput;
 use crate::arguments::{Global, HeatArguments};
-use crate::pipeline::{self, KeepPoints};
+use crate::outputs::targets::TargetOutput;
+use crate::pipeline::KeepPoints;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -18,10 +18,7 @@ pub(crate) fn run(arguments: &HeatArguments, global: &Global) -> Result<Summary>
     let weather = run.stage("reading weather", 0, |_| read_weather(&arguments.weather))?;
     let question = question(arguments, weather)?;
     question.check()?;
-    arguments.places.check_on_map(&arguments.scene.input)?;
-    let mut scene = pipeline::scene(&arguments.scene, KeepPoints::Keep, &mut run)?;
-    arguments.places.far.set(&mut scene, &mut run)?;
-    let scene = scene.into_question_scene(Some(&arguments.places.ground), arguments.shell.shell, &run)?;
+    let scene = arguments.places.scene(&arguments.scene, arguments.shell.shell, KeepPoints::Keep, &mut run)?;
     let (places, source) = arguments.places.places(&scene, &mut run)?;
     let answers = run.ask(&scene, &question, &places)?;
     let shown = TargetOutput::new(&answers.found, source, &scene);

@@ -1,15 +1,14 @@
 //! `belvedere horizon`.
 
-use super::surroundings::min_count;
-use super::{check_output, extension};
-use crate::arguments::{BelowChoice, Global, HorizonArguments, Usage};
+use crate::arguments::{BelowChoice, Global, HorizonArguments, refuse};
+use crate::inputs::observers::min_count;
+use crate::outputs::formats::{check_output, extension};
+use crate::outputs::text::write_lines;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Ask, BelowLevel, HorizonResults, Places};
 use belvedere::figures::{horizon_picture, write_png};
-use belvedere::io::atomic;
-use std::io::Write;
 use std::path::Path;
 
 pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summary> {
@@ -46,7 +45,7 @@ pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summa
             _ => write_columns(output, &answers.found),
         })?;
     }
-    run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    run.summary.add_paths("written", &arguments.output);
     Ok(run.finish())
 }
 
@@ -55,17 +54,15 @@ fn check_formats(arguments: &HorizonArguments, count: usize) -> Result<()> {
     let has_no_interval =
         |output: &&std::path::PathBuf| arguments.interval.interval && ["txt", "hor"].contains(&&*extension(output));
     if let Some(output) = arguments.output.iter().find(has_no_interval) {
-        let what = format!(
+        return refuse(format!(
             "{}: the format has no columns of an interval; use .csv, or leave out --interval",
             output.display()
-        );
-        return Err(Usage(what).into());
+        ));
     }
     match arguments.output.iter().find(|output| count > 1 && extension(output) != "csv") {
         Some(output) => {
             let output = output.display();
-            let what = format!("{output}: the format holds a single observer, but there are {count}; use .csv");
-            Err(Usage(what).into())
+            refuse(format!("{output}: the format holds a single observer, but there are {count}; use .csv"))
         }
         None => Ok(()),
     }
@@ -104,9 +101,4 @@ fn write_columns(output: &Path, found: &HorizonResults) -> belvedere::Result<()>
         })
     };
     write_lines(output, std::iter::once(header).chain((0..*count).map(row)))
-}
-
-pub(super) fn write_lines(output: &Path, lines: impl Iterator<Item = String>) -> belvedere::Result<()> {
-    let text: String = lines.map(|line| line + "\n").collect();
-    atomic::write(output, |file| file.write_all(text.as_bytes()).map_err(belvedere::Error::io(output)))
 }

@@ -1,6 +1,6 @@
 //! `belvedere info`.
 
-use crate::arguments::{Global, Info, Usage};
+use crate::arguments::{Global, Info, refuse};
 use crate::pipeline::{self, is_file};
 use crate::run::CommandContext;
 use crate::summary::{Summary, rounded, sections, whole};
@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &Info, global: &Global) -> Result<Summary> {
         && is_ball_file(path)?
     {
         if arguments.input.bounds.is_some() {
-            return Err(Usage(format!("--bounds is for point clouds, but {} is a ball file", path.display())).into());
+            return refuse(format!("--bounds is for point clouds, but {} is a ball file", path.display()));
         }
         return Ok(of_balls(&run.stage("reading balls", 0, |_| read_balls(path))?));
     }

@@ -2,13 +2,13 @@
 
 mod hours;
 mod planes;
-pub(super) mod radiation;
 
-use super::in_tiles::TypedCells;
-use super::targets::TargetOutput;
-use super::warn_of_geojson;
-use crate::arguments::{Global, IrradianceArguments, SkyOutputs, SkyPlaces, Usage};
-use crate::pipeline::{self, KeepPoints};
+use crate::arguments::{Global, IrradianceArguments, SkyOutputs, SkyPlaces, refuse};
+use crate::in_tiles::TypedCells;
+use crate::inputs::radiation;
+use crate::outputs::formats::warn_of_geojson;
+use crate::outputs::targets::TargetOutput;
+use crate::pipeline::KeepPoints;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -33,7 +33,7 @@ fn refuse_flags_of_places(arguments: &IrradianceArguments, outputs: &SkyOutputs)
         ("--facing", facing.is_some()),
     ];
     match given.into_iter().find(|(_, is_given)| *is_given) {
-        Some((flag, _)) => Err(Usage(format!("{flag} needs -o")).into()),
+        Some((flag, _)) => refuse(format!("{flag} needs -o")),
         None => Ok(()),
     }
 }
@@ -76,13 +76,9 @@ pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Su
     if wants_places && cells.answered(ask::Question::Irradiance(question.clone()), None, &mut run)?.is_some() {
         return Ok(run.finish());
     }
-    arguments.places.check_on_map(&arguments.scene.input)?;
-    let needs_points = question.roofs.is_some() || arguments.places.needs_points();
-    let points = if needs_points { KeepPoints::Keep } else { KeepPoints::LetGo };
-    let mut scene = pipeline::scene(&arguments.scene, points, &mut run)?;
-    arguments.places.far.set(&mut scene, &mut run)?;
-    warn_of_geojson(&arguments.planes, &scene.cloud.frame.crs, &mut run.summary);
-    let scene = scene.into_question_scene(Some(&arguments.places.ground), arguments.shell.shell, &run)?;
+    let points = if question.roofs.is_some() { KeepPoints::Keep } else { arguments.places.needed_points() };
+    let scene = arguments.places.scene(&arguments.scene, arguments.shell.shell, points, &mut run)?;
+    warn_of_geojson(&arguments.planes, &scene.frame().crs, &mut run.summary);
     if let (Some(roofs), Some(path)) = (&mut question.roofs, &arguments.photovoltaics.footprints) {
         let footprints = run.stage("reading footprints", 0, |_| read_footprints(path.as_path(), scene.frame()))?;
         roofs.footprints = Some(Arc::new(footprints));

@@ -1,8 +1,8 @@
 //! `belvedere isovist`.
 
-use super::surroundings::{min_count, rows_as_given};
-use super::{check_output, extension};
-use crate::arguments::{Global, IsovistArguments, Usage};
+use crate::arguments::{Global, IsovistArguments, refuse};
+use crate::inputs::observers::{min_count, rows_as_given};
+use crate::outputs::formats::{check_output, extension};
 use crate::pipeline::scene_in_reach;
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -53,7 +53,7 @@ pub(crate) fn run(arguments: &IsovistArguments, global: &Global) -> Result<Summa
             _ => write_rows(output, &columns, &given),
         })?;
     }
-    run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    run.summary.add_paths("written", &arguments.output);
     Ok(run.finish())
 }
 
@@ -62,7 +62,7 @@ fn check_pictures(arguments: &IsovistArguments, count: usize) -> Result<()> {
     match arguments.output.iter().find(|output| count > 1 && extension(output) == "png") {
         Some(output) => {
             let output = output.display();
-            Err(Usage(format!("{output}: a picture shows a single observer, but there are {count}")).into())
+            refuse(format!("{output}: a picture shows a single observer, but there are {count}"))
         }
         None => Ok(()),
     }

@@ -1,11 +1,11 @@
 //! `belvedere landmark`.
 
-pub(super) mod landmark_shape;
 mod results;
 
-use super::surroundings::{ObserverUse, observer_rows, rows_as_given};
-use super::{check_output, extension};
-use crate::arguments::{Global, LandmarkArguments, Usage};
+use crate::arguments::{Global, LandmarkArguments, refuse};
+use crate::inputs::landmark_shape;
+use crate::inputs::observers::{ObserverUse, observer_rows, rows_as_given};
+use crate::outputs::formats::{check_output, extension};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -70,10 +70,7 @@ fn check_outputs(arguments: &LandmarkArguments) -> Result<()> {
         check_output("-o", output, &["csv", "tif", "tiff", "png"])?;
         if arguments.observers.is_some() && extension(output) != "csv" {
             let output = output.display();
-            return Err(Usage(format!(
-                "{output}: rasters and maps need a grid of observers; with --observers use .csv"
-            ))
-            .into());
+            return refuse(format!("{output}: rasters and maps need a grid of observers; with --observers use .csv"));
         }
     }
     Ok(())

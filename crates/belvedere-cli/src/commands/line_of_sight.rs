@@ -1,15 +1,15 @@
 //! `belvedere line-of-sight`.
 
-use super::far_terrain::set_terrain;
-use super::outputs::warn_of_geojson;
-use super::surroundings::{ObserverUse, observer_rows};
-use super::{check_output, extension};
-use crate::arguments::{Global, LineOfSightArguments, LinesArguments, MapPosition, Usage};
+use crate::arguments::{Global, LineOfSightArguments, MapPosition, refuse};
+use crate::inputs::far_terrain::set_terrain;
+use crate::inputs::line_pairs::{ENDS, pairs};
+use crate::inputs::observers::{ObserverUse, observer_rows};
+use crate::outputs::formats::warn_of_geojson;
+use crate::outputs::formats::{check_output, extension};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
-use belvedere::Frame;
 use belvedere::apps::ask::{
     Ask, LinesOfSightQuestion, NetworkPlaces, Places, ProfileRows, Scene, SightColumns, SightNetwork, SightsResults,
     Standing,
@@ -17,19 +17,12 @@ use belvedere::apps::ask::{
 use belvedere::apps::profile::SightProfile;
 use belvedere::figures::{DistanceProfile, profile_picture, write_png};
 use belvedere::io::{
-    FEATURE_EXTENSIONS, FeatureShape, MapFeature, PathLine, RowsAre, TableCells, TextRows, property, read_features,
-    read_table, row_properties, with_columns_read, write_graphml, write_places, write_table,
+    PathLine, RowsAre, TableCells, TextRows, row_properties, with_columns_read, write_graphml, write_places,
+    write_table,
 };
-use belvedere::query::{Answer, UnprovenAs, random_pairs};
+use belvedere::query::{Answer, UnprovenAs};
 use belvedere::vector::{length, sub};
-use serde_json::Value;
 use std::path::Path;
-
-/// Columns of a table of pairs.
-const ENDS: [&str; 6] = ["ax", "ay", "az", "bx", "by", "bz"];
-/// Columns or properties of the heights of observer and target above the ground, as ArcGIS names them, in the unit of
-/// the file.
-const HEIGHTS: [&str; 2] = ["OFFSETA", "OFFSETB"];
 
 pub(crate) fn run(arguments: &LineOfSightArguments, global: &Global) -> Result<Summary> {
     let question = question(arguments)?;
@@ -57,11 +50,10 @@ pub(crate) fn run(arguments: &LineOfSightArguments, global: &Global) -> Result<S
     for output in &arguments.outputs {
         run.stage("writing", 0, |_| write(output, found, &scene, &rows))?;
     }
-    let written: Vec<String> = arguments.outputs.iter().map(|path| path.display().to_string()).collect();
-    if let [one] = &written[..] {
-        run.summary.add("written", one.clone());
-    } else if !written.is_empty() {
-        run.summary.add("written", written);
+    match &arguments.outputs[..] {
+        [] => {}
+        [one] => drop(run.summary.add("written", one.display().to_string())),
+        several => drop(run.summary.add_paths("written", several)),
     }
     warn_of_geojson(&arguments.outputs, &scene.frame().crs, &mut run.summary);
     if let (Some(output), Some(profile)) = (&arguments.profile_out, &found.profile) {
@@ -86,14 +78,15 @@ fn question(arguments: &LineOfSightArguments) -> Result<LinesOfSightQuestion> {
 
 fn check(arguments: &LineOfSightArguments, question: &LinesOfSightQuestion) -> Result<()> {
     if arguments.max_distance.is_some() && arguments.among.is_none() {
-        return Err(Usage("--max-distance limits the pairs of --among, which is missing".to_owned()).into());
+        return refuse("--max-distance limits the pairs of --among, which is missing");
     }
     for output in &arguments.outputs {
         check_output("-o", output, &["csv", "geojson", "gpkg", "graphml"])?;
         if extension(output) == "graphml" && arguments.among.is_none() {
-            let what =
-                format!("-o {}: a network is one of places that may see each other: give --among", output.display());
-            return Err(Usage(what).into());
+            return refuse(format!(
+                "-o {}: a network is one of places that may see each other: give --among",
+                output.display()
+            ));
         }
     }
     if let Some(profile) = &arguments.profile_out {
@@ -101,77 +94,6 @@ fn check(arguments: &LineOfSightArguments, question: &LinesOfSightQuestion) -> R
     }
     question.check()?;
     Ok(())
-}
-
-fn standing(place: [f64; 3]) -> Standing {
-    Standing { place, height: None }
-}
-
-/// Observer and target of each line, and the rows of the table they are from.
-pub(super) fn pairs(
-    lines: &LinesArguments,
-    scene: &Scene,
-    run: &CommandContext,
-) -> Result<(Vec<[Standing; 2]>, TextRows)> {
-    let frame = scene.frame();
-    if let (Some(from), Some(to)) = (&lines.from, &lines.to) {
-        let bounds = scene.model().bounds();
-        let local = |&MapPosition(place, z): &MapPosition| Standing::on_map(place, z, frame, &bounds);
-        return Ok((vec![[local(from)?, local(to)?]], TextRows::default()));
-    }
-    if let Some(count) = lines.random {
-        let bounds = scene.model().bounds();
-        let pairs = random_pairs(bounds.low, bounds.high, count, run.seed);
-        return Ok((pairs.into_iter().map(|ends| ends.map(standing)).collect(), TextRows::default()));
-    }
-    let Some(path) = &lines.pairs else {
-        return Err(
-            Usage("lines of sight are missing: give --pairs, --random, or --observer and --target".to_owned()).into()
-        );
-    };
-    if FEATURE_EXTENSIONS.contains(&extension(path).as_str()) {
-        let features = run.stage("reading pairs", 0, |_| read_features(path, &frame.crs))?;
-        return Ok((ends_of_lines(path, &features, frame)?, TextRows::default()));
-    }
-    let table = run.stage("reading pairs", 0, |_| read_table(path))?;
-    let mut columns: [&[f64]; 6] = [&[]; 6];
-    for (column, name) in columns.iter_mut().zip(ENDS) {
-        let is_height = name.ends_with('z');
-        *column = if is_height { table.column(path, name)?.unwrap_or(&[]) } else { table.full_column(path, name)? };
-    }
-    let heights = HEIGHTS.map(|name| table.column(path, name));
-    let [above_observer, above_target] = heights;
-    let heights = [above_observer?.unwrap_or(&[]), above_target?.unwrap_or(&[])];
-    let unit = frame.crs.metres_per_unit_xyz()[2];
-    let end = |row: usize, end: usize| {
-        let place = std::array::from_fn(|i| columns[3 * end + i].get(row).copied().unwrap_or(f64::NAN));
-        let height = heights[end].get(row).filter(|height| height.is_finite()).map(|height| height * unit);
-        Standing { height, ..standing(frame.local_from_file(place)) }
-    };
-    let pairs = (0..table.row_count()).map(|row| [end(row, 0), end(row, 1)]).collect();
-    Ok((pairs, table.into_text()))
-}
-
-/// The first and the last corner of each line, local metres.
-fn ends_of_lines(path: &Path, features: &[MapFeature], frame: &Frame) -> Result<Vec<[Standing; 2]>> {
-    let unit = frame.crs.metres_per_unit_xyz()[2];
-    let local = |corner: &[f64; 3]| std::array::from_fn(|axis| corner[axis] - frame.origin[axis]);
-    let end = |corner: &[f64; 3], feature: &MapFeature, name: &str| {
-        let height = property(&feature.properties, name).and_then(Value::as_f64).map(|height| height * unit);
-        Standing { height, ..standing(local(corner)) }
-    };
-    let ends = |(number, feature): (usize, &MapFeature)| match &feature.shape {
-        FeatureShape::Line(corners) if corners.len() > 1 => {
-            let [above_observer, above_target] = HEIGHTS;
-            Ok([end(&corners[0], feature, above_observer), end(&corners[corners.len() - 1], feature, above_target)])
-        }
-        _ => bail!("{}: feature {} is not a line; lines of sight need lines", path.display(), number + 1),
-    };
-    let pairs: Vec<_> = features.iter().enumerate().map(ends).collect::<Result<_>>()?;
-    if pairs.is_empty() {
-        bail!("{}: the file has no line", path.display());
-    }
-    Ok(pairs)
 }
 
 /// The places of a network from a file.

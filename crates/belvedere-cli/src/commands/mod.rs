@@ -1,4 +1,4 @@
-//! The table of commands, a file for each; what they share has files of its own.
+//! The table of commands, a file or folder for each.
 
 mod balls;
 mod bench;
@@ -11,59 +11,40 @@ mod demo;
 mod depth_map;
 mod describe;
 mod difference;
-mod difference_of_tables;
 mod envelope;
-mod fading;
-mod far_terrain;
 mod fetch;
 mod glare;
 mod heat;
-mod heights;
 mod horizon;
-mod in_tiles;
 mod info;
 mod irradiance;
 mod isovist;
 mod landmark;
 mod line_of_sight;
-mod map_shapes;
-mod mesh_targets;
 mod normals;
-mod north;
-mod outputs;
 mod protected_view;
 mod query;
 mod report;
-mod result_columns;
 mod shadow;
 mod simulate;
 mod sky_view;
-mod sun;
 mod sun_calendar;
 mod sun_hours;
 mod sun_position;
 mod surfaces;
-mod surroundings;
 mod survey_plan;
-mod targets;
 mod towers;
 mod trajectory;
-mod tree_light;
-mod typed_places;
 #[cfg(feature = "view")]
 mod view;
-mod view_obstacles;
 mod viewshed;
 mod window_views;
-mod windows;
 
 use crate::arguments::{Cli, Command};
 use crate::help;
+use crate::inputs::typed_places;
 use crate::summary::Summary;
 use anyhow::{Context, Result};
-use outputs::{
-    NormalColumns, check_folder, check_output, check_parent, extension, is_folder, is_written_back, warn_of_geojson,
-};
 use std::io::Write;
 
 /// Runs the command that was typed.
@@ -89,7 +70,7 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         Command::Balls(arguments) => balls::run(arguments, global),
         Command::Calibrate(arguments) => calibrate::run(arguments, global),
         Command::Cache(arguments) => cache::run(arguments, global),
-        Command::Bench(arguments) => bench::run(arguments, global),
+        Command::Bench(arguments) => bench::run(arguments, global, run_command),
         Command::DepthMap(arguments) => depth_map::run(arguments, global),
         Command::Query(arguments) => query::run(arguments, global),
         Command::LineOfSight(arguments) => line_of_sight::run(arguments, global),

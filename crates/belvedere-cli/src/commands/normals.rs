@@ -1,7 +1,7 @@
 //! `belvedere normals`.
 
-use super::{NormalColumns, check_output, check_parent, is_folder, is_written_back};
 use crate::arguments::{Global, NormalsArguments, OrientChoice};
+use crate::outputs::formats::{NormalColumns, check_output, check_parent, is_folder, is_written_back};
 use crate::pipeline::{self, params};
 use crate::run::CommandContext;
 use crate::summary::Summary;

@@ -1,9 +1,9 @@
 //! `belvedere protected-view`.
 
-use super::heights::write_heights;
-use super::landmark::landmark_shape;
-use super::{check_output, extension};
 use crate::arguments::{Global, ProtectedViewArguments};
+use crate::inputs::landmark_shape;
+use crate::outputs::formats::{check_output, extension};
+use crate::outputs::heights::write_heights;
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -52,8 +52,7 @@ pub(crate) fn run(arguments: &ProtectedViewArguments, global: &Global) -> Result
     if let Some(output) = &arguments.tops {
         run.stage("writing", 0, |_| write_heights(output, &found.tops, place, "maximum height", &run.tags))?;
     }
-    let written = arguments.output.iter().chain(&arguments.tops).map(|path| path.display().to_string());
-    run.summary.add("written", written.collect::<Vec<_>>());
+    run.summary.add_paths("written", arguments.output.iter().chain(&arguments.tops));
     Ok(run.finish())
 }
 

@@ -1,10 +1,9 @@
 //! `belvedere report`.
 
-use super::check_output;
-use super::map_shapes::{TypedAre, shapes, wrong_shape};
-use super::sun_calendar::refuse_mesh;
-use super::windows::{FaceChoice, WindowFile};
-use crate::arguments::{AreaChoice, CornersArgument, Global, ReportArguments, Usage};
+use crate::arguments::{AreaChoice, CornersArgument, Global, ReportArguments, refuse};
+use crate::inputs::map_shapes::{TypedAre, shapes, wrong_shape};
+use crate::inputs::windows::{FaceChoice, WindowFile, refuse_mesh};
+use crate::outputs::formats::check_output;
 use crate::pipeline;
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -18,13 +17,12 @@ use std::path::Path;
 pub(crate) fn run(arguments: &ReportArguments, global: &Global) -> Result<Summary> {
     check_output("-o", &arguments.output, &["html"])?;
     if arguments.rule.is_some() && arguments.windows.is_none() {
-        return Err(Usage("--rule is for --windows; the rule of areas is --area-rule".to_owned()).into());
+        return refuse("--rule is for --windows; the rule of areas is --area-rule");
     }
     arguments.windows.as_deref().map_or(Ok(()), refuse_mesh)?;
     let plan = &arguments.scene.plan;
     if arguments.study.is_some() && plan.add.is_empty() && plan.clear.is_empty() {
-        let what = "--study counts the shade that a plan adds to areas: give the plan with --add or --clear";
-        return Err(Usage(what.to_owned()).into());
+        return refuse("--study counts the shade that a plan adds to areas: give the plan with --add or --clear");
     }
     let mut params = ReportParams {
         title: arguments.title.clone(),

@@ -1,11 +1,10 @@
 //! `belvedere shadow`.
 
-use super::fading::{UNPROVEN_COLOR, fade, faded};
-use super::in_tiles::TypedCells;
-use super::targets::{HighestPoints, TargetOutput};
-use super::{check_output, extension, warn_of_geojson};
-use crate::arguments::{Global, ShadowArguments, Usage};
-use crate::pipeline;
+use crate::arguments::{Global, ShadowArguments, refuse};
+use crate::in_tiles::TypedCells;
+use crate::outputs::fading::{UNPROVEN_COLOR, fade, faded};
+use crate::outputs::formats::{check_output, extension, warn_of_geojson};
+use crate::outputs::targets::{HighestPoints, TargetOutput};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -48,7 +47,8 @@ pub(crate) fn run(arguments: &ShadowArguments, global: &Global) -> Result<Summar
         warn_of_other_suns(arguments, answers.found.suns.len(), &mut run);
         return Ok(run.finish());
     }
-    let scene = pipeline::scene_of_places(&arguments.scene, &arguments.places, arguments.giving_way.shell, &mut run)?;
+    let points = arguments.places.needed_points();
+    let scene = arguments.places.scene(&arguments.scene, arguments.giving_way.shell, points, &mut run)?;
     let (places, source) = arguments.places.places(&scene, &mut run)?;
     let answers = run.ask(&scene, &question, &places)?;
     let shown = TargetOutput::new(&answers.found.on, source, &scene);
@@ -164,8 +164,7 @@ fn question(arguments: &ShadowArguments) -> Result<ask::ShadowQuestion> {
 fn check(arguments: &ShadowArguments, question: &ask::ShadowQuestion) -> Result<()> {
     arguments.places.check(&arguments.outputs)?;
     if matches!(&question.suns, Suns::Days(days) if days.is_empty()) {
-        let what = "suns are missing: give --time TIME, --date DAY, --from and --to, or --sun AZ,EL";
-        return Err(Usage(what.to_owned()).into());
+        return refuse("suns are missing: give --time TIME, --date DAY, --from and --to, or --sun AZ,EL");
     }
     ask::Ask::check(question)?;
     if let Some(film) = &arguments.film {
@@ -175,11 +174,11 @@ fn check(arguments: &ShadowArguments, question: &ask::ShadowQuestion) -> Result<
         check_output("--outlines", output, &["geojson", "gpkg"])?;
     }
     if arguments.casters && arguments.places.places.targets.as_deref().is_some_and(is_mesh) {
-        return Err(Usage("--casters applies only to cells and points".to_owned()).into());
+        return refuse("--casters applies only to cells and points");
     }
     let needs_grid = arguments.film.is_some() || arguments.frames.is_some() || arguments.outlines.is_some();
     if needs_grid && !arguments.places.is_grid() {
-        return Err(Usage("--film, --frames and --outlines apply only to a grid".to_owned()).into());
+        return refuse("--film, --frames and --outlines apply only to a grid");
     }
     Ok(())
 }

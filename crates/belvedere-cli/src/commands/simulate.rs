@@ -1,9 +1,10 @@
 //! `belvedere simulate`: a town, a survey of it, and what is true about both.
 
-use super::check_folder;
-use crate::arguments::{Global, PatternChoice, ScannerChoice, Simulate, Usage};
+use crate::arguments::{Global, PatternChoice, ScannerChoice, Simulate, refuse};
+use crate::outputs::formats::check_folder;
+use crate::outputs::text::write_text;
 use crate::run::CommandContext;
-use crate::simulated::{EPSG, SUNS_DEG, cloud_of, crs, write_text};
+use crate::simulated::{EPSG, SUNS_DEG, cloud_of, crs};
 use crate::summary::{Summary, percent, rounded, whole};
 use anyhow::{Result, bail};
 use belvedere::cloud::GpsTimeKind;
@@ -77,7 +78,7 @@ pub(crate) fn run(arguments: &Simulate, global: &Global) -> Result<Summary> {
     run.summary
         .headline("<points> points of a simulated <scene> with <objects> objects")
         .headline("ground truth: <ground_truth_triangles> triangles");
-    run.summary.add("files", files.iter().map(|name| folder.join(name).display().to_string()).collect::<Vec<_>>());
+    run.summary.add_paths("files", files.iter().map(|name| folder.join(name)));
     Ok(run.finish())
 }
 
@@ -104,7 +105,7 @@ fn check_flags(arguments: &Simulate) -> Result<()> {
         ScannerChoice::Terrestrial => (&of_airborne, "airborne"),
     };
     match unused.iter().find(|(_, is_given)| *is_given) {
-        Some((flag, _)) => Err(Usage(format!("{flag} needs --scanner {scanner}")).into()),
+        Some((flag, _)) => refuse(format!("{flag} needs --scanner {scanner}")),
         None => Ok(()),
     }
 }
@@ -125,7 +126,7 @@ fn check_pulses(arguments: &Simulate) -> Result<()> {
     if count <= MAX_PULSES {
         return Ok(());
     }
-    Err(Usage(format!("{count:.1e} pulses are more than the {MAX_PULSES:.0e} that fit into memory; {advice}")).into())
+    refuse(format!("{count:.1e} pulses are more than the {MAX_PULSES:.0e} that fit into memory; {advice}"))
 }
 
 fn airborne(arguments: &Simulate, scene: &TriangleScene, seed: u64) -> AirborneParams {

@@ -1,13 +1,13 @@
 //! `belvedere sky-view`.
 
-use super::in_tiles::TypedCells;
-use super::targets::TargetOutput;
-use crate::arguments::{Global, PatchesChoice, SkyViewArguments};
-use crate::pipeline;
+use crate::arguments::{Global, SkyViewArguments};
+use crate::in_tiles::TypedCells;
+use crate::inputs::sun::sky_parts;
+use crate::outputs::targets::TargetOutput;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, Ask, SkyParts};
+use belvedere::apps::ask::{self, Ask};
 
 pub(crate) fn run(arguments: &SkyViewArguments, global: &Global) -> Result<Summary> {
     arguments.places.check(&arguments.outputs)?;
@@ -26,20 +26,12 @@ pub(crate) fn run(arguments: &SkyViewArguments, global: &Global) -> Result<Summa
     if cells.answered(ask::Question::SkyView(question.clone()), None, &mut run)?.is_some() {
         return Ok(run.finish());
     }
-    let scene = pipeline::scene_of_places(&arguments.scene, &arguments.places, arguments.shell.shell, &mut run)?;
+    let points = arguments.places.needed_points();
+    let scene = arguments.places.scene(&arguments.scene, arguments.shell.shell, points, &mut run)?;
     let (places, source) = arguments.places.places(&scene, &mut run)?;
     let answers = run.ask(&scene, &question, &places)?;
     let shown = TargetOutput::new(&answers.found, source, &scene);
     shown.write(&arguments.outputs, &answers.measures, &mut run)?;
     shown.write_edge_mask(arguments.places.edge_mask.as_deref(), &mut run)?;
     Ok(run.finish())
-}
-
-/// Returns the division of the sky.
-pub(super) fn sky_parts(patches: Option<PatchesChoice>, directions: Option<usize>) -> SkyParts {
-    match patches {
-        Some(PatchesChoice::Tregenza) => SkyParts::Tregenza,
-        Some(PatchesChoice::Reinhart) => SkyParts::Reinhart,
-        None => directions.map_or_else(SkyParts::default, SkyParts::Even),
-    }
 }

@@ -1,15 +1,14 @@
 //! `belvedere sun-calendar`.
 
-use super::check_output;
-use super::typed_places::on_map;
-use super::windows::{FaceChoice, WindowFile};
-use crate::arguments::{Global, MapPosition, SunCalendarArguments, Usage};
+use crate::arguments::{Global, MapPosition, SunCalendarArguments, refuse};
+use crate::inputs::typed_places::on_map;
+use crate::inputs::windows::{FaceChoice, WindowFile, refuse_mesh};
+use crate::outputs::formats::check_output;
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Ask, Places, Reach, position_on_map, standing_on_map};
-use belvedere::io::is_mesh;
 use belvedere::results::write_calendar;
 
 pub(crate) fn run(arguments: &SunCalendarArguments, global: &Global) -> Result<Summary> {
@@ -19,7 +18,7 @@ pub(crate) fn run(arguments: &SunCalendarArguments, global: &Global) -> Result<S
     let typed = &arguments.places.at;
     MapPosition::refuse_twice("--at", typed)?;
     if arguments.rule.is_none() && !arguments.when.is_given() {
-        return Err(Usage("days are missing: give --date DAY, --from and --to, or --rule RULE".to_owned()).into());
+        return refuse("days are missing: give --date DAY, --from and --to, or --rule RULE");
     }
     let mut question = ask::SunCalendarQuestion {
         days: arguments.when.days(),
@@ -54,18 +53,6 @@ pub(crate) fn run(arguments: &SunCalendarArguments, global: &Global) -> Result<S
     for output in &arguments.output {
         run.stage("writing", 0, |_| write_calendar(output, &answers.found, &names))?;
     }
-    let written = arguments.output.iter().map(|path| path.display().to_string());
-    run.summary.add("written", written.collect::<Vec<_>>());
+    run.summary.add_paths("written", &arguments.output);
     Ok(run.finish())
-}
-
-/// Refuses windows that are the faces of a mesh, which are too many to list.
-pub(super) fn refuse_mesh(path: &std::path::Path) -> Result<()> {
-    match is_mesh(path) {
-        true => {
-            Err(Usage("--windows: give a table (.csv); `belvedere comfort` takes the faces of a mesh".to_owned())
-                .into())
-        }
-        false => Ok(()),
-    }
 }

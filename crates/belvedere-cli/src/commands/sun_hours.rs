@@ -1,9 +1,8 @@
 //! `belvedere sun-hours`.
 
-use super::in_tiles::TypedCells;
-use super::targets::TargetOutput;
-use crate::arguments::{Global, SunHoursArguments, Usage};
-use crate::pipeline;
+use crate::arguments::{Global, SunHoursArguments, refuse};
+use crate::in_tiles::TypedCells;
+use crate::outputs::targets::TargetOutput;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -27,7 +26,7 @@ pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summ
     question.check()?;
     if let Some(folder) = &arguments.hourly_sun {
         if !arguments.places.is_grid() {
-            return Err(Usage("--hourly-sun applies only to a grid".to_owned()).into());
+            return refuse("--hourly-sun applies only to a grid");
         }
         let others = arguments.outputs.output.iter().chain(&arguments.places.edge_mask);
         check_months(folder, &others.map(PathBuf::as_path).collect::<Vec<_>>())?;
@@ -43,7 +42,8 @@ pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summ
     if cells.answered(ask::Question::SunHours(question.clone()), None, &mut run)?.is_some() {
         return Ok(run.finish());
     }
-    let scene = pipeline::scene_of_places(&arguments.scene, &arguments.places, arguments.shell.shell, &mut run)?;
+    let points = arguments.places.needed_points();
+    let scene = arguments.places.scene(&arguments.scene, arguments.shell.shell, points, &mut run)?;
     let (places, source) = arguments.places.places(&scene, &mut run)?;
     let answers = run.ask(&scene, &question, &places)?;
     let sun_of_year = match &arguments.hourly_sun {
@@ -104,9 +104,7 @@ fn check_months(folder: &Path, others: &[&Path]) -> Result<()> {
             && (1..=12).any(|month| path.file_name() == month_file(folder, month).file_name())
     };
     match others.iter().find(is_month) {
-        Some(path) => {
-            Err(Usage(format!("{}: a file of --hourly-sun has this name; choose another", path.display())).into())
-        }
+        Some(path) => refuse(format!("{}: a file of --hourly-sun has this name; choose another", path.display())),
         None => Ok(()),
     }
 }

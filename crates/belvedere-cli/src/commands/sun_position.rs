@@ -1,7 +1,8 @@
 //! `belvedere sun-position`.
 
-use super::{check_output, horizon::write_lines};
 use crate::arguments::{Global, SunPositionArguments};
+use crate::outputs::formats::check_output;
+use crate::outputs::text::write_lines;
 use crate::pipeline;
 use crate::run::CommandContext;
 use crate::summary::Summary;

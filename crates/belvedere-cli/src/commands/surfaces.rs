@@ -1,7 +1,7 @@
 //! `belvedere surfaces`.
 
-use super::{check_output, extension, warn_of_geojson};
 use crate::arguments::{Global, SurfacesArguments};
+use crate::outputs::formats::{check_output, extension, warn_of_geojson};
 use crate::pipeline::{self, params};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -58,8 +58,7 @@ pub(crate) fn run(arguments: &SurfacesArguments, global: &Global) -> Result<Summ
     run.summary
         .headline("<roofs> roofs, <edges> edges, <ridges_and_valleys> ridges and valleys, <walls> walls, cut to blocks of 64 m")
         .headline("an edge is known to <edge_deviation_m> m (standard deviation, median)");
-    let written = arguments.output.iter().map(|path| path.display().to_string());
-    run.summary.add("written", written.collect::<Vec<_>>());
+    run.summary.add_paths("written", &arguments.output);
     Ok(run.finish())
 }
 

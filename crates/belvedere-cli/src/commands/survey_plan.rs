@@ -1,10 +1,10 @@
 //! `belvedere survey-plan`.
 
-use super::cameras::candidates_on_path;
-use super::line_of_sight::pairs;
-use super::surroundings::{ObserverUse, observer_rows};
-use super::{check_output, extension, warn_of_geojson};
 use crate::arguments::{Global, SurveyPlanArguments};
+use crate::inputs::camera_places::candidates_on_path;
+use crate::inputs::line_pairs::pairs;
+use crate::inputs::observers::{ObserverUse, observer_rows};
+use crate::outputs::formats::{check_output, extension, warn_of_geojson};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -57,8 +57,7 @@ pub(crate) fn run(arguments: &SurveyPlanArguments, global: &Global) -> Result<Su
     for output in &arguments.output {
         run.stage("writing", 0, |_| write(output, &answers.found, &scene))?;
     }
-    let written: Vec<String> = arguments.output.iter().map(|path| path.display().to_string()).collect();
-    run.summary.add("written", written);
+    run.summary.add_paths("written", &arguments.output);
     Ok(run.finish())
 }
 

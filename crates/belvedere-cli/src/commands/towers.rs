@@ -1,9 +1,9 @@
 //! `belvedere towers`.
 
-use super::targets::{TargetOutput, remark_on_first};
-use super::viewshed::Sheet;
-use super::{check_folder, check_output, extension};
-use crate::arguments::{Global, SkyPlaces, TowersArguments, Usage};
+use crate::arguments::{Global, SkyPlaces, TowersArguments, refuse};
+use crate::outputs::formats::{check_folder, check_output, extension};
+use crate::outputs::sheet::Sheet;
+use crate::outputs::targets::{TargetOutput, remark_on_first};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -52,13 +52,11 @@ pub(crate) fn run(arguments: &TowersArguments, global: &Global) -> Result<Summar
         for output in &arguments.far_output {
             write_far(output, (found, far), scene.frame(), &mut run)?;
         }
-        let written: Vec<String> = arguments.far_output.iter().map(|path| path.display().to_string()).collect();
-        run.summary.add("far_written", written);
+        run.summary.add_paths("far_written", &arguments.far_output);
     }
     if let (Some(folder), Some(wirelines)) = (&arguments.wirelines, &found.wirelines) {
         let files = run.stage("writing", 0, |_| write_wirelines(folder, wirelines, scene.frame()))?;
-        let files: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
-        run.summary.add("wirelines_written", files);
+        run.summary.add_paths("wirelines_written", files);
     }
     Ok(run.finish())
 }
@@ -86,8 +84,7 @@ fn question(arguments: &TowersArguments, rows: &[TowerRow]) -> Result<ask::Tower
 /// Refuses wirelines of cells, and other results among their files.
 fn check_wirelines(folder: &Path, places: &SkyPlaces, arguments: &TowersArguments) -> Result<()> {
     if places.is_grid() || places.places.own {
-        let what = "--wirelines needs places: --at X,Y or --targets FILE";
-        return Err(Usage(what.to_owned()).into());
+        return refuse("--wirelines needs places: --at X,Y or --targets FILE");
     }
     check_folder(folder)?;
     let real = |path: &Path| path.canonicalize().or_else(|_| std::path::absolute(path)).ok();
@@ -96,8 +93,7 @@ fn check_wirelines(folder: &Path, places: &SkyPlaces, arguments: &TowersArgument
     let mut others = arguments.outputs.output.iter().chain(&arguments.far_output).chain(inputs);
     match others.find(|other| own.iter().any(|file| real(file) == real(other))) {
         Some(other) => {
-            let what = format!("{}: a file of --wirelines has this name; choose another folder", other.display());
-            Err(Usage(what).into())
+            refuse(format!("{}: a file of --wirelines has this name; choose another folder", other.display()))
         }
         None => Ok(()),
     }

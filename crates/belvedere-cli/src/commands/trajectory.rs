@@ -1,7 +1,7 @@
 //! `belvedere trajectory`.
 
-use super::check_output;
-use crate::arguments::{Global, TrajectoryArguments, Usage};
+use crate::arguments::{Global, TrajectoryArguments, refuse};
+use crate::outputs::formats::check_output;
 use crate::pipeline;
 use crate::run::CommandContext;
 use crate::summary::{Summary, sections};
@@ -13,10 +13,9 @@ pub(crate) fn run(arguments: &TrajectoryArguments, global: &Global) -> Result<Su
     check_output("-o", &arguments.output, &["csv", "txt"])?;
     if !(0.01..=2.0).contains(&arguments.step) {
         let step = arguments.step;
-        return Err(Usage(format!(
+        return refuse(format!(
             "--time-step-s is {step}, but must be 0.01 to 2 s, because readers do not bridge longer gaps"
-        ))
-        .into());
+        ));
     }
     let mut run = CommandContext::new(global);
     let cloud = pipeline::read(&arguments.input, &mut run)?;

@@ -1,10 +1,10 @@
 //! `belvedere view`.
 
-use super::check_output;
-use crate::arguments::{CloudInput, Global, MapPosition, MethodChoice, SceneInput, UpChoice, Usage, ViewPage};
+use crate::arguments::{CloudInput, Global, MapPosition, MethodChoice, SceneInput, UpChoice, ViewPage, refuse};
 use crate::environment::words;
 use crate::interrupt;
 use crate::memory::available_bytes;
+use crate::outputs::formats::check_output;
 use crate::pipeline::{self, KeepPoints, is_file, params};
 use crate::run::CommandContext;
 use crate::summary::{Summary, note};
@@ -152,7 +152,7 @@ fn refuse_flags_of_files(arguments: &ViewPage) -> Result<()> {
         ("--observer", !arguments.observer.is_empty()),
     ];
     match given.into_iter().find(|(_, given)| *given && arguments.export.is_none()) {
-        Some((flag, _)) => Err(Usage(format!("{flag} needs --export")).into()),
+        Some((flag, _)) => refuse(format!("{flag} needs --export")),
         None => Ok(()),
     }
 }
@@ -189,7 +189,7 @@ fn write_page(output: &Path, arguments: &ViewPage, files: &Files, global: &Globa
     let check = |frame: &Frame, bounds: &Bounds| day(frame, bounds).map(|_| ());
     let (cloud, model) = load(&arguments.scene, files, &loading, &check, &mut run)?;
     let Some(cloud) = cloud else {
-        return Err(Usage("--export needs a cloud; a ball file has no points".to_owned()).into());
+        return refuse("--export needs a cloud; a ball file has no points");
     };
     let day = day(model.frame(), &model.bounds())?;
     let params = ExportParams {
@@ -275,7 +275,7 @@ impl Files {
         if let (Some(run), true) = (runs.first(), clouds.is_empty() && balls.is_empty()) {
             clouds = Plan::read(run)?.inputs.into_iter().map(|file| file.path).collect();
         }
-        let refused = |what: &str| Err(Usage(what.to_owned()).into());
+        let refused = |what: &str| refuse(what);
         match (balls.len(), clouds.len()) {
             (2.., _) => refused("only one ball file can be shown at a time"),
             (1, 2..) => refused("a ball file can be shown with one cloud: give a single file or a folder"),
@@ -317,7 +317,7 @@ fn load(
     run: &mut CommandContext,
 ) -> Result<(Option<Arc<PointCloud>>, SceneModel)> {
     if !arguments.plan.clear.is_empty() {
-        return Err(Usage("--clear: the page shows the cloud as it is; use the commands for maps".to_owned()).into());
+        return refuse("--clear: the page shows the cloud as it is; use the commands for maps");
     }
     let mut input = arguments.clone();
     input.input.clouds.clone_from(&files.clouds);

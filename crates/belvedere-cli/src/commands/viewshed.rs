@@ -3,12 +3,12 @@
 mod results;
 mod viewshed_observers;
 
-use super::far_terrain::set_terrain;
-use super::heights::write_heights;
-use super::in_tiles::TypedCells;
-use super::targets::HighestPoints;
-use super::{check_output, warn_of_geojson};
 use crate::arguments::{Global, GroundChoice, MapPosition, ViewshedArguments};
+use crate::in_tiles::TypedCells;
+use crate::inputs::far_terrain::set_terrain;
+use crate::outputs::formats::{check_output, extension, warn_of_geojson};
+use crate::outputs::heights::write_heights;
+use crate::outputs::targets::HighestPoints;
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -19,7 +19,6 @@ use belvedere::figures::Picture;
 use belvedere::query::UnprovenAs;
 use belvedere::results::UNPROVEN_BAND;
 use belvedere_tiles::SurveyCells;
-pub(super) use results::Sheet;
 use results::{CellSurface, SeenCells, SeenMap, on_points, write_masks};
 use std::path::{Path, PathBuf};
 
@@ -55,7 +54,7 @@ pub(crate) fn run(arguments: &ViewshedArguments, global: &Global) -> Result<Summ
     write(arguments, &answers.found, &scene, &mut run)?;
     let written =
         arguments.output.iter().chain(&arguments.far_output).chain(&arguments.heights).chain(&arguments.masks);
-    run.summary.add("written", written.map(|path| path.display().to_string()).collect::<Vec<_>>());
+    run.summary.add_paths("written", written);
     Ok(run.finish())
 }
 
@@ -149,7 +148,7 @@ fn map_of_survey(
 }
 
 fn is_of_points(path: &Path) -> bool {
-    OF_POINTS.contains(&super::extension(path).as_str())
+    OF_POINTS.contains(&extension(path).as_str())
 }
 
 fn check_outputs(arguments: &ViewshedArguments) -> Result<()> {

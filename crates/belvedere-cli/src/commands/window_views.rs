@@ -2,9 +2,10 @@
 
 mod results;
 
-use super::windows::{FaceChoice, WindowFile};
-use super::{check_output, extension, warn_of_geojson};
-use crate::arguments::{Global, Usage, WindowViewsArguments};
+use crate::arguments::{Global, WindowViewsArguments, refuse};
+use crate::inputs::points::points_of_file;
+use crate::inputs::windows::{FaceChoice, WindowFile};
+use crate::outputs::formats::{check_output, extension, warn_of_geojson};
 use crate::pipeline::{self, KeepPoints, LoadedScene};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -15,6 +16,7 @@ use belvedere::apps::window_views::{SeenKind, are_made_from};
 use belvedere::io::ReadOptions;
 use belvedere::query::UnprovenAs;
 use results::WindowOutput;
+use std::sync::Arc;
 
 pub(crate) fn run(arguments: &WindowViewsArguments, global: &Global) -> Result<Summary> {
     check(arguments)?;
@@ -71,8 +73,7 @@ pub(crate) fn run(arguments: &WindowViewsArguments, global: &Global) -> Result<S
     if let Some(output) = &arguments.buildings {
         run.stage("writing", 0, |_| shown.write_buildings(output))?;
     }
-    let written = arguments.output.iter().chain(&arguments.buildings);
-    run.summary.add("written", written.map(|path| path.display().to_string()).collect::<Vec<_>>());
+    run.summary.add_paths("written", arguments.output.iter().chain(&arguments.buildings));
     Ok(run.finish())
 }
 
@@ -84,7 +85,7 @@ fn check(arguments: &WindowViewsArguments) -> Result<()> {
         check_output("--buildings", output, &["csv"])?;
     }
     if arguments.map_of.is_some() && !arguments.output.iter().any(|output| extension(output) == "png") {
-        return Err(Usage("--map-of needs a map: -o FILE.png".to_owned()).into());
+        return refuse("--map-of needs a map: -o FILE.png");
     }
     Ok(())
 }
@@ -93,15 +94,13 @@ fn check(arguments: &WindowViewsArguments) -> Result<()> {
 fn take_classes(arguments: &WindowViewsArguments, scene: &mut LoadedScene, run: &mut CommandContext) -> Result<()> {
     let Some(path) = &arguments.classes_of else { return Ok(()) };
     if !scene.cloud.is_empty() {
-        return Err(
-            Usage("--classes-of is for ball files; the cloud of this scene has its own classes".to_owned()).into()
-        );
+        return refuse("--classes-of is for ball files; the cloud of this scene has its own classes");
     }
     let frame = &scene.cloud.frame;
-    let cloud = run.aside(|run| super::query::points_of_file(path, &ReadOptions::new(), frame, run)).0?;
+    let cloud = run.aside(|run| points_of_file(path, &ReadOptions::new(), frame, run)).0?;
     if !are_made_from(scene.model.balls(), &cloud.positions) {
         bail!("--classes-of {}: the balls were not built from this cloud", path.display());
     }
-    scene.cloud = cloud;
+    scene.cloud = Arc::new(cloud);
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! Converts flags to the parameters of a scene model.
 
-use crate::arguments::{Cleaning, MethodChoice, NeighborChoice, OrientChoice, Shrinking, Usage};
+use crate::arguments::{Cleaning, MethodChoice, NeighborChoice, OrientChoice, Shrinking, Usage, refuse};
 use crate::run::CommandContext;
 use crate::scene_config::BallParameters;
 use anyhow::Result;
@@ -101,7 +101,7 @@ impl Shrinking {
             (Some(MethodChoice::Carved), _) => Ok(BallParams::Carved(self.carved()?)),
             (method, default) => {
                 if self.trees.is_some() || !self.without.is_empty() {
-                    return Err(Usage("--trees and --without need --method carved".to_owned()).into());
+                    return refuse("--trees and --without need --method carved");
                 }
                 Ok(BallParams::Shrunk(self.shrunk(method.unwrap_or(default))?))
             }
@@ -125,7 +125,7 @@ impl Shrinking {
             }
             ShrinkMethod::Angles { first_separation_angle, next_separation_angle } => {
                 if self.penetration.is_some() {
-                    return Err(Usage("--penetration needs --method tau or carved".to_owned()).into());
+                    return refuse("--penetration needs --method tau or carved");
                 }
                 let typed = |angle: Option<f64>, default: f64| angle.map_or(default, f64::to_radians);
                 *first_separation_angle = typed(self.first_angle, *first_separation_angle);

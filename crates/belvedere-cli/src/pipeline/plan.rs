@@ -1,6 +1,6 @@
 //! Flags of what is planned: a scene as it will be.
 
-use super::LoadedScene;
+use super::loaded_scene::LoadedScene;
 use crate::arguments::{AreaChoice, PlanArguments};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -11,6 +11,7 @@ use belvedere::io::{FeatureShape, read_features, read_mesh_in};
 use belvedere::model::{ClearReport, ClearedArea, SceneModel};
 use belvedere::{Frame, Mesh};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Clears areas of a scene that has its points.
 pub(super) fn clear(scene: &mut LoadedScene, plan: &PlanArguments, run: &mut CommandContext) -> Result<()> {
@@ -22,8 +23,8 @@ pub(super) fn clear(scene: &mut LoadedScene, plan: &PlanArguments, run: &mut Com
     {
         let model = std::mem::take(&mut scene.model);
         let cleared = run.stage("clearing", 0, |control| model.without(&area, &scene.cloud, control));
-        let report;
-        (scene.model, scene.cloud, report) = cleared?;
+        let (model, cloud, report) = cleared?;
+        (scene.model, scene.cloud) = (model, Arc::new(cloud));
         scene.ground_store = None;
         sum.points_cleared += report.points_cleared;
         sum.balls_cleared += report.balls_cleared;

@@ -1,6 +1,6 @@
 //! Part of a survey, too large for memory, that a question about a few places can reach.
 
-use crate::arguments::{MapPosition, MemoryArgument, Rectangle, SceneInput, Usage};
+use crate::arguments::{MapPosition, MemoryArgument, Rectangle, SceneInput, refuse};
 use crate::memory;
 use crate::run::CommandContext;
 use anyhow::Result;
@@ -27,7 +27,7 @@ pub(crate) fn scene_in_reach(
         }
         None if memory.memory.is_some() => {
             let way_out = "allow more memory, or limit the question to typed places and a distance from them";
-            return Err(Usage(format!("{}, but this question reaches all of it: {way_out}", large.in_words())).into());
+            return refuse(format!("{}, but this question reaches all of it: {way_out}", large.in_words()));
         }
         None => {}
     }

@@ -1,8 +1,9 @@
 //! The answer first: a summary of few lines.
 
-use super::{REMARKS, plain};
 use serde_json::{Map, Number, Value};
 
+/// Key of the remarks.
+pub(super) const REMARKS: &str = "remarks";
 /// Lines of a summary.
 const MAX_LINES: usize = 12;
 /// Files that are listed one by one.
@@ -151,6 +152,13 @@ fn last_figures(entries: &Map<String, Value>) -> Vec<String> {
     }
     let from = lines.len().saturating_sub(MAX_FIGURES);
     lines.split_off(from)
+}
+
+pub(super) fn plain(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
 }
 
 #[cfg(test)]

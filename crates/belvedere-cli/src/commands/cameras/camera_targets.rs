@@ -1,9 +1,9 @@
 //! Targets of cameras and private places, from flags and files to a question.
 
-use crate::arguments::{CameraTargetsArguments, Usage};
-use crate::commands::extension;
-use crate::commands::query::points_of_file;
-use crate::commands::surroundings::{ObserverUse, observer_rows};
+use crate::arguments::{CameraTargetsArguments, refuse};
+use crate::inputs::observers::{ObserverUse, observer_rows};
+use crate::inputs::points::points_of_file;
+use crate::outputs::formats::extension;
 use crate::pipeline::mesh_in;
 use crate::run::CommandContext;
 use anyhow::{Result, bail};
@@ -43,10 +43,10 @@ pub(super) fn are_cells(flags: &CameraTargetsArguments) -> bool {
 /// Refuses flags of other targets.
 pub(super) fn check(flags: &CameraTargetsArguments, are_cells: bool) -> Result<()> {
     if flags.cell.is_some() && !are_cells {
-        return Err(Usage("--cell applies only to targets that are cells: polygons, or no --targets".to_owned()).into());
+        return refuse("--cell applies only to targets that are cells: polygons, or no --targets");
     }
     if flags.spacing.is_some() && !flags.targets.as_deref().is_some_and(is_mesh) {
-        return Err(Usage("--spacing applies only to mesh targets".to_owned()).into());
+        return refuse("--spacing applies only to mesh targets");
     }
     Ok(())
 }
@@ -90,10 +90,7 @@ pub(super) fn private(path: &Path, frame: &Frame, run: &mut CommandContext) -> R
         TargetFileKind::Places => Ok(PrivatePlaces::Points(points(path, frame, run)?.0)),
         _ => {
             let path = path.display();
-            Err(Usage(format!(
-                "--private {path}: use points (.csv .geojson .gpkg .shp) or polygons (.geojson .gpkg .shp)"
-            ))
-            .into())
+            refuse(format!("--private {path}: use points (.csv .geojson .gpkg .shp) or polygons (.geojson .gpkg .shp)"))
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Chosen cameras as files.
 
-use crate::commands::extension;
+use crate::outputs::formats::extension;
 use anyhow::Result;
 use belvedere::apps::ask::{CamerasResults, ChosenCamera, Scene};
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, write_png};

@@ -1,7 +1,7 @@
 //! Converts flags to the questions of a plan.
 
-use crate::arguments::{AreaChoice, CellFor, CityPlan, MapPosition, Usage};
-use crate::commands::irradiance::radiation;
+use crate::arguments::{AreaChoice, CellFor, CityPlan, MapPosition, refuse};
+use crate::inputs::radiation;
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::Error;
@@ -14,7 +14,7 @@ use belvedere_tiles::{CellSizes, Plan, TileQuestion, Topic};
 
 /// Refuses questions that cannot be answered, before the survey is read.
 pub(super) fn check(arguments: &CityPlan) -> Result<()> {
-    let usage = |text: &str| Err(Usage(text.to_owned()).into());
+    let usage = |text: &str| refuse(text);
     let has_suns = !arguments.suns.is_empty() || !arguments.times.is_empty();
     let has_maps = arguments.sky_view || arguments.sun_hours || arguments.irradiance || !arguments.rule.is_empty();
     if !has_suns && !has_maps && arguments.observers.is_empty() {
@@ -72,7 +72,7 @@ pub(super) fn cells(arguments: &CityPlan) -> Result<CellSizes> {
     for &CellFor(topic, side) in &arguments.cell_for {
         let name = topic.name();
         if given.contains(&topic) {
-            return Err(Usage(format!("--cell-for: {name} is given twice")).into());
+            return refuse(format!("--cell-for: {name} is given twice"));
         }
         let (is_requested, flag) = match topic {
             Topic::Shadow => (!arguments.suns.is_empty() || !arguments.times.is_empty(), "--sun or --time"),
@@ -83,7 +83,7 @@ pub(super) fn cells(arguments: &CityPlan) -> Result<CellSizes> {
             Topic::Viewshed => (!arguments.observers.is_empty(), "--observer"),
         };
         if !is_requested {
-            return Err(Usage(format!("--cell-for {name} needs {flag}")).into());
+            return refuse(format!("--cell-for {name} needs {flag}"));
         }
         given.push(topic);
         cells = cells.with(topic, side);

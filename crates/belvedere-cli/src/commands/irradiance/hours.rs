@@ -1,6 +1,6 @@
 //! The hours of the planes of roofs as files.
 
-use crate::commands::result_columns::write_columns;
+use crate::outputs::result_columns::write_columns;
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::apps::ask::RoofsResults;

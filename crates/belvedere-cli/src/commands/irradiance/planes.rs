@@ -1,10 +1,10 @@
 //! Planes of roofs as files.
 
-use super::super::{check_output, check_parent, extension};
 use super::hours;
 use crate::arguments::{IrradianceArguments, PvArguments};
-use crate::commands::horizon::write_lines;
-use crate::commands::result_columns::write_columns;
+use crate::outputs::formats::{check_output, check_parent, extension};
+use crate::outputs::result_columns::write_columns;
+use crate::outputs::text::write_lines;
 use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
@@ -52,8 +52,7 @@ pub(super) fn write(
             _ => write_outlines(output, roofs, frame, site),
         })?;
     }
-    run.summary
-        .add("planes_written", arguments.planes.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    run.summary.add_paths("planes_written", &arguments.planes);
     let PvArguments { buildings, hourly, .. } = &arguments.photovoltaics;
     if let Some(output) = buildings {
         run.stage("writing", 0, |_| write_columns(output, None, &building_columns(roofs.as_rows())))?;

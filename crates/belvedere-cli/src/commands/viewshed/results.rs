@@ -1,13 +1,14 @@
 //! Viewsheds as files.
 
-use crate::arguments::Usage;
-use crate::commands::extension;
-use crate::commands::fading::{UNPROVEN_COLOR, fade, faded};
+use crate::arguments::refuse;
+use crate::outputs::fading::{UNPROVEN_COLOR, fade, faded};
+use crate::outputs::formats::extension;
+use crate::outputs::sheet::Sheet;
 use anyhow::Result;
 use belvedere::apps::ask::UNCERTAIN;
 use belvedere::apps::targets::Measure;
 use belvedere::apps::viewshed::{Viewshed, title_of_cells};
-use belvedere::figures::{MapLegend, MapMark, MapPicture, Picture, map_picture, ramp, write_png};
+use belvedere::figures::{MapLegend, MapPicture, Picture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, MapGrid, highest_points};
 use belvedere::io::{
     ExtraColumn, ExtraValues, Georeference, MetadataTag, PolygonArea, WriteReport, outlines, write_areas, write_cloud,
@@ -23,8 +24,6 @@ const SEEN_COLOR: [u8; 3] = [255, 176, 0];
 const HIDDEN_COLOR: [u8; 3] = [38, 52, 96];
 /// Terrain over which the cloud lies, which has cells of its own.
 const CLOUD_COLOR: [u8; 3] = [120, 120, 120];
-/// Maximum number of pixels of a map of terrain.
-const MAX_PIXELS: f64 = 4e6;
 
 /// Viewshed of cells, and their position.
 pub(super) struct SeenCells<'a> {
@@ -210,60 +209,6 @@ impl SeenMap<'_> {
     }
 }
 
-/// Square pixels of a map.
-pub(crate) struct Sheet {
-    pub(crate) relief: Raster<f32>,
-    pub(crate) colors: Vec<Option<[u8; 3]>>,
-    /// Side of a pixel, metres, and the upper left corner, local metres.
-    pub(crate) cell: f64,
-    corner: [f64; 2],
-    pub(crate) place: Georeference,
-}
-
-impl Sheet {
-    /// Terrain with a colour for each node that has a height, of which a large map shows some.
-    pub(crate) fn of_terrain(
-        terrain: &ElevationGrid,
-        colors: &[Option<[u8; 3]>],
-        frame: &Frame,
-    ) -> belvedere::Result<Self> {
-        let ([west, north], sides) = (terrain.north_west(), terrain.cell());
-        let size = [terrain.heights().width(), terrain.heights().height()];
-        let extent = [0, 1].map(|i| size[i] as f64 * sides[i]);
-        let usual = sides[0].max(sides[1]);
-        let cell = usual.max((extent[0] * extent[1] / MAX_PIXELS).sqrt());
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most as many as nodes")]
-        let [width, height] = extent.map(|extent| (extent / cell).round().max(1.0) as usize);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the nodes")]
-        let node = |pixel: usize, axis: usize| {
-            (((pixel as f64 + 0.5) * cell / sides[axis]) as usize).min(size[axis].saturating_sub(1))
-        };
-        let nodes = (0..width * height).map(|i| [node(i % width, 0), node(i / width, 1)]);
-        let relief = nodes.clone().map(|[column, row]| terrain.heights().get(column, row).unwrap_or(f32::NAN));
-        let relief = Raster::from_values(width, height, relief.collect())?;
-        let color = |([column, row], height): ([usize; 2], &f32)| {
-            colors.get(row * size[0] + column).copied().flatten().filter(|_| !height.is_nan())
-        };
-        let colors = nodes.zip(relief.values()).map(color).collect();
-        let step = cell / frame.crs.metres_per_unit;
-        let place =
-            Georeference { column_step: [step, 0.0], row_step: [0.0, -step], ..terrain_georeference(terrain, frame) };
-        let corner = [west - sides[0] / 2.0, north + sides[1] / 2.0];
-        Ok(Self { relief, colors, cell, corner, place })
-    }
-
-    /// Marks of those places, local metres, that lie on it.
-    pub(crate) fn marks(&self, places: &[[f64; 3]]) -> Vec<MapMark> {
-        let size = [self.relief.width() as f64, self.relief.height() as f64];
-        let mark = |[x, y, _]: &[f64; 3]| {
-            let place = [(x - self.corner[0]) / self.cell, (self.corner[1] - y) / self.cell];
-            let is_inside = (0..2).all(|i| (0.0..=size[i]).contains(&place[i]));
-            is_inside.then(|| MapMark { place, ..MapMark::default() })
-        };
-        places.iter().filter_map(mark).collect()
-    }
-}
-
 /// Writes which observers see which cell.
 pub(super) fn write_masks(output: &Path, seen: &Viewshed, ground: &Ground, cloud: &PointCloud) -> Result<()> {
     let grid = ground.grid;
@@ -271,7 +216,7 @@ pub(super) fn write_masks(output: &Path, seen: &Viewshed, ground: &Ground, cloud
         return Ok(write_npy_u32_bands(output, &seen.masks, grid.width, grid.height)?);
     }
     let [band] = &seen.masks[..] else {
-        return Err(Usage("--masks: a .tif holds 32 observers; use .npy".to_owned()).into());
+        return refuse("--masks: a .tif holds 32 observers; use .npy");
     };
     let raster = Raster::from_values(grid.width, grid.height, band.clone())?;
     let what = "bit i: observer i sees the cell";

@@ -1,8 +1,8 @@
 //! Observers, from flags and files to places.
 
-use crate::arguments::{MapPosition, Usage, ViewshedArguments};
-use crate::commands::extension;
-use crate::commands::surroundings::{ObserverUse, min_count, observer_rows};
+use crate::arguments::{MapPosition, Usage, ViewshedArguments, refuse};
+use crate::inputs::observers::{ObserverUse, min_count, observer_rows};
+use crate::outputs::formats::extension;
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::apps::ask::{Standing, StandingObserver, ViewLimits};
@@ -23,7 +23,7 @@ pub(super) fn check(arguments: &ViewshedArguments) -> Result<()> {
     MapPosition::refuse_twice("--observer", &arguments.who.observer)?;
     let (who, looking) = (&arguments.who, &arguments.looking);
     if looking.step.is_some() && who.observers.is_none() {
-        return Err(Usage("--distance-step-m divides the paths of --observers, which is missing".to_owned()).into());
+        return refuse("--distance-step-m divides the paths of --observers, which is missing");
     }
     let typed = who.spread.unwrap_or(who.observer.len());
     let count = if looking.step.is_some() { 1 } else { min_count(typed, who.observers.as_deref())? };
@@ -34,15 +34,12 @@ pub(super) fn check(arguments: &ViewshedArguments) -> Result<()> {
 fn check_count(arguments: &ViewshedArguments, count: usize) -> Result<()> {
     let is_tif = |path: &PathBuf| matches!(extension(path).as_str(), "tif" | "tiff");
     if count > MAX_IN_MASK && arguments.masks.as_ref().is_some_and(is_tif) {
-        return Err(
-            Usage(format!("--masks: a .tif holds {MAX_IN_MASK} observers, but there are {count}; use .npy")).into()
-        );
+        return refuse(format!("--masks: a .tif holds {MAX_IN_MASK} observers, but there are {count}; use .npy"));
     }
     if count > MAX_COUNTED && arguments.output.iter().any(is_tif) {
-        return Err(Usage(format!(
+        return refuse(format!(
             "-o: a .tif counts at most {MAX_COUNTED} observers, but there are {count}; give fewer, or use --masks with .npy"
-        ))
-        .into());
+        ));
     }
     Ok(())
 }

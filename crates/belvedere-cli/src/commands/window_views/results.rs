@@ -1,7 +1,7 @@
 //! Views from windows as files.
 
-use crate::commands::extension;
-use crate::commands::windows::WindowColumn;
+use crate::inputs::windows::WindowColumn;
+use crate::outputs::formats::extension;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;

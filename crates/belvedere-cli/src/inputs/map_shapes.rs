@@ -1,27 +1,28 @@
 //! Shapes on the map: from flags and files to local metres.
 
 use crate::arguments::CornersArgument;
+use crate::outputs::formats::extension;
 use anyhow::{Result, bail};
 use belvedere::Frame;
 use belvedere::io::{FEATURE_EXTENSIONS, FeatureShape, RowsAre, read_features, read_observers};
 use std::path::Path;
 
 /// A shape and what to call it.
-pub(super) struct NamedShape {
-    pub(super) shape: FeatureShape,
-    pub(super) name: String,
+pub(crate) struct NamedShape {
+    pub(crate) shape: FeatureShape,
+    pub(crate) name: String,
 }
 
 /// Meaning of the corners typed after `flag`.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum TypedAre {
+pub(crate) enum TypedAre {
     Line,
     Polygon,
 }
 
 /// The shapes that were typed or are in the file named, local metres; heights that are not given are NaN. `typed_are`
 /// tells what corners of tables are too.
-pub(super) fn shapes(
+pub(crate) fn shapes(
     flag: &str,
     corners: &CornersArgument,
     typed_are: TypedAre,
@@ -40,7 +41,7 @@ pub(super) fn shapes(
     };
     let from_origin = |corner: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|i| corner[i] - frame.origin[i]) };
     let file = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let found: Vec<NamedShape> = match super::extension(path).as_str() {
+    let found: Vec<NamedShape> = match extension(path).as_str() {
         extension if FEATURE_EXTENSIONS.contains(&extension) => read_features(path, &frame.crs)?
             .into_iter()
             .enumerate()
@@ -71,7 +72,7 @@ pub(super) fn shapes(
 }
 
 /// Refuses a shape that does not fit.
-pub(super) fn wrong_shape<T>(flag: &str, corners: &CornersArgument, expected: &str) -> Result<T> {
+pub(crate) fn wrong_shape<T>(flag: &str, corners: &CornersArgument, expected: &str) -> Result<T> {
     let what = match corners {
         CornersArgument::Typed(_) => flag.to_owned(),
         CornersArgument::File(path) => Path::display(path).to_string(),

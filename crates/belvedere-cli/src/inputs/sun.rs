@@ -1,9 +1,16 @@
-//! Location of a scene on earth, its clock, and the typed days.
+//! Location of a scene on earth, its clock, the typed days, and the division of the sky.
 
-use crate::arguments::{ElevationChoice, NorthArguments, SunPeriod, SunPlaceArguments, Usage};
+use crate::arguments::{ElevationChoice, NorthArguments, PatchesChoice, SunPeriod, SunPlaceArguments, refuse};
 use anyhow::Result;
-use belvedere::apps::ask;
+use belvedere::apps::ask::{self, SkyParts};
 use belvedere::apps::sun::Refraction;
+
+impl NorthArguments {
+    /// Returns the typed north.
+    pub(crate) fn choice(&self) -> ask::North {
+        if self.grid_north { ask::North::Grid } else { ask::North::True }
+    }
+}
 
 impl SunPlaceArguments {
     /// Returns the typed place, with the north of azimuths.
@@ -29,9 +36,7 @@ impl SunPlaceArguments {
     /// Returns the refraction of the sun by the air.
     pub(crate) fn refraction(&self) -> Result<Refraction> {
         match (self.elevation, &self.air) {
-            (ElevationChoice::Geometric, Some(_)) => {
-                Err(Usage("--air needs --sun-elevation apparent".to_owned()).into())
-            }
+            (ElevationChoice::Geometric, Some(_)) => refuse("--air needs --sun-elevation apparent"),
             (ElevationChoice::Geometric, None) => Ok(Refraction::Without),
             (ElevationChoice::Apparent, None) => Ok(Refraction::Standard),
             (ElevationChoice::Apparent, Some(air)) => {
@@ -57,5 +62,14 @@ impl SunPeriod {
     /// Returns true if any day was typed.
     pub(crate) fn is_given(&self) -> bool {
         !self.date.is_empty() || self.from.is_some()
+    }
+}
+
+/// Returns the division of the sky.
+pub(crate) fn sky_parts(patches: Option<PatchesChoice>, directions: Option<usize>) -> SkyParts {
+    match patches {
+        Some(PatchesChoice::Tregenza) => SkyParts::Tregenza,
+        Some(PatchesChoice::Reinhart) => SkyParts::Reinhart,
+        None => directions.map_or_else(SkyParts::default, SkyParts::Even),
     }
 }

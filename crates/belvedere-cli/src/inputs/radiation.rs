@@ -1,6 +1,6 @@
 //! Converts flags and weather files to the source of radiation.
 
-use crate::arguments::{ClearSkyChoice, RadiationModel, Usage};
+use crate::arguments::{ClearSkyChoice, RadiationModel, refuse};
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::apps::ask::Radiation;
@@ -9,7 +9,7 @@ use belvedere::io::read_weather;
 use std::path::Path;
 use std::sync::Arc;
 
-pub(in crate::commands) fn params(model: &RadiationModel) -> IrradianceParams {
+pub(crate) fn params(model: &RadiationModel) -> IrradianceParams {
     let usual = IrradianceParams::default();
     IrradianceParams::default()
         .with_sky(model.sky.map_or(usual.sky, Into::into))
@@ -29,15 +29,15 @@ fn clear_sky(choice: Option<ClearSkyChoice>, model: &RadiationModel, params: &Ir
 }
 
 /// Refuses a turbidity for a sky that knows none.
-pub(in crate::commands) fn check_linke(choice: Option<ClearSkyChoice>, model: &RadiationModel) -> Result<()> {
+pub(crate) fn check_linke(choice: Option<ClearSkyChoice>, model: &RadiationModel) -> Result<()> {
     if model.linke.is_some() && choice != Some(ClearSkyChoice::Ineichen) {
-        return Err(Usage("--linke needs --clear-sky ineichen".to_owned()).into());
+        return refuse("--linke needs --clear-sky ineichen");
     }
     Ok(())
 }
 
 /// Returns the source of radiation; reads weather.
-pub(in crate::commands) fn of(
+pub(crate) fn of(
     (weather, choice): (Option<&Path>, Option<ClearSkyChoice>),
     model: &RadiationModel,
     year: i16,

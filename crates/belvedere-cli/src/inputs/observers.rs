@@ -1,7 +1,7 @@
 //! Eyes of isovists and horizons: from flags and files to places.
 
-use super::extension;
 use crate::arguments::{EyesArguments, FarTerrainArguments, MapPosition, SceneInput};
+use crate::outputs::formats::extension;
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use anyhow::Result;
@@ -12,7 +12,7 @@ use std::path::Path;
 
 impl EyesArguments {
     /// The observers that were typed or are in the file named.
-    pub(super) fn standing(
+    pub(crate) fn standing(
         &self,
         (frame, bounds): (&Frame, &Bounds),
         run: &mut CommandContext,
@@ -30,7 +30,7 @@ impl EyesArguments {
     }
 
     /// The scene around the observers, before far terrain if there is any.
-    pub(super) fn scene(
+    pub(crate) fn scene(
         &self,
         input: &SceneInput,
         far: Option<&FarTerrainArguments>,
@@ -48,7 +48,7 @@ impl EyesArguments {
 
 /// Use of observers in a file.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum ObserverUse {
+pub(crate) enum ObserverUse {
     /// Positions only.
     Places,
     /// And how far and where they look.
@@ -56,7 +56,7 @@ pub(super) enum ObserverUse {
 }
 
 /// The observers of a file, with a remark on what of it is not used.
-pub(super) fn observer_rows(
+pub(crate) fn observer_rows(
     path: &Path,
     frame: &Frame,
     rows_are: RowsAre,
@@ -70,12 +70,12 @@ pub(super) fn observer_rows(
 }
 
 /// Returns the minimum number of observers: those typed, or the rows of a table; one for other files.
-pub(super) fn min_count(typed: usize, observers: Option<&Path>) -> Result<usize> {
+pub(crate) fn min_count(typed: usize, observers: Option<&Path>) -> Result<usize> {
     Ok(typed.max(rows_as_given(observers)?.row_count()).max(1))
 }
 
 /// The rows of a table of observers as they were given; none for other files and for observers that were typed.
-pub(super) fn rows_as_given(observers: Option<&Path>) -> Result<TextRows> {
+pub(crate) fn rows_as_given(observers: Option<&Path>) -> Result<TextRows> {
     match observers.filter(|path| ["csv", "txt"].contains(&extension(path).as_str())) {
         Some(path) => Ok(read_table(path)?.into_text()),
         None => Ok(TextRows::default()),

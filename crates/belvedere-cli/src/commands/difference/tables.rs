@@ -1,6 +1,7 @@
 //! `belvedere difference` of two tables: rows of the same places, before and after a plan.
 
-use crate::arguments::{DifferenceArguments, Usage};
+use crate::arguments::{DifferenceArguments, refuse};
+use crate::outputs::formats::extension;
 use crate::run::CommandContext;
 use anyhow::{Result, bail};
 use belvedere::apps::difference::{Difference, DifferenceReport, difference};
@@ -39,10 +40,10 @@ struct Compared {
 pub(super) fn run(arguments: &DifferenceArguments, run: &mut CommandContext) -> Result<()> {
     let flags = [("--relief", arguments.relief.is_some()), ("--title", arguments.title.is_some())];
     if let Some((flag, _)) = flags.into_iter().find(|(_, is_given)| *is_given) {
-        return Err(Usage(format!("{flag} applies only to rasters")).into());
+        return refuse(format!("{flag} applies only to rasters"));
     }
-    if let Some(other) = arguments.output.iter().find(|output| super::extension(output) != "csv") {
-        return Err(Usage(format!("-o {}: the difference of tables is a table (.csv)", other.display())).into());
+    if let Some(other) = arguments.output.iter().find(|output| extension(output) != "csv") {
+        return refuse(format!("-o {}: the difference of tables is a table (.csv)", other.display()));
     }
     let paths = [&arguments.before, &arguments.after].map(|path| path.as_path());
     let [before, after] = [Rows::read(paths[0], run)?, Rows::read(paths[1], run)?];
@@ -59,7 +60,7 @@ pub(super) fn run(arguments: &DifferenceArguments, run: &mut CommandContext) -> 
     for output in &arguments.output {
         run.stage("writing", 0, |_| write(output, &before, &pairs, &changed))?;
     }
-    run.summary.add("written", arguments.output.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+    run.summary.add_paths("written", &arguments.output);
     Ok(())
 }
 

@@ -1,25 +1,31 @@
 //! Questions on the cells of a survey that does not fit into memory: typed and written like those of one cloud, and
 //! answered in tiles.
 
-use super::targets::{HighestPoints, remark_on_first};
-use super::{city, extension};
 use crate::arguments::{
-    FarTerrainArguments, GroundChoice, MemoryArgument, SceneInput, SkyOutputs, SkyPlaces, ThroughTreesArguments,
-    UpChoice, Usage,
+    FarTerrainArguments, GroundChoice, MemoryArgument, PlanArguments, SceneInput, SkyOutputs, SkyPlaces,
+    ThroughTreesArguments, UpChoice, Usage, refuse,
 };
 use crate::memory;
+use crate::outputs::formats::extension;
+use crate::outputs::targets::{HighestPoints, remark_on_first};
+use crate::pipeline::areas;
 use crate::run::CommandContext;
-use anyhow::Result;
+use anyhow::{Result, bail};
 use belvedere::Error;
 use belvedere::apps::ask::{Answers, GridCells, Question};
 use belvedere::cache::SurveyFolder;
 use belvedere::figures::{Picture, write_png};
 use belvedere::io::Insistence;
 use belvedere::results::{georeference, measure_map};
-use belvedere_tiles::{Plan, PlanParams, SurveyCells, SurveyQuestion, TileQuestion, TooLarge};
+use belvedere_tiles::{Plan, PlanParams, RunReport, SideFile, SurveyCells, SurveyQuestion, TileQuestion, TooLarge};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+
+/// Name and version of the program, as plans say them.
+pub(crate) const PROGRAM: &str = concat!("belvedere ", env!("CARGO_PKG_VERSION"));
+/// Maximum number of failures that are listed one by one.
+const MAX_LISTED: usize = 10;
 
 /// Typed arguments of a question about cells.
 pub(crate) struct TypedCells<'a> {
@@ -98,11 +104,10 @@ impl<'a> TypedCells<'a> {
             return match self.memory.memory {
                 // one model is tried, as if there were no tiles
                 None => Ok(None),
-                Some(_) => Err(Usage(format!(
+                Some(_) => refuse(format!(
                     "{what} is not there in tiles, and {}; leave it out, or allow more memory",
                     large.in_words()
-                ))
-                .into()),
+                )),
             };
         }
         let options = input.read_options();
@@ -119,14 +124,13 @@ impl<'a> TypedCells<'a> {
             crs: input.crs.clone(),
             crs_against_files: if input.crs_override { Insistence::Insist } else { Insistence::Refuse },
             flown: input.flown,
-            program: city::PROGRAM.to_owned(),
+            program: PROGRAM.to_owned(),
             ..PlanParams::default()
         };
         let plan = Plan::kept_in(folder.path(), &params, &run.control())?;
         let plan = plan.with_grid_cells(&self.cells)?.fitting(limit)?;
         run.summary.remarks([large.remark_on_tiles(plan.tile_size)]);
-        let plan =
-            city::planned(plan, &self.scene.plan, self.far, self.trees.map(|trees| (trees, latitude(question))))?;
+        let plan = planned(plan, &self.scene.plan, self.far, self.trees.map(|trees| (trees, latitude(question))))?;
         Ok(Some(PlannedSurvey { plan, folder, is_temporary, limit }))
     }
 
@@ -142,7 +146,7 @@ impl<'a> TypedCells<'a> {
         let survey = SurveyQuestion::new(plan, folder.path(), question.clone(), limit, &run.control())?;
         let start = Instant::now();
         let report = survey.run(&|| start.elapsed().as_secs_f64(), &run.control())?;
-        city::refuse_failed(&report, "run the command again to try them again")?;
+        refuse_failed(&report, "run the command again to try them again")?;
         run.summary.add_report(&report);
         let answers = survey.answers(&report, &run.control())?;
         run.name_question(&question, answers.time_zone());
@@ -224,4 +228,46 @@ fn made_beside(folder: &Path) -> Result<SurveyFolder> {
 fn map_of_first(answers: &Answers<SurveyCells>, relief: &HighestPoints) -> belvedere::Result<Picture> {
     let HighestPoints { heights, cell, place } = relief;
     measure_map(&answers.measures[0], heights, *cell, place, &answers.found.title)
+}
+
+/// The plan with what will be built, before far terrain, and with light through trees at a latitude, radians, where one
+/// was typed.
+pub(crate) fn planned(
+    plan: Plan,
+    changes: &PlanArguments,
+    far: Option<&FarTerrainArguments>,
+    trees: Option<(&ThroughTreesArguments, Option<f64>)>,
+) -> Result<Plan> {
+    let meshes = changes.add.iter().map(|path| SideFile::new(path)).collect::<belvedere::Result<Vec<_>>>()?;
+    let plan = plan.with_meshes(meshes)?;
+    let frame = plan.frame()?;
+    let mut cleared = Vec::new();
+    for choice in &changes.clear {
+        cleared.extend(areas(choice, &frame)?);
+    }
+    let plan = plan.with_cleared(cleared)?;
+    let side = |path: &Option<PathBuf>| path.as_deref().map(SideFile::new).transpose();
+    let plan = match far {
+        Some(far) => plan.with_far_terrain(side(&far.terrain)?, side(&far.horizon)?)?,
+        None => plan,
+    };
+    let Some((trees, latitude)) = trees else { return Ok(plan) };
+    match trees.choice()?.crowns(plan.knows_crowns(), plan.crown_density(latitude)?)? {
+        Some(crowns) => Ok(plan.with_light_through_trees(crowns)?),
+        None => Ok(plan),
+    }
+}
+
+/// The error of a run of which something failed, with what to do.
+pub(crate) fn refuse_failed(report: &RunReport, advice: &str) -> Result<()> {
+    if let Some((first, _)) = report.failed.split_first() {
+        let listed = report.failed.iter().take(MAX_LISTED).map(|why| format!("\n  {why}")).collect::<String>();
+        let more = report.failed.len().saturating_sub(MAX_LISTED);
+        let more = if more > 0 { format!("\n  and {more} more (belvedere city status)") } else { String::new() };
+        if report.failed.len() == 1 {
+            bail!("{first}; all else is done; {advice}");
+        }
+        bail!("{} steps failed; all else is done; {advice}:{listed}{more}", report.failed.len());
+    }
+    Ok(())
 }

@@ -11,7 +11,7 @@ use belvedere::io::{cloud_files, read_las_head};
 ///
 /// # Errors
 /// [`Usage`] for longitude before latitude.
-pub(super) fn in_file_coordinates(command: &mut Command) -> Result<()> {
+pub(crate) fn in_file_coordinates(command: &mut Command) -> Result<()> {
     let (input, places): (&CloudInput, Vec<&mut MapPosition>) = match command {
         Command::LineOfSight(typed) => {
             (&typed.scene.input, typed.lines.from.iter_mut().chain(&mut typed.lines.to).collect())
@@ -42,7 +42,7 @@ pub(super) fn in_file_coordinates(command: &mut Command) -> Result<()> {
 ///
 /// # Errors
 /// An unknown reference system that was typed.
-pub(super) fn on_map(input: &CloudInput) -> Result<Option<(Crs, [[f64; 2]; 2])>> {
+pub(crate) fn on_map(input: &CloudInput) -> Result<Option<(Crs, [[f64; 2]; 2])>> {
     let Ok(files) = cloud_files(&input.clouds) else { return Ok(None) };
     let heads: Option<Vec<_>> = files.iter().map(|file| read_las_head(file.as_path()).ok()).collect();
     let Some(heads) = heads.filter(|heads| !heads.is_empty()) else { return Ok(None) };

@@ -6,7 +6,7 @@ use belvedere::io::{TableCells, write_table};
 use std::path::Path;
 
 /// Writes columns as a table, behind one of numbers if it is given.
-pub(super) fn write_columns(
+pub(crate) fn write_columns(
     output: &Path,
     numbers: Option<(&str, &[Option<u64>])>,
     columns: &[ResultColumn],

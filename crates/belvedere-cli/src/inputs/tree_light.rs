@@ -1,6 +1,6 @@
 //! Typed light through trees.
 
-use crate::arguments::{LeavesChoice, ThroughTreesArguments, ThroughTreesChoice, Usage};
+use crate::arguments::{LeavesChoice, ThroughTreesArguments, ThroughTreesChoice, refuse};
 use anyhow::Result;
 use belvedere::apps::ask;
 use belvedere::apps::tree_light::Leaves;
@@ -10,7 +10,7 @@ impl ThroughTreesArguments {
     pub(crate) fn choice(&self) -> Result<ask::ThroughTrees> {
         let follows_leaves = !matches!(self.through_trees, ThroughTreesChoice::None | ThroughTreesChoice::Share(_));
         if self.leaves.is_some() && !follows_leaves {
-            return Err(Usage("--leaves needs --through-trees measured, seasons or pulses".to_owned()).into());
+            return refuse("--leaves needs --through-trees measured, seasons or pulses");
         }
         let leaves = match self.leaves {
             None | Some(LeavesChoice::Auto) => Leaves::ByDate,

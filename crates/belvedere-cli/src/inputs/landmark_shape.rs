@@ -1,7 +1,7 @@
 //! The landmark: a mesh, or points of the cloud.
 
-use crate::arguments::{LandmarkShapeArguments, Usage};
-use crate::commands::extension;
+use crate::arguments::{LandmarkShapeArguments, refuse};
+use crate::outputs::formats::extension;
 use crate::pipeline::{LoadedScene, mesh_in};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -14,7 +14,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// The landmark of the flags, in the frame of a scene.
-pub(in crate::commands) fn shape(
+pub(crate) fn shape(
     arguments: &LandmarkShapeArguments,
     frame: &Frame,
     run: &mut CommandContext,
@@ -28,15 +28,12 @@ pub(in crate::commands) fn shape(
         }
         (None, Some(class), _) => Ok(ask::LandmarkShape::Class(class)),
         (None, None, Some(path)) => Ok(ask::LandmarkShape::Inside { polygons: polygons_of(path, frame)? }),
-        (None, None, None) => {
-            let what = "the landmark is missing: give --targets, --target-class or --target-polygon";
-            Err(Usage(what.to_owned()).into())
-        }
+        (None, None, None) => refuse("the landmark is missing: give --targets, --target-class or --target-polygon"),
     }
 }
 
 /// The surface of the landmark, and its middle on the map, local metres.
-pub(in crate::commands) fn surface(
+pub(crate) fn surface(
     arguments: &LandmarkShapeArguments,
     scene: &LoadedScene,
     run: &mut CommandContext,
@@ -50,7 +47,7 @@ pub(in crate::commands) fn surface(
 }
 
 /// The triangles of the objects named, all where none is.
-pub(in crate::commands) fn objects_of(mesh: Mesh, names: &[String], path: &Path) -> Result<Mesh> {
+pub(crate) fn objects_of(mesh: Mesh, names: &[String], path: &Path) -> Result<Mesh> {
     if names.is_empty() {
         return Ok(mesh);
     }
@@ -95,11 +92,7 @@ fn polygons_of(path: &Path, frame: &Frame) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
             vec![vec![ring]]
         }
         _ => {
-            return Err(Usage(format!(
-                "--target-polygon {}: use .geojson .json .gpkg .shp .csv or .txt",
-                path.display()
-            ))
-            .into());
+            return refuse(format!("--target-polygon {}: use .geojson .json .gpkg .shp .csv or .txt", path.display()));
         }
     };
     if polygons.is_empty() {

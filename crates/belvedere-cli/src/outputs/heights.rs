@@ -1,6 +1,6 @@
 //! Heights of cells as files.
 
-use super::extension;
+use crate::outputs::formats::extension;
 use anyhow::Result;
 use belvedere::Frame;
 use belvedere::ground::MapGrid;
@@ -12,7 +12,7 @@ use std::slice::from_ref;
 
 /// Writes heights of the cells of `grid`, NaN where there is none, as .npy or GeoTIFF; `what` says what they are. A
 /// GeoTIFF has `tags` as metadata.
-pub(super) fn write_heights(
+pub(crate) fn write_heights(
     output: &Path,
     heights: &Raster<f32>,
     (grid, frame): (&MapGrid, &Frame),

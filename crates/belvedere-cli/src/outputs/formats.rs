@@ -1,27 +1,27 @@
 //! Outputs of commands: formats by their extensions, and what is refused before hours of work go into it.
 
-use crate::arguments::Usage;
+use crate::arguments::refuse;
 use crate::summary::Summary;
 use anyhow::{Context, Result, bail};
 use belvedere::crs::Crs;
-use belvedere::io::{CLOUD_EXTENSIONS, ExtraColumn, ExtraValues, Source, atomic};
+use belvedere::io::{CLOUD_EXTENSIONS, ExtraColumn, ExtraValues, Source, TextRows, atomic, read_text_rows};
 use std::path::{Path, PathBuf};
 
 /// The extension of a path in lower case, empty where it has none.
-pub(super) fn extension(path: &Path) -> String {
+pub(crate) fn extension(path: &Path) -> String {
     Source::path(path).extension()
 }
 
 /// Normals as columns of their own, for formats that have no other place for them.
-pub(super) struct NormalColumns([Vec<f32>; 3]);
+pub(crate) struct NormalColumns([Vec<f32>; 3]);
 
 impl NormalColumns {
-    pub(super) fn new(normals: &[[f32; 3]]) -> Self {
+    pub(crate) fn new(normals: &[[f32; 3]]) -> Self {
         Self([0, 1, 2].map(|axis| normals.iter().map(|n| n[axis]).collect()))
     }
 
     /// The columns under the names that readers of the format at `path` look for.
-    pub(super) fn columns(&self, path: &Path) -> [ExtraColumn<'_>; 3] {
+    pub(crate) fn columns(&self, path: &Path) -> [ExtraColumn<'_>; 3] {
         let names = if is_las(path) { ["NormalX", "NormalY", "NormalZ"] } else { ["nx", "ny", "nz"] };
         let descriptions = ["outward unit normal, east", "outward unit normal, north", "outward unit normal, up"];
         std::array::from_fn(|axis| ExtraColumn {
@@ -37,21 +37,21 @@ fn is_las(path: &Path) -> bool {
 }
 
 /// Returns true if an output is a folder: it exists as one, or its name has no extension.
-pub(super) fn is_folder(path: &Path) -> bool {
+pub(crate) fn is_folder(path: &Path) -> bool {
     path.is_dir() || extension(path).is_empty()
 }
 
 /// Refuses an output of an unknown format or in a folder that is not there, before hours of work go into it.
-pub(super) fn check_output(flag: &str, path: &Path, known: &[&str]) -> Result<()> {
+pub(crate) fn check_output(flag: &str, path: &Path, known: &[&str]) -> Result<()> {
     if !known.contains(&extension(path).as_str()) {
         let known = known.join(" .");
-        return Err(Usage(format!("{flag} {}: the extension must be one of .{known}", path.display())).into());
+        return refuse(format!("{flag} {}: the extension must be one of .{known}", path.display()));
     }
     check_parent(path)
 }
 
 /// Warns of GeoJSON whose coordinates are not those that its standard promises.
-pub(super) fn warn_of_geojson(outputs: &[PathBuf], crs: &Crs, summary: &mut Summary) {
+pub(crate) fn warn_of_geojson(outputs: &[PathBuf], crs: &Crs, summary: &mut Summary) {
     if !outputs.iter().any(|output| extension(output) == "geojson") || crs.geographic_projection().is_ok() {
         return;
     }
@@ -63,7 +63,7 @@ pub(super) fn warn_of_geojson(outputs: &[PathBuf], crs: &Crs, summary: &mut Summ
 }
 
 /// Refuses an output in a folder that is not there.
-pub(super) fn check_parent(path: &Path) -> Result<()> {
+pub(crate) fn check_parent(path: &Path) -> Result<()> {
     match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() && !parent.is_dir() => {
             bail!("{}: the folder {} does not exist; create it first", path.display(), parent.display())
@@ -73,15 +73,14 @@ pub(super) fn check_parent(path: &Path) -> Result<()> {
 }
 
 /// Refuses an output folder that cannot be made or that has the name of a point cloud, before hours of work go into it.
-pub(super) fn check_folder(path: &Path) -> Result<()> {
+pub(crate) fn check_folder(path: &Path) -> Result<()> {
     let is_new = !path.exists();
     if is_new && CLOUD_EXTENSIONS.contains(&extension(path).as_str()) {
-        let what = format!(
+        return refuse(format!(
             "-o {}: results are several files in a folder; give it a name without .{}",
             path.display(),
             extension(path)
-        );
-        return Err(Usage(what).into());
+        ));
     }
     atomic::make_folder(path)?;
     if is_new {
@@ -92,7 +91,13 @@ pub(super) fn check_folder(path: &Path) -> Result<()> {
 
 /// Returns true if a folder in the layout of masbcpp is written where it was read. Its coordinates then stay unchanged:
 /// they may be finer than the f32 of the layout.
-pub(super) fn is_written_back(inputs: &[PathBuf], folder: &Path) -> bool {
+pub(crate) fn is_written_back(inputs: &[PathBuf], folder: &Path) -> bool {
     let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
     inputs.iter().any(|input| same(input, folder) || same(input, &folder.join("coords.npy")))
+}
+
+/// The rows of a table of points for an output that is a table too.
+pub(crate) fn text_rows_for(path: &Path, output: &Path) -> Result<Option<TextRows>> {
+    let is_table = |path: &Path| ["csv", "txt", "xyz"].contains(&extension(path).as_str());
+    if is_table(path) && is_table(output) { Ok(Some(read_text_rows(path)?)) } else { Ok(None) }
 }

@@ -1,7 +1,7 @@
 //! Positions and lenses of cameras, from flags and files to a question.
 
 use crate::arguments::CameraLensArguments;
-use crate::commands::surroundings::{ObserverUse, observer_rows};
+use crate::inputs::observers::{ObserverUse, observer_rows};
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::Frame;
@@ -14,7 +14,7 @@ use std::path::Path;
 const STEP: f64 = 5.0;
 
 /// Returns the lenses of cameras from the flags.
-pub(super) fn lens(flags: &CameraLensArguments) -> ask::CameraLens {
+pub(crate) fn lens(flags: &CameraLensArguments) -> ask::CameraLens {
     ask::CameraLens {
         fov_deg: flags.fov,
         vertical_fov_deg: flags.vertical_fov,
@@ -29,7 +29,7 @@ pub(super) fn lens(flags: &CameraLensArguments) -> ask::CameraLens {
 }
 
 /// The cameras or stations of a file, those on lines `step` metres apart, or [`STEP`].
-pub(in crate::commands) fn candidates_on_path(
+pub(crate) fn candidates_on_path(
     path: &Path,
     step: Option<f64>,
     needed: ObserverUse,

@@ -1,10 +1,11 @@
 //! Flags of what stands beyond the cloud.
 
-use crate::arguments::{FarTerrainArguments, NorthArguments};
+use crate::arguments::FarTerrainArguments;
 use crate::pipeline::LoadedScene;
 use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
 use anyhow::Result;
+use belvedere::apps::ask::scene::Whereabouts;
 use belvedere::io::{read_horizon, read_terrain};
 use belvedere::model::TerrainReport;
 use std::path::Path;
@@ -23,19 +24,21 @@ impl FarTerrainArguments {
         }
         if let Some(path) = &self.horizon {
             let horizon = run.stage("reading horizon", 0, |_| read_horizon(path))?;
-            let north = NorthArguments { grid_north: false }.of_scene(scene);
+            let (frame, bounds) = (&scene.cloud.frame, scene.model.bounds());
+            let place = Whereabouts { frame, bounds, has_far_terrain: false };
+            let of_grid = place.convergence_at(place.middle()).unwrap_or(0.0);
             let highest = horizon.rows().iter().map(|row| row[1]).fold(f64::NEG_INFINITY, f64::max);
             let mut section = Summary::default();
             section.add("azimuths", horizon.rows().len()).add("max_elevation_deg", rounded(highest.to_degrees(), 3));
             run.summary.add("far_horizon", section);
-            scene.model = std::mem::take(&mut scene.model).with_horizon(horizon.turned(-north.of_grid));
+            scene.model = std::mem::take(&mut scene.model).with_horizon(horizon.turned(-of_grid));
         }
         Ok(())
     }
 }
 
 /// Puts the scene before the terrain of an elevation raster.
-pub(super) fn set_terrain(path: &Path, scene: &mut LoadedScene, run: &mut CommandContext) -> Result<()> {
+pub(crate) fn set_terrain(path: &Path, scene: &mut LoadedScene, run: &mut CommandContext) -> Result<()> {
     let model = std::mem::take(&mut scene.model);
     let frame = model.frame().clone();
     let terrain = run.stage("reading terrain", 0, |_| read_terrain(path, &frame))?;

@@ -1,7 +1,8 @@
 //! Windows: from files to places.
 
-use super::landmark::landmark_shape::objects_of;
-use crate::arguments::Usage;
+use crate::arguments::refuse;
+use crate::inputs::landmark_shape::objects_of;
+use crate::outputs::formats::extension;
 use crate::pipeline::mesh_in;
 use crate::run::CommandContext;
 use anyhow::{Result, bail};
@@ -42,10 +43,10 @@ impl WindowFile {
         }
         for (flag, is_given) in [("--spacing", choice.spacing.is_some()), ("--object", !choice.objects.is_empty())] {
             if is_given {
-                return Err(Usage(format!("{flag} applies only to windows from a mesh")).into());
+                return refuse(format!("{flag} applies only to windows from a mesh"));
             }
         }
-        if !["csv", "txt"].contains(&super::extension(path).as_str()) {
+        if !["csv", "txt"].contains(&extension(path).as_str()) {
             bail!("{}: windows are a table (.csv .txt) or a mesh (.obj .json .ply with faces)", path.display());
         }
         table(path, frame)
@@ -123,4 +124,12 @@ pub(crate) fn coordinates(frame: &Frame, places: &[[f64; 3]]) -> Vec<WindowColum
     let of_file: Vec<[f64; 3]> = places.iter().map(|&place| frame.file_from_local(place)).collect();
     let axis = |i: usize| of_file.iter().map(|place| place[i]).collect();
     vec![("x", axis(0), 3), ("y", axis(1), 3), ("z", axis(2), 3)]
+}
+
+/// Refuses windows that are the faces of a mesh, which are too many to list.
+pub(crate) fn refuse_mesh(path: &Path) -> Result<()> {
+    match is_mesh(path) {
+        true => refuse("--windows: give a table (.csv); `belvedere comfort` takes the faces of a mesh"),
+        false => Ok(()),
+    }
 }
