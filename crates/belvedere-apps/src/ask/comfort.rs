@@ -1,12 +1,16 @@
 //! Comfort: sun and sky of walkers on routes, and of windows.
 
-use super::places::test_edge;
-use super::sections::{LinesSection, NamedValues, PeriodSection};
+use super::answers::{Answers, Ask};
+use super::context::Context;
+use super::places::{Places, test_edge};
+use super::remark::Remark;
+use super::scene::Scene;
+use super::sections::{ExposureSection, LinesSection, NamedValues, PeriodSection};
+use super::sky_view::SkyParts;
 use super::sun::{Days, sun_days_above};
 use super::sun_hours::days_in_words;
 use super::sun_place::SunPlace;
 use super::windows::{GivenWindows, WindowTargets};
-use super::{Answers, Ask, Context, Places, Remark, Scene, SkyParts};
 use crate::exposure::{Exposure, ROUTE_STEP, ShadeAtEachSun, WALKER_HEIGHT, scene_exposure};
 use crate::sun::{Binning, SunSchedule, Zone};
 use crate::targets::{Route, Targets, Window, grid_around, set_on_ground};
@@ -82,19 +86,6 @@ pub struct ComfortResults {
     pub grid_north: f64,
 }
 
-/// Exposure of routes or windows, for reports.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ExposureSection {
-    /// Number of routes or windows.
-    #[serde(flatten)]
-    groups: NamedValues<usize>,
-    targets: usize,
-    sky_directions: usize,
-    /// Means by weight.
-    #[serde(flatten)]
-    means: NamedValues<f64>,
-}
-
 impl ComfortQuestion {
     fn targets(
         &self,
@@ -133,7 +124,7 @@ impl ComfortQuestion {
         let count = places().count();
         let Some(grid) = grid_around(places(), scene.frame().origin)? else { return Ok(routes) };
         let known = scene.ground(grid, self.ground, control)?;
-        context.ground(scene, &known);
+        context.ground(scene.frame(), &known);
         let height = self.target_height.unwrap_or(WALKER_HEIGHT);
         let all = routes.iter_mut().flat_map(|route| &mut route.places).map(|place| (place, height));
         let unknown = set_on_ground(all, &known.ground).len();

@@ -1,7 +1,12 @@
 //! Depth map: the distance to the first surface for each pixel of a view.
 
+use super::answers::{Answers, Ask};
+use super::context::Context;
+use super::places::Places;
+use super::remark::Remark;
 use super::scene::Scene;
-use super::{Answers, Ask, Context, Places, Remark, remark_on_eye};
+use super::sections::{PictureSection, ViewDirection, ViewSection};
+use super::viewer::remark_on_eye;
 use belvedere_core::depth::{ItemBuffer, Profile};
 use belvedere_core::query::Coverage;
 use belvedere_data::control::Control;
@@ -43,33 +48,6 @@ pub struct DepthMapResults {
     pub depth: Raster<f32>,
     /// The row of the ball that each pixel shows, where that was wanted.
     pub balls: Option<Raster<u32>>,
-}
-
-/// A view, for reports.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ViewSection {
-    width_px: usize,
-    height_px: usize,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pixel_m: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pixel_m_at_100_m: Option<f64>,
-    view_direction: ViewDirection,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
-enum ViewDirection {
-    Along(Vec<f64>),
-    Around(&'static str),
-}
-
-/// A picture, for reports.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct PictureSection {
-    pixels_hit_percent: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    balls_around_eye_ignored: Option<usize>,
 }
 
 impl ViewFrom {

@@ -1,11 +1,15 @@
 //! Glare: sun that panels and glass reflect to observers.
 
+use super::answers::{Answers, Ask};
+use super::context::Context;
 use super::observers::{Eyes, Observers, check_height};
-use super::sections::{LinesSection, PeriodSection};
+use super::places::Places;
+use super::remark::Remark;
+use super::scene::Scene;
+use super::sections::{GlareSection, LinesSection, PeriodSection};
 use super::sun::{Days, sun_days_above};
 use super::sun_place::{SunPlace, remark_on_solar_hours};
 use super::windows::{GivenWindow, with_number};
-use super::{Answers, Ask, Context, Places, Remark, Scene};
 use crate::eyes::{EyeFault, fault_of};
 use crate::glare::{EyeGlare, GlareParams, GlareStretch, Reflector, glare, glare_by_hour};
 use crate::irradiance::{ClearSky, extraterrestrial};
@@ -77,20 +81,6 @@ pub struct GlareSummary {
     /// First and last day of the period with glare; `None` without glare.
     #[serde(skip)]
     pub dates: Option<[Date; 2]>,
-}
-
-/// Glare for reports.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct GlareSection {
-    observers: usize,
-    reflectors: usize,
-    /// Hours of glare of all observers together, each counted once however many reflectors dazzle.
-    hours: f64,
-    after_image_hours: f64,
-    unproven_hours: f64,
-    scatter_deg: f64,
-    from_sun_deg: f64,
-    clear_sky: String,
 }
 
 impl GlareSummary {

@@ -1,13 +1,17 @@
 //! Heat: radiant temperature and thermal stress of people at places, over the hours of days of weather.
 
-use super::irradiance::remark_on_place_of;
-use super::sections::{MeasuresSection, PlacesReport};
+use super::answers::{Answers, Ask};
+use super::context::{Context, spread};
+use super::places::Places;
+use super::remark::Remark;
+use super::scene::Scene;
+use super::sections::{HeatSection, MeasuresSection, PlacesReport};
+use super::seen_kinds::kinds_of_balls;
 use super::sun::{Days, moment};
 use super::sun_and_sky::{Light, OnTargets};
 use super::sun_place::{SunPlace, remark_on_solar_hours};
-use super::trees::remark_on_leaves;
-use super::window_views::kinds_of_balls;
-use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
+use super::trees::{ThroughTrees, remark_on_leaves};
+use super::weather::{remark_on_place_of, remark_on_wind};
 use crate::exposure::WALKER_HEIGHT;
 use crate::heat::{
     Body, HeatDays, HeatHour, HeatRows, Person, Receiver, SceneSurfaces, Stress, SurfaceParams, body_directions,
@@ -21,7 +25,7 @@ use belvedere_core::query::UnprovenAs;
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use belvedere_data::vector::to_f32;
-use belvedere_data::weather::{USUAL_WIND, Weather};
+use belvedere_data::weather::Weather;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -83,22 +87,6 @@ impl Default for HeatQuestion {
             pet: false,
         }
     }
-}
-
-/// Weather and model of an answer about heat, for reports.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct HeatSection {
-    weather: &'static str,
-    time_zone: String,
-    days: usize,
-    hours: f64,
-    mean_air_temperature_c: f64,
-    max_air_temperature_c: f64,
-    max_global_w_m2: f64,
-    body: Body,
-    #[serde(flatten)]
-    surfaces: SurfaceParams,
-    not_modelled: &'static str,
 }
 
 /// Sums of each target over the hours that count.
@@ -266,12 +254,6 @@ impl HeatQuestion {
             not_modelled: "wind among buildings, heat stored in walls, evaporation",
         })
     }
-}
-
-/// A warning of rows of weather without wind.
-pub(super) fn remark_on_wind(missing: usize, rows: usize) -> Option<Remark> {
-    let so = format!("of the weather have no wind: {USUAL_WIND} m/s is assumed");
-    Remark::of_share("rows-without-wind", missing, rows, "rows", &so)
 }
 
 fn missing_period<T>() -> Result<T> {

@@ -1,7 +1,10 @@
 //! Certainty of answers: a probability for each, and the uncertain ones.
 
+use super::context::Context;
+use super::remark::Remark;
 use super::scene::Scene;
-use super::{Context, Remark, ThroughTrees};
+use super::sections::CertaintySection;
+use super::trees::ThroughTrees;
 use crate::targets::{Measure, ResultKind};
 use crate::viewshed::SeenProbabilities;
 use belvedere_core::query::{Certainty, MedialScene, Proof, UnprovenAs};
@@ -33,23 +36,6 @@ pub struct HowSure {
     /// Minimum probability, above 0.5 and at most 1, of the more likely answer, below which an answer is uncertain; so
     /// are unproven answers. `None` to leave that out.
     pub certain: Option<f64>,
-}
-
-/// Certainty of answers, for reports.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct CertaintySection {
-    /// Number of answers.
-    answers: usize,
-    /// Mean probability of being visible or lit.
-    mean_probability: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    certain_from: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    certainly_visible_percent: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    certainly_blocked_percent: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    uncertain_percent: Option<f64>,
 }
 
 impl HowSure {

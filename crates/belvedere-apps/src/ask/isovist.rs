@@ -1,10 +1,14 @@
 //! Isovist: the space that observers see, in numbers.
 
+use super::answers::{Answers, Ask};
+use super::context::{Context, spread};
 use super::how_sure::check_interval_scene;
+use super::north::North;
 use super::observers::{Eyes, Observers, check_height};
+use super::places::Places;
+use super::remark::Remark;
 use super::scene::Scene;
 use super::sections::{LinesSection, NamedValues};
-use super::{Answers, Ask, Context, North, Places, Remark, spread};
 use crate::isovist::{Isovist, IsovistFigure, IsovistParams, isovist, isovist_intervals};
 use belvedere_core::ground::GroundPoints;
 use belvedere_core::query::UnprovenAs;

@@ -1,11 +1,13 @@
 //! The scene that questions are put to: a model with its cloud, and derived data that take long to make and several
 //! questions need.
 
+use super::context::Context;
+pub use super::known_ground::KnownGround;
+use super::remark::Remark;
 use super::terrain_heights::{remark_on_ground_cloud, remark_on_terrain};
 use super::viewer::remark_on_doubt;
-use super::{Context, Remark};
 use crate::horizon::convergence;
-use belvedere_core::ground::{Ground, GroundBySquares, GroundParams, GroundPoints, GroundReport, MapGrid};
+use belvedere_core::ground::{Ground, GroundBySquares, GroundParams, GroundPoints, MapGrid};
 use belvedere_core::model::SceneModel;
 use belvedere_core::query::{BlockRule, MedialScene, UnprovenAs};
 use belvedere_core::strips::move_strips;
@@ -86,14 +88,6 @@ impl Whereabouts<'_> {
 
 /// Boxes of areas of use are rounded, metres.
 const OUTSIDE_AREA: f64 = 2e3;
-
-/// The ground on a grid, and where it came from.
-pub struct KnownGround {
-    /// Its heights.
-    pub ground: Ground,
-    /// The points that show it.
-    pub report: GroundReport,
-}
 
 /// Maximum number of cells of a ground that is not made from the whole cloud once more: 25 times the need of one place.
 const FEW_CELLS: usize = 40_000;

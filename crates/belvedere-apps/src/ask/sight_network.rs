@@ -1,12 +1,13 @@
 //! Networks of lines of sight: which of several places see each other.
 
-use super::{NetworkPlaces, Remark};
+use super::places::NetworkPlaces;
+use super::remark::Remark;
+use super::sections::NetworkSection;
 use belvedere_core::query::{Answer, MedialScene};
 use belvedere_data::control::Control;
 use belvedere_data::report::{percent, rounded};
 use belvedere_data::vector::{length, sub};
 use belvedere_data::{Error, Parameter, Result};
-use serde::Serialize;
 
 /// Maximum number of pairs of a network: of 4472 places without a maximum distance.
 const MAX_PAIRS: usize = 10_000_000;
@@ -27,26 +28,6 @@ pub struct SightNetwork {
     pub link_counts: Vec<usize>,
     /// Group of each place, from 0: places of a group see each other, directly or through others of it.
     pub groups: Vec<usize>,
-}
-
-/// A network of lines of sight, for reports.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct NetworkSection {
-    places: usize,
-    /// Pairs that see each other.
-    links: usize,
-    /// Percentage of the tested pairs.
-    links_percent: f64,
-    /// Groups of places that are linked, directly or through others.
-    groups: usize,
-    largest_group: usize,
-    places_without_link: usize,
-    /// The place with the maximum number of links, and that number.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    max_links: Option<(String, usize)>,
-    /// Mean length of the links, metres.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    mean_link_m: Option<f64>,
 }
 
 impl NetworkPlaces {

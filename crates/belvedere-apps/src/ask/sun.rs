@@ -1,9 +1,10 @@
 //! Suns and days that a user chooses.
 
+use super::context::Context;
+use super::remark::Remark;
 use super::scene::Whereabouts;
 use super::sections::{SunAt, SunSection};
 use super::sun_place::{SunPlace, remark_on_clock};
-use super::{Context, Remark};
 use crate::shadow::ShadowSun;
 use crate::sun::{Date, DayParams, Period, Site, SunDay, Zone, sun_days, sun_position_with};
 use crate::sun_hours::RuleDays;

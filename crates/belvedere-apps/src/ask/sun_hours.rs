@@ -4,14 +4,17 @@ mod hourly_sun;
 
 pub use hourly_sun::HourlySun;
 
+use super::answers::{Answers, Ask};
+use super::context::{Context, spread};
 use super::how_sure::{check_interval, check_interval_scene, knows_intervals};
-use super::scene::Whereabouts;
+use super::places::Places;
+use super::remark::Remark;
+use super::scene::{Scene, Whereabouts};
 use super::sections::{MeasuresSection, NamedValues, PeriodSection, PlacesReport};
 use super::sun::{Days, sun_days_above};
 use super::sun_and_sky::{Light, OnTargets};
 use super::sun_place::{SunPlace, remark_on_solar_hours};
-use super::trees::remark_on_leaves;
-use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
+use super::trees::{ThroughTrees, remark_on_leaves};
 use crate::sum_errors::Intervals;
 use crate::sun::{Binning, DayParams, Period, Site, SunDay, SunSchedule, Zone};
 use crate::sun_hours::{SunPlan, SunRule, WindowClock, scene_sun_hours};

@@ -1,9 +1,10 @@
 //! Location of a scene on earth, its clock and its air.
 
+use super::context::Context;
 use super::north::North;
+use super::remark::Remark;
 use super::scene::{Scene, Whereabouts};
 use super::sections::LocationSection;
-use super::{Context, Remark};
 use crate::sun::{Refraction, Site, SiteFrom, Zone, ZoneOfPlace, parse_instant, sun_position_with, zone_of_instant};
 use belvedere_data::contradiction::CLOCK_OF_ZONE;
 use belvedere_data::crs::evidence::{CONTRADICTION_DISTANCE, distance_in_words, distance_on_earth, place_in_words};

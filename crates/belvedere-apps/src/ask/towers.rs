@@ -1,8 +1,15 @@
 //! Towers: how much of wind turbines, masts and other tall things is seen.
 
-use super::observers::{Reach, Standing, check_height, stand};
-use super::sections::{LinesSection, MeasuresSection, PlacesReport};
-use super::{Answers, Ask, AzimuthNorth, Context, North, OnTargets, Places, Remark, Scene};
+use super::answers::{Answers, Ask};
+use super::context::Context;
+use super::north::{AzimuthNorth, North};
+use super::observers::{check_height, stand};
+use super::places::Places;
+use super::remark::Remark;
+use super::scene::Scene;
+use super::sections::{LinesSection, MeasuresSection, PlacesReport, TowerSection, TowersSection};
+use super::standing::{Reach, Standing};
+use super::sun_and_sky::OnTargets;
 use crate::targets::Measure;
 use crate::towers::{MAX_SCHEMES, Tower, TowersParams, TowersSeen, TowersView, towers_seen};
 use crate::viewshed::{OBSERVER_HEIGHT, Observer, SightLimits, far_targets, terrain_within_reach};
@@ -87,36 +94,6 @@ pub struct FarTowers {
     pub terrain: ElevationGrid,
     /// A value for each node of it.
     pub measures: Vec<Measure>,
-}
-
-/// Views of towers, for reports.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TowersSection {
-    /// Number of towers.
-    towers: usize,
-    /// Their heights together, metres.
-    height_m: f64,
-    /// Schemes, in the order of the bits of the band `schemes`.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    schemes: Vec<String>,
-    /// Each tower.
-    each: Vec<TowerSection>,
-}
-
-/// A tower, for reports.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-struct TowerSection {
-    name: String,
-    /// Height of its foot, in the coordinates of the file.
-    base: f64,
-    /// Shares of the places that see a part of it, its tip, and its hub, percent.
-    visible_percent: f64,
-    tip_percent: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    hub_percent: Option<f64>,
-    /// The same of the cells of far terrain.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    far_visible_percent: Option<f64>,
 }
 
 impl GivenTower {

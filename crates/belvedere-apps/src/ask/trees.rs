@@ -1,9 +1,10 @@
 //! What gets through trees, as a user chooses it.
 
+use super::context::Context;
+use super::remark::Remark;
 use super::scene::{Scene, Whereabouts};
 use super::sections::TreesSection;
 use super::sun_place::SunPlace;
-use super::{Context, Remark};
 use crate::tree_light::{CrownLight, CrownShadows, Leaves, Transmissivity, TreeLight, measured_density};
 use belvedere_core::model::FlightDays;
 use belvedere_data::control::Control;

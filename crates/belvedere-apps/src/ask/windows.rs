@@ -1,9 +1,10 @@
 //! Windows: from a user's input to the targets in front of them.
 
-use super::observers::Reach;
+use super::context::Context;
 use super::places::leave_out_outside;
 use super::scene::Scene;
-use super::{Context, SharedObject};
+use super::shared::SharedObject;
+use super::standing::Reach;
 use crate::targets::{Targets, Window, objects_of_windows};
 use belvedere_data::frame::Frame;
 use belvedere_data::report::rounded;

@@ -1,10 +1,10 @@
 //! Targets of cameras, and places that must stay private.
 
-use super::super::Reach;
-use super::CameraSite;
-use crate::ask::observers::Standing;
-use crate::ask::places::leave_out_outside;
-use crate::ask::{Context, GridCells, Places};
+use super::site::CameraSite;
+use crate::ask::cells::GridCells;
+use crate::ask::context::Context;
+use crate::ask::places::{Places, leave_out_outside};
+use crate::ask::standing::{Reach, Standing};
 use crate::cameras::{CAMERA_TARGET_HEIGHT, WeightedArea, keep_within};
 use crate::targets::{Targets, set_on_ground};
 use belvedere_core::ground::GroundPoints;

@@ -1,8 +1,10 @@
 //! The sun of each hour of a year at each target, a bit for each.
 
 use super::SunHoursQuestion;
-use crate::ask::places::test_edge;
-use crate::ask::{Answers, Context, Places, Scene};
+use crate::ask::answers::Answers;
+use crate::ask::context::Context;
+use crate::ask::places::{Places, test_edge};
+use crate::ask::scene::Scene;
 use crate::irradiance::CLEAR_SKY_YEAR;
 use crate::sun::{Date, Site, SunDay, SunSchedule, SunStep, Zone, sun_position_with};
 use crate::targets::Targets;

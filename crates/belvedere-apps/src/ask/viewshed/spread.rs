@@ -1,8 +1,12 @@
 //! Observers of a total viewshed.
 
-use super::{StandingObserver, ViewLimits, ViewshedQuestion};
-use crate::ask::observers::Standing;
-use crate::ask::{Context, GridCells, Places, Scene};
+use super::limits::{StandingObserver, ViewLimits};
+use super::question::ViewshedQuestion;
+use crate::ask::cells::GridCells;
+use crate::ask::context::Context;
+use crate::ask::places::Places;
+use crate::ask::scene::Scene;
+use crate::ask::standing::Standing;
 use crate::eyes::fault_of;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};

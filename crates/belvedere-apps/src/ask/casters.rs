@@ -1,8 +1,11 @@
 //! Casters of shadows: what stands between each target and the sun.
 
-use super::super::window_views::kinds_of_balls;
-use super::super::{Context, NamedSun, Places, Scene};
-use super::Light;
+use super::context::Context;
+use super::places::Places;
+use super::scene::Scene;
+use super::seen_kinds::kinds_of_balls;
+use super::sun::NamedSun;
+use super::sun_and_sky::Light;
 use crate::shadow::HALF_LIGHT;
 use crate::sun_calendar::{SunObstacle, sun_obstacle};
 use crate::targets::Measure;
@@ -47,7 +50,7 @@ fn number_of(obstacle: SunObstacle) -> u8 {
 }
 
 /// Refuses faces of a mesh, over which numbers would be averaged, and more meshes than there are numbers.
-pub(super) fn check(places: &Places, scene: &Scene) -> Result<()> {
+pub(super) fn check_casters(places: &Places, scene: &Scene) -> Result<()> {
     let refused = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
     if matches!(places, Places::Mesh(..)) {
         let value = "faces of a mesh".to_owned();
