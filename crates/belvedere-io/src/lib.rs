@@ -165,7 +165,7 @@ pub use read_report::{FileReport, LeftOut, ReadReport};
 pub use secrets::{hidden, hidden_text};
 pub use source::{OpenSource, ReadSeek, Source, SystemBeside, web_address};
 pub use stations::read_stations;
-pub use table::{Table, TableCells, read_table, row_properties, with_columns_read, write_table, write_text_rows};
+pub use table::{Table, read_table, row_properties, with_columns_read, write_table, write_text_rows};
 #[cfg(feature = "tiff")]
 pub use terrain::read_terrain;
 pub use text_rows::TextRows;

@@ -93,7 +93,7 @@ pub use in_parts::summarise_parts;
 pub use irradiance::{
     IrradianceQuestion, IrradianceResults, PvChoice, Radiation, Roofs, RoofsResults, remark_on_radiation,
 };
-pub use isovist::{IsovistColumn, IsovistsQuestion, IsovistsResults};
+pub use isovist::{IsovistsQuestion, IsovistsResults};
 pub use landmark::{LandmarkQuestion, LandmarkResults, LandmarkShape};
 pub use line_of_sight::{LinesOfSightQuestion, ProfileRows, SightColumns, SightsResults};
 pub use mesh_levels::remarks_on_model;

@@ -1,6 +1,5 @@
 //! `belvedere glare`.
 
-use super::result_columns::write_columns;
 use super::surroundings::min_count;
 use super::windows::{FaceChoice, WindowFile};
 use super::{check_output, extension};
@@ -11,7 +10,7 @@ use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{self, Ask, Days, GivenWindow, GivenWindows, GlareResults, Places};
 use belvedere::figures::{DayPiece, day_chart, write_png};
-use belvedere::io::is_mesh;
+use belvedere::io::{is_mesh, write_table};
 use std::path::Path;
 
 /// Maximum number of days of a chart.
@@ -47,12 +46,12 @@ pub(crate) fn run(arguments: &GlareArguments, global: &Global) -> Result<Summary
     for output in &arguments.output {
         run.stage("writing", 0, |_| match extension(output).as_str() {
             "png" => write_chart(output, found),
-            _ => write_columns(output, None, &found.columns(&names)),
+            _ => Ok(write_table(output, &found.columns(&names))?),
         })?;
     }
     let mut written: Vec<String> = arguments.output.iter().map(|path| path.display().to_string()).collect();
     if let Some(output) = &arguments.by_hour {
-        run.stage("writing", 0, |_| write_columns(output, None, &found.columns_by_hour()))?;
+        run.stage("writing", 0, |_| write_table(output, &found.columns_by_hour()))?;
         written.push(output.display().to_string());
     }
     run.summary.add("written", written);

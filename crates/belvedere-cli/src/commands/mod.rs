@@ -34,7 +34,6 @@ mod outputs;
 mod protected_view;
 mod query;
 mod report;
-mod result_columns;
 mod shadow;
 mod simulate;
 mod sky_view;
