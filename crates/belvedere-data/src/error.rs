@@ -2,6 +2,7 @@
 
 use crate::parameter::Parameter;
 use crate::shown::{ShownPath, printable};
+use std::fmt::Display;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -179,6 +180,12 @@ fn refusal(source: &std::io::Error) -> String {
 }
 
 impl Error {
+    /// Creates an [`Error::InvalidParameter`].
+    #[must_use]
+    pub fn invalid(parameter: Parameter, value: impl Display, expected: &'static str) -> Self {
+        Self::InvalidParameter { parameter, value: value.to_string(), expected }
+    }
+
     /// Turns an error of the operating system into an [`Error::Io`] about `path`, for use in `map_err`.
     pub fn io(path: &Path) -> impl FnOnce(std::io::Error) -> Self + '_ {
         move |source| Self::Io { path: path.to_owned(), source }

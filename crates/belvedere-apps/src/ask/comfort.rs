@@ -153,11 +153,7 @@ impl ComfortQuestion {
 }
 
 fn missing_period<T>() -> Result<T> {
-    refused(Parameter::Period, "missing".to_owned(), "given as days or as two times")
-}
-
-fn refused<T>(parameter: Parameter, value: String, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { parameter, value, expected })
+    Err(Error::invalid(Parameter::Period, "missing", "given as days or as two times"))
 }
 
 impl Ask for ComfortQuestion {
@@ -175,7 +171,7 @@ impl Ask for ComfortQuestion {
         }
         match self.target_height {
             Some(height) if !(height >= 0.0 && height.is_finite()) => {
-                refused(Parameter::HeightAboveGround, height.to_string(), "0 metres or more")
+                Err(Error::invalid(Parameter::HeightAboveGround, height, "0 metres or more"))
             }
             _ => Ok(()),
         }
@@ -196,7 +192,7 @@ impl Ask for ComfortQuestion {
         }
         let (mut found, routes) = self.targets(north.of_grid, scene, context, control)?;
         if found.targets.is_empty() {
-            return refused(Parameter::Targets, "missing".to_owned(), "routes or windows");
+            return Err(Error::invalid(Parameter::Targets, "missing", "routes or windows"));
         }
         found.leave_out_outside(scene, context)?;
         let WindowTargets { targets, windows, names } = found;

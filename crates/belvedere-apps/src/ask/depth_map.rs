@@ -109,11 +109,8 @@ impl Ask for DepthMapQuestion {
         control: &Control<'_>,
     ) -> Result<Answers<DepthMapResults>> {
         let Some(from) = self.from else {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::View,
-                value: "missing".to_owned(),
-                expected: "given: the sun, a direction, a camera or a panorama",
-            });
+            let expected = "given: the sun, a direction, a camera or a panorama";
+            return Err(Error::invalid(Parameter::View, "missing", expected));
         };
         context.add(from.remark(scene.model().coverage().as_ref()));
         let view = from.section();
@@ -124,11 +121,11 @@ impl Ask for DepthMapQuestion {
                 let map = scene.model().depth_map(&view, profile, items, control)?;
                 Ok((map.depth, map.balls, map.around_eye_count))
             }
-            ViewFrom::Panorama { .. } if profile != Profile::Sphere => Err(Error::InvalidParameter {
-                parameter: Parameter::BallProfile,
-                value: "the paper's cone".to_owned(),
-                expected: "sphere: the cone is for parallel views only",
-            }),
+            ViewFrom::Panorama { .. } if profile != Profile::Sphere => Err(Error::invalid(
+                Parameter::BallProfile,
+                "the paper's cone",
+                "sphere: the cone is for parallel views only",
+            )),
             ViewFrom::Panorama { eye, width } => {
                 let map = scene.model().panorama(eye, width, items, control)?;
                 Ok((map.range, map.balls, map.around_eye_count))

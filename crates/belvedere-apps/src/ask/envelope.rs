@@ -131,16 +131,14 @@ struct Land {
     unknown: usize,
 }
 
-fn refused<T>(parameter: Parameter, value: impl Into<String>, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { parameter, value: value.into(), expected })
-}
-
 impl EnvelopeQuestion {
     fn dates(&self, days: &Days, site: &Site, zone: &Zone) -> Result<Vec<Date>> {
         match days.period(&self.place, site, zone)? {
             Some(Period::Days(dates)) => Ok(dates),
-            Some(_) => refused(Parameter::Period, "two times", "days; their hours are limited apart from them"),
-            None => refused(Parameter::Period, "missing", "given as days"),
+            Some(_) => {
+                Err(Error::invalid(Parameter::Period, "two times", "days; their hours are limited apart from them"))
+            }
+            None => Err(Error::invalid(Parameter::Period, "missing", "given as days")),
         }
     }
 
@@ -216,7 +214,7 @@ impl EnvelopeQuestion {
         }
         if land.pieces.is_empty() {
             let expected = "where the ground is known; is what is protected in the coordinates of the cloud?";
-            return refused(Parameter::ProtectedPlace, "without known ground", expected);
+            return Err(Error::invalid(Parameter::ProtectedPlace, "without known ground", expected));
         }
         Ok(land)
     }
@@ -286,7 +284,7 @@ impl Ask for EnvelopeQuestion {
             ProtectedSuns::Directions(directions) => {
                 directions.iter().try_for_each(|&sun| check_sun(sun, SunRange::AboveHorizon))?;
                 if directions.is_empty() {
-                    return refused(Parameter::SunDirection, "missing", SUN_EXPECTED);
+                    return Err(Error::invalid(Parameter::SunDirection, "missing", SUN_EXPECTED));
                 }
             }
             ProtectedSuns::Days { days, hours } => {

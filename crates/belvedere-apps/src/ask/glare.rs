@@ -137,11 +137,7 @@ impl GlareQuestion {
 }
 
 fn missing_days<T>() -> Result<T> {
-    Err(Error::InvalidParameter {
-        parameter: Parameter::Period,
-        value: "missing".to_owned(),
-        expected: "given as a year, as days, or as two times",
-    })
+    Err(Error::invalid(Parameter::Period, "missing", "given as a year, as days, or as two times"))
 }
 
 impl Ask for GlareQuestion {
@@ -149,11 +145,8 @@ impl Ask for GlareQuestion {
 
     fn check(&self) -> Result<()> {
         if self.reflectors.is_empty() {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Reflector,
-                value: "missing".to_owned(),
-                expected: "at least one, with place, azimuth, tilt, width and height",
-            });
+            let expected = "at least one, with place, azimuth, tilt, width and height";
+            return Err(Error::invalid(Parameter::Reflector, "missing", expected));
         }
         for (row, reflector) in self.reflectors.iter().enumerate() {
             let checked = reflector.check().and_then(|()| Reflector::of(&reflector.in_grid(0.0)));

@@ -206,7 +206,7 @@ impl HeatQuestion {
     fn weather(&self) -> Result<&Weather> {
         match &self.weather {
             Some(weather) => Ok(weather),
-            None => refused(Parameter::Weather, self.file.clone(), "read before the question is put"),
+            None => Err(Error::invalid(Parameter::Weather, self.file.clone(), "read before the question is put")),
         }
     }
 
@@ -257,11 +257,7 @@ impl HeatQuestion {
 }
 
 fn missing_period<T>() -> Result<T> {
-    refused(Parameter::Period, "missing".to_owned(), "given as days or as two times")
-}
-
-fn refused<T>(parameter: Parameter, value: String, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { parameter, value, expected })
+    Err(Error::invalid(Parameter::Period, "missing", "given as days or as two times"))
 }
 
 impl Ask for HeatQuestion {
@@ -272,13 +268,14 @@ impl Ask for HeatQuestion {
             return missing_period();
         }
         if let Some([from, to]) = self.hours.filter(|[from, to]| !(0.0 <= *from && from <= to && *to <= 24.0)) {
-            return refused(Parameter::HoursOfDay, format!("{from} to {to}"), "0 to 24, the last not before the first");
+            let expected = "0 to 24, the last not before the first";
+            return Err(Error::invalid(Parameter::HoursOfDay, format!("{from} to {to}"), expected));
         }
         if !(1..=60).contains(&self.parts) {
-            return refused(Parameter::WeatherParts, self.parts.to_string(), "1 to 60");
+            return Err(Error::invalid(Parameter::WeatherParts, self.parts, "1 to 60"));
         }
         if !(0.0..=2.0).contains(&self.wind_factor) {
-            return refused(Parameter::WindFactor, self.wind_factor.to_string(), "0 to 2");
+            return Err(Error::invalid(Parameter::WindFactor, self.wind_factor, "0 to 2"));
         }
         self.surfaces.validate()?;
         self.dated().check(&self.place)
@@ -295,7 +292,7 @@ impl Ask for HeatQuestion {
         let (balls, points) = (scene.model().balls(), &scene.cloud().positions);
         if !are_made_from(balls, points) {
             let expected = "the points that the balls were made from, whose surfaces are warm: give that cloud";
-            return refused(Parameter::Surfaces, "unknown".to_owned(), expected);
+            return Err(Error::invalid(Parameter::Surfaces, "unknown", expected));
         }
         let site = self.place.site(scene, context, Some([weather.latitude, weather.longitude]))?;
         remark_on_place_of(weather, &site, context);
@@ -320,7 +317,8 @@ impl Ask for HeatQuestion {
         };
         if named.len() > MAX_LISTED_HOURS {
             let value = format!("{} hours", named.len());
-            return refused(Parameter::HoursOfDay, value, "48 at most where each is given; name fewer days or hours");
+            let expected = "48 at most where each is given; name fewer days or hours";
+            return Err(Error::invalid(Parameter::HoursOfDay, value, expected));
         }
         let sums = control.stage("testing surfaces", light.targets.len() + light.steps(), || {
             self.sums(&light, &surfaces, &found, named.len(), control)

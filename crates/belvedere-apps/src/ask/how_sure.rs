@@ -60,7 +60,7 @@ impl HowSure {
         if !self.is_wanted() {
             return Ok(());
         }
-        Err(Error::InvalidParameter { parameter: Parameter::Certainty, value: value.to_owned(), expected })
+        Err(Error::invalid(Parameter::Certainty, value, expected))
     }
 
     /// The certainty below which answers are uncertain.
@@ -216,11 +216,8 @@ pub fn check_interval(is_wanted: bool, trees: &ThroughTrees) -> Result<()> {
     if !is_wanted || !trees.is_light() {
         return Ok(());
     }
-    Err(Error::InvalidParameter {
-        parameter: Parameter::Interval,
-        value: "given with light through trees".to_owned(),
-        expected: "left out: how far such light may be from the truth is not known",
-    })
+    let expected = "left out: how far such light may be from the truth is not known";
+    Err(Error::invalid(Parameter::Interval, "given with light through trees", expected))
 }
 
 /// Returns true if the error of sums of a scene is known: the scene has pulses from the air. Intervals follow from
@@ -242,9 +239,6 @@ pub(super) fn check_interval_scene(is_wanted: bool, scene: &Scene, control: &Con
     if knows_intervals(scene, control)? {
         return Ok(());
     }
-    Err(Error::InvalidParameter {
-        parameter: Parameter::Interval,
-        value: "given for a scanner on the ground".to_owned(),
-        expected: "left out: only errors of surveys from the air are known",
-    })
+    let expected = "left out: only errors of surveys from the air are known";
+    Err(Error::invalid(Parameter::Interval, "given for a scanner on the ground", expected))
 }

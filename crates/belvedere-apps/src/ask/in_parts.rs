@@ -61,7 +61,7 @@ pub fn summarise_parts(
         _ => {
             let (value, expected) =
                 ("another".to_owned(), "about shadow, sun hours, sky view, irradiance or viewsheds");
-            return Err(Error::InvalidParameter { parameter: Parameter::Questions, value, expected });
+            return Err(Error::invalid(Parameter::Questions, value, expected));
         }
     };
     context.report.measures = Some(MeasuresSection::of_count(count, listed));

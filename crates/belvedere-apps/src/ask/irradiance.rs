@@ -214,11 +214,9 @@ impl Radiation {
             Self::Weather { weather: Some(weather), parts, .. } => {
                 Ok(RadiationSource::Weather { weather, parts: *parts })
             }
-            Self::Weather { file, .. } => Err(Error::InvalidParameter {
-                parameter: Parameter::Weather,
-                value: file.clone(),
-                expected: "read before the question is put",
-            }),
+            Self::Weather { file, .. } => {
+                Err(Error::invalid(Parameter::Weather, file.clone(), "read before the question is put"))
+            }
             Self::ClearSky { clear_sky, year } => Ok(RadiationSource::ClearSky { clear_sky: *clear_sky, year: *year }),
         }
     }

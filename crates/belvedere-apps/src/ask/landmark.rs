@@ -135,9 +135,7 @@ impl LandmarkShape {
         origin: [f64; 3],
         control: &Control<'_>,
     ) -> Result<(SurfacePieces, LandmarkSection)> {
-        let invalid = |value: &str, expected| {
-            Err(Error::InvalidParameter { parameter: Parameter::Targets, value: value.to_owned(), expected })
-        };
+        let invalid = |value: &str, expected| Err(Error::invalid(Parameter::Targets, value, expected));
         let mut section = LandmarkSection::default();
         let which = match self {
             Self::Mesh { mesh: Some(mesh), spacing, seed } => {

@@ -203,11 +203,7 @@ impl LinesOfSightQuestion {
         if self.profile.is_none() || count == 1 {
             return Ok(());
         }
-        Err(Error::InvalidParameter {
-            parameter: Parameter::ProfileLine,
-            value: format!("{count} lines"),
-            expected: "a single line",
-        })
+        Err(Error::invalid(Parameter::ProfileLine, format!("{count} lines"), "a single line"))
     }
 }
 
@@ -220,11 +216,7 @@ impl Ask for LinesOfSightQuestion {
         check_height(self.target_height)?;
         self.earth.validate()?;
         if let Some(step) = self.profile.and_then(|rows| rows.step).filter(|step| !(step.is_finite() && *step > 0.0)) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::ProfileStep,
-                value: step.to_string(),
-                expected: "finite and above zero metres",
-            });
+            return Err(Error::invalid(Parameter::ProfileStep, step, "finite and above zero metres"));
         }
         self.wave().map(|_| ())
     }

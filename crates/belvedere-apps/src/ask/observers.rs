@@ -74,11 +74,7 @@ impl Observers {
 /// [`Error::InvalidParameter`] for one below it, or that is not finite.
 pub(super) fn check_height(height: Option<f64>) -> Result<()> {
     match height.filter(|height| !(height.is_finite() && *height >= 0.0)) {
-        Some(height) => Err(Error::InvalidParameter {
-            parameter: Parameter::HeightAboveGround,
-            value: height.to_string(),
-            expected: "0 metres or more",
-        }),
+        Some(height) => Err(Error::invalid(Parameter::HeightAboveGround, height, "0 metres or more")),
         None => Ok(()),
     }
 }

@@ -143,7 +143,7 @@ impl Places {
 
 /// Refuses places of another kind than a question is about.
 fn other<T>(parameter: Parameter, value: &str, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { parameter, value: value.to_owned(), expected })
+    Err(Error::invalid(parameter, value, expected))
 }
 
 /// Leaves out targets outside the cloud, and outside the terrain beyond it where lines of sight reach so far, which is
@@ -183,9 +183,7 @@ impl Targets {
 
 fn own_points(scene: &Scene, turned: Turned) -> Result<Targets> {
     let cloud = scene.cloud();
-    let invalid = |value: &str, expected| {
-        Err(Error::InvalidParameter { parameter: Parameter::Targets, value: value.to_owned(), expected })
-    };
+    let invalid = |value: &str, expected| Err(Error::invalid(Parameter::Targets, value, expected));
     if cloud.is_empty() {
         return invalid("the points of a ball file", "points: a ball file has none; give its cloud");
     }
@@ -206,11 +204,8 @@ fn own_points(scene: &Scene, turned: Turned) -> Result<Targets> {
 pub fn moved(cloud: &PointCloud, scene: &Scene) -> Result<Vec<[f32; 3]>> {
     let frame = scene.frame();
     if cloud.frame.crs.contradicts(&frame.crs) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::ReferenceSystem,
-            value: cloud.frame.crs.describe(),
-            expected: "that of the scene; convert one of them",
-        });
+        let expected = "that of the scene; convert one of them";
+        return Err(Error::invalid(Parameter::ReferenceSystem, cloud.frame.crs.describe(), expected));
     }
     if cloud.frame == *frame {
         return Ok(cloud.positions.clone());

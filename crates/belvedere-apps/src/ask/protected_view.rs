@@ -103,14 +103,11 @@ impl Ask for ProtectedViewQuestion {
     type Found = ProtectedViewResults;
 
     fn check(&self) -> Result<()> {
-        let invalid = |parameter, value: f64, expected| {
-            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
-        };
         if let Some(distance) = self.max_distance.filter(|distance| !(*distance > 0.0)) {
-            return invalid(Parameter::MaxDistance, distance, "above zero metres");
+            return Err(Error::invalid(Parameter::MaxDistance, distance, "above zero metres"));
         }
         if !self.observer_height.is_finite() {
-            return invalid(Parameter::HeightAboveGround, self.observer_height, "finite");
+            return Err(Error::invalid(Parameter::HeightAboveGround, self.observer_height, "finite"));
         }
         Ok(())
     }

@@ -176,11 +176,11 @@ impl Scene {
                 |axis: usize| f64::from((own.low[axis] - of_scene.high[axis]).max(of_scene.low[axis] - own.high[axis]));
             let distance = gap(0).max(0.0).hypot(gap(1).max(0.0));
             if GROUND_ELSEWHERE.is_exceeded_by(distance) {
-                return Err(Error::InvalidParameter {
-                    parameter: Parameter::Ground,
-                    value: format!("a cloud that lies {} beside the scene", distance_in_words(distance)),
-                    expected: "a cloud of the same place, in the coordinates of the scene",
-                });
+                return Err(Error::invalid(
+                    Parameter::Ground,
+                    format!("a cloud that lies {} beside the scene", distance_in_words(distance)),
+                    "a cloud of the same place, in the coordinates of the scene",
+                ));
             }
         }
         Ok(Self { ground_cloud, ground: Mutex::default(), ground_store: None, ..self })
@@ -218,11 +218,8 @@ impl Scene {
     /// [`Error::InvalidParameter`] where there are none.
     pub fn ground_cloud(&self) -> Result<&Arc<PointCloud>> {
         if self.ground_cloud.is_empty() {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Ground,
-                value: "unknown".to_owned(),
-                expected: "shown by points, and a ball file has none: give its cloud",
-            });
+            let expected = "shown by points, and a ball file has none: give its cloud";
+            return Err(Error::invalid(Parameter::Ground, "unknown", expected));
         }
         Ok(&self.ground_cloud)
     }
@@ -306,11 +303,11 @@ impl Scene {
         if self.model.pulses().is_some() {
             return Ok(());
         }
-        Err(Error::InvalidParameter {
+        Err(Error::invalid(
             parameter,
-            value: "given".to_owned(),
-            expected: "left out: it needs pulses, from a cloud with known scanner positions or an .npz ball file of such a cloud",
-        })
+            "given",
+            "left out: it needs pulses, from a cloud with known scanner positions or an .npz ball file of such a cloud",
+        ))
     }
 
     /// A warning where far terrain and the scene disagree on heights.

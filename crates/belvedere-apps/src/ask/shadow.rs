@@ -64,11 +64,11 @@ impl ShadowQuestion {
         let is_possible = suns == 1 && self.edges == Edges::Hard;
         match self.unproven {
             Some(UnprovenAs::Visible) => Ok(UnprovenAs::Visible),
-            Some(_) if !is_possible => Err(Error::InvalidParameter {
-                parameter: Parameter::UnprovenAs,
-                value: "given".to_owned(),
-                expected: "left out: pulses are tested only for one sun with hard edges",
-            }),
+            Some(_) if !is_possible => Err(Error::invalid(
+                Parameter::UnprovenAs,
+                "given",
+                "left out: pulses are tested only for one sun with hard edges",
+            )),
             Some(unproven) => Ok(unproven),
             None if is_possible => Ok(UnprovenAs::Reported),
             None => Ok(UnprovenAs::Visible),

@@ -33,14 +33,13 @@ pub struct SightNetwork {
 impl NetworkPlaces {
     /// Checks the number of places and their maximum distance.
     pub(super) fn check(&self) -> Result<()> {
-        let refused = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         if self.places.len() < 2 {
             let value = if self.places.is_empty() { "empty" } else { "of one place" };
-            return refused(Parameter::Network, value.to_owned(), "of two places or more");
+            return Err(Error::invalid(Parameter::Network, value, "of two places or more"));
         }
         match self.max_distance {
             Some(limit) if !(limit > 0.0 && limit.is_finite()) => {
-                refused(Parameter::MaxDistance, limit.to_string(), "finite and above zero metres")
+                Err(Error::invalid(Parameter::MaxDistance, limit, "finite and above zero metres"))
             }
             _ => Ok(()),
         }
@@ -66,19 +65,13 @@ impl SightNetwork {
             let near = beside.filter(|&&b| along(b, 0).hypot(along(b, 1)) <= limit);
             pairs.extend(near.map(|&b| [a.min(b), a.max(b)]));
             if pairs.len() > MAX_PAIRS {
-                return Err(Error::InvalidParameter {
-                    parameter: Parameter::Network,
-                    value: format!("of {} places", places.len()),
-                    expected: "of at most 10 million pairs: give fewer places, or a maximum distance",
-                });
+                let expected = "of at most 10 million pairs: give fewer places, or a maximum distance";
+                return Err(Error::invalid(Parameter::Network, format!("of {} places", places.len()), expected));
             }
         }
         if let (true, Some(limit)) = (pairs.is_empty(), given.max_distance) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::MaxDistance,
-                value: limit.to_string(),
-                expected: "at least the distance of the two nearest places, metres: no pair is nearer",
-            });
+            let expected = "at least the distance of the two nearest places, metres: no pair is nearer";
+            return Err(Error::invalid(Parameter::MaxDistance, limit, expected));
         }
         pairs.sort_unstable();
         let name = |row: usize| match given.names.get(row).filter(|name| !name.is_empty()) {

@@ -55,14 +55,11 @@ pub fn position_on_map(given: [f64; 2], crs: &Crs, bounds: [[f64; 2]; 2]) -> Res
         };
     }
     let [[west, south], [east, north]] = bounds;
-    Err(Error::InvalidParameter {
-        parameter: Parameter::Position,
-        value: format!(
-            "{}, {} (the points reach from {west:.0}, {south:.0} to {east:.0}, {north:.0})",
-            given[0], given[1]
-        ),
-        expected: way_out,
-    })
+    Err(Error::invalid(
+        Parameter::Position,
+        format!("{}, {} (the points reach from {west:.0}, {south:.0} to {east:.0}, {north:.0})", given[0], given[1]),
+        way_out,
+    ))
 }
 
 /// Coordinates of the file of an end of lines of sight that is given in them, or as latitude and longitude in degrees.
@@ -82,7 +79,7 @@ pub fn end_on_map(given: [f64; 2], crs: &Crs, bounds: [[f64; 2]; 2]) -> Result<[
     if projected([longitude, latitude], crs).is_some_and(|place| is_within(place, bounds, MARGIN / crs.metres_per_unit))
     {
         let value = format!("{latitude}, {longitude}");
-        return Err(Error::InvalidParameter { parameter: Parameter::Position, value, expected: SWAPPED });
+        return Err(Error::invalid(Parameter::Position, value, SWAPPED));
     }
     Ok(given)
 }
@@ -143,7 +140,7 @@ fn on_terrain(given: [f64; 2], scene: &Scene) -> Result<[f64; 2]> {
         None => "on the points of the cloud, or on the terrain beyond it",
     };
     let value = format!("{latitude}, {longitude}");
-    Err(Error::InvalidParameter { parameter: Parameter::Position, value, expected })
+    Err(Error::invalid(Parameter::Position, value, expected))
 }
 
 impl Standing {

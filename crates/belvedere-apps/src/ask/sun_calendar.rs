@@ -126,7 +126,7 @@ impl SunCalendarQuestion {
 
 fn refused<T>(value: &str) -> Result<T> {
     let expected = "windows one by one, or places";
-    Err(Error::InvalidParameter { parameter: Parameter::Targets, value: value.to_owned(), expected })
+    Err(Error::invalid(Parameter::Targets, value, expected))
 }
 
 impl Ask for SunCalendarQuestion {

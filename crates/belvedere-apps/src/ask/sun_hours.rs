@@ -53,9 +53,7 @@ pub struct SunHoursQuestion {
 /// # Errors
 /// [`Error::InvalidParameter`] for a rule that cannot be read, is given twice, and for more than eight of one's own.
 pub fn rules(texts: &[String]) -> Result<Vec<(&'static str, SunRule)>> {
-    let refused = |value: &str, expected| {
-        Err(Error::InvalidParameter { parameter: Parameter::Rule, value: value.to_owned(), expected })
-    };
+    let refused = |value: &str, expected| Err(Error::invalid(Parameter::Rule, value, expected));
     let mut own = OWN_RULES.into_iter();
     let mut rules: Vec<(&'static str, SunRule)> = Vec::new();
     for text in texts {
@@ -117,11 +115,7 @@ impl SunHoursQuestion {
 }
 
 pub(super) fn missing_period<T>() -> Result<T> {
-    Err(Error::InvalidParameter {
-        parameter: Parameter::Period,
-        value: "missing".to_owned(),
-        expected: "given as days, as two times, or by a rule",
-    })
+    Err(Error::invalid(Parameter::Period, "missing", "given as days, as two times, or by a rule"))
 }
 
 /// Returns the light that a rule counts on each of its days, and the parameters of their division: with its minimum

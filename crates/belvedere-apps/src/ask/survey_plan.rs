@@ -279,11 +279,7 @@ impl Ask for SurveyPlanQuestion {
         check_height(self.target_height)?;
         self.suns.as_ref().map_or(Ok(()), |suns| suns.check(&self.place))?;
         if self.count == 0 {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::StationCount,
-                value: "0".to_owned(),
-                expected: "1 or more",
-            });
+            return Err(Error::invalid(Parameter::StationCount, "0", "1 or more"));
         }
         self.scanner().validate()
     }

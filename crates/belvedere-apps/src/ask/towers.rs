@@ -105,7 +105,7 @@ impl GivenTower {
     fn check(&self, number: usize) -> Result<()> {
         let refused = |value: String, expected| {
             let value = format!("{} with {value}", self.name(number));
-            Err(Error::InvalidParameter { parameter: Parameter::Tower, value, expected })
+            Err(Error::invalid(Parameter::Tower, value, expected))
         };
         if !(self.tip > 0.0 && self.tip <= MAX_HEIGHT) {
             return refused(format!("a tip of {} m", self.tip), "a tip above its base, at most 1000 metres");
@@ -142,7 +142,7 @@ impl TowersQuestion {
         let one = |(number, (given, foot)): (usize, (&GivenTower, [f64; 3]))| {
             let refused = |value: &str, expected| {
                 let value = format!("{}, {value}", given.name(number));
-                Err(Error::InvalidParameter { parameter: Parameter::Tower, value, expected })
+                Err(Error::invalid(Parameter::Tower, value, expected))
             };
             if !((foot[0] - middle[0]).hypot(foot[1] - middle[1]) <= MAX_AWAY) {
                 return refused("more than 150 km from the cloud", "in the coordinates of the cloud, or in degrees");
@@ -168,9 +168,7 @@ impl TowersQuestion {
         (blockers, towers): (&MedialScene, &[Tower]),
         control: &Control<'_>,
     ) -> Result<(FarTowers, TowersSeen)> {
-        let invalid = |value: &str, expected| {
-            Err(Error::InvalidParameter { parameter: Parameter::Terrain, value: value.to_owned(), expected })
-        };
+        let invalid = |value: &str, expected| Err(Error::invalid(Parameter::Terrain, value, expected));
         let Some(terrain) = blockers.far_terrain().grid() else {
             return invalid("missing", "given, where cells of it are wanted");
         };
@@ -254,10 +252,9 @@ impl Ask for TowersQuestion {
         check_height(self.observer_height)?;
         if let Some(distance) = self.max_distance.filter(|distance| !(*distance > 0.0)) {
             let (parameter, value) = (Parameter::MaxDistance, distance.to_string());
-            return Err(Error::InvalidParameter { parameter, value, expected: "above zero metres" });
+            return Err(Error::invalid(parameter, value, "above zero metres"));
         }
-        let refused =
-            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Tower, value, expected });
+        let refused = |value: String, expected| Err(Error::invalid(Parameter::Tower, value, expected));
         if self.towers.is_empty() {
             return refused("missing".to_owned(), "given");
         }
@@ -278,16 +275,12 @@ impl Ask for TowersQuestion {
         let height = self.observer_height.unwrap_or(OBSERVER_HEIGHT);
         if self.wirelines && matches!(places, Places::Cells(_) | Places::Own(_) | Places::Mesh(..)) {
             let (parameter, value) = (Parameter::Targets, "cells, a whole cloud or a mesh".to_owned());
-            return Err(Error::InvalidParameter {
-                parameter,
-                value,
-                expected: "single places, where wirelines are wanted",
-            });
+            return Err(Error::invalid(parameter, value, "single places, where wirelines are wanted"));
         }
         let mut targets = places.at_height(height).targets_within(Reach::FarTerrain, scene, context, control)?;
         if self.wirelines && targets.len() > MAX_WIRELINES {
             let (parameter, value) = (Parameter::ObserverCount, targets.len().to_string());
-            return Err(Error::InvalidParameter { parameter, value, expected: "at most 100, for wirelines" });
+            return Err(Error::invalid(parameter, value, "at most 100, for wirelines"));
         }
         let blockers = scene.blockers(UnprovenAs::Reported, control)?;
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));

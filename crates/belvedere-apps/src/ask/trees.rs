@@ -123,5 +123,5 @@ pub fn remark_on_leaves(crowns: CrownLight, factors: impl IntoIterator<Item = f6
 }
 
 fn refused<T>(value: &str, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { parameter: Parameter::ThroughTrees, value: value.to_owned(), expected })
+    Err(Error::invalid(Parameter::ThroughTrees, value, expected))
 }

@@ -113,8 +113,7 @@ impl ViewshedQuestion {
     }
 
     fn check_observers(&self) -> Result<()> {
-        let invalid =
-            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Observer, value, expected });
+        let invalid = |value: String, expected| Err(Error::invalid(Parameter::Observer, value, expected));
         match self.observers.len() {
             0 => invalid("missing".to_owned(), "given: who looks, or a target"),
             count @ 2.. if self.reverse => invalid(format!("one of {count} targets"), "the only one"),
@@ -182,11 +181,11 @@ impl ViewshedQuestion {
         let who = self.who();
         let far = eyes.iter().position(|&eye| blockers.is_on_far_terrain(eye));
         if let (Some(row), Some(_)) = (far, self.max_height) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::VisibleHeights,
-                value: format!("wanted from {who} {}, on the terrain beyond the cloud", row + 1),
-                expected: "wanted from places in the cloud",
-            });
+            return Err(Error::invalid(
+                Parameter::VisibleHeights,
+                format!("wanted from {who} {}, on the terrain beyond the cloud", row + 1),
+                "wanted from places in the cloud",
+            ));
         }
         if far.is_none() && !self.wants(ViewshedTargets::FarTerrain) {
             let text =
@@ -243,9 +242,7 @@ impl ViewshedQuestion {
 
     /// The terrain beyond the cloud that observers may see.
     fn far_cells(&self, blockers: &MedialScene, observers: &[Observer]) -> Result<ElevationGrid> {
-        let invalid = |value: &str, expected| {
-            Err(Error::InvalidParameter { parameter: Parameter::Terrain, value: value.to_owned(), expected })
-        };
+        let invalid = |value: &str, expected| Err(Error::invalid(Parameter::Terrain, value, expected));
         let Some(terrain) = blockers.far_terrain().grid() else {
             return invalid("missing", "given, where cells of it are among the targets");
         };
@@ -271,11 +268,8 @@ impl Ask for ViewshedQuestion {
             (Parameter::Elevation, self.limits.elevation_range_deg),
         ];
         if let Some((parameter, _)) = of_view.into_iter().find(|(_, range)| self.reverse && range.is_some()) {
-            return Err(Error::InvalidParameter {
-                parameter,
-                value: "given".to_owned(),
-                expected: "left out with a target: it limits the view of one observer, and here there are many",
-            });
+            let expected = "left out with a target: it limits the view of one observer, and here there are many";
+            return Err(Error::invalid(parameter, "given", expected));
         }
         self.how_sure.check()?;
         if self.wants(ViewshedTargets::FarTerrain) {
@@ -285,11 +279,7 @@ impl Ask for ViewshedQuestion {
         check_height(self.observer_height)?;
         check_height(self.target_height)?;
         match self.max_height {
-            Some(height) if !(height >= 0.0) => Err(Error::InvalidParameter {
-                parameter: Parameter::MaxHeight,
-                value: height.to_string(),
-                expected: "0 metres or more",
-            }),
+            Some(height) if !(height >= 0.0) => Err(Error::invalid(Parameter::MaxHeight, height, "0 metres or more")),
             _ => Ok(()),
         }
     }

@@ -122,18 +122,17 @@ impl Ask for WindowViewsQuestion {
     type Found = WindowViewsResults;
 
     fn check(&self) -> Result<()> {
-        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         if self.unproven == Some(UnprovenAs::Blocked) {
             let expected = "reported or visible: a view has no targets that could be blocked";
-            return invalid(Parameter::UnprovenAs, "blocked".to_owned(), expected);
+            return Err(Error::invalid(Parameter::UnprovenAs, "blocked", expected));
         }
         if !(self.spacing > 0.0 && self.spacing.is_finite()) {
-            return invalid(Parameter::Spacing, self.spacing.to_string(), "above zero metres");
+            return Err(Error::invalid(Parameter::Spacing, self.spacing, "above zero metres"));
         }
         if let Some((class, seen)) = self.classes.iter().find(|(_, seen)| SeenKind::thing_called(seen.name()).is_none())
         {
             let value = format!("{class} as {}", seen.name());
-            return invalid(Parameter::ClassMeaning, value, "vegetation, water, building, ground or other");
+            return Err(Error::invalid(Parameter::ClassMeaning, value, "vegetation, water, building, ground or other"));
         }
         view_directions(self.directions)?;
         self.windows.check()

@@ -71,11 +71,7 @@ pub struct IsovistIntervals {
 /// [`Error::Cancelled`].
 pub fn isovist(scene: &MedialScene, eye: [f64; 3], params: &IsovistParams, control: &Control<'_>) -> Result<Isovist> {
     if !eye.iter().all(|v| v.is_finite()) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::Eye,
-            value: format!("{eye:?}"),
-            expected: "finite",
-        });
+        return Err(Error::invalid(Parameter::Eye, format!("{eye:?}"), "finite"));
     }
     let range = |direction: [f64; 3]| scene.seen_along(eye, direction, params.max_range).map(|(_, range)| range);
     isovist_of(&range, params, control)

@@ -35,17 +35,14 @@ impl IsovistParams {
     /// # Errors
     /// [`Error::InvalidParameter`] for one outside its range.
     pub fn validate(&self) -> Result<()> {
-        let invalid = |parameter, value: f64, expected| {
-            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
-        };
         if !(self.step >= 1e-4 * TAU && self.step <= FRAC_PI_2) {
-            return invalid(Parameter::AngleStep, self.step.to_degrees(), "0.036 to 90");
+            return Err(Error::invalid(Parameter::AngleStep, self.step.to_degrees(), "0.036 to 90"));
         }
         if !(self.max_range.is_finite() && self.max_range > 0.0) {
-            return invalid(Parameter::MaxDistance, self.max_range, "finite and above zero metres");
+            return Err(Error::invalid(Parameter::MaxDistance, self.max_range, "finite and above zero metres"));
         }
         if !(self.jump.is_finite() && self.jump > 0.0) {
-            return invalid(Parameter::MinJump, self.jump, "finite and above zero metres");
+            return Err(Error::invalid(Parameter::MinJump, self.jump, "finite and above zero metres"));
         }
         Ok(())
     }

@@ -41,11 +41,7 @@ impl LandmarkParams {
         self.earth.validate()?;
         self.faces.validate()?;
         if !(self.max_range > 0.0) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::MaxDistance,
-                value: self.max_range.to_string(),
-                expected: "above zero metres",
-            });
+            return Err(Error::invalid(Parameter::MaxDistance, self.max_range, "above zero metres"));
         }
         Ok(())
     }

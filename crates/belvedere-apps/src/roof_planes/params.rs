@@ -54,26 +54,19 @@ impl RoofPlaneParams {
         let is_usable = |v: &f64| *v > 0.0 && *v < 1000.0;
         if let Some(bad) = lengths.iter().find(|v| !is_usable(v)) {
             let value = bad.to_string();
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::RoofLength,
-                value,
-                expected: "above 0 to 1000 m",
-            });
+            return Err(Error::invalid(Parameter::RoofLength, value, "above 0 to 1000 m"));
         }
         if self.cell < MIN_CELL {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::RoofLength,
-                value: format!("cells of {} m", self.cell),
-                expected: "cells of 0.1 m or more",
-            });
+            let expected = "cells of 0.1 m or more";
+            return Err(Error::invalid(Parameter::RoofLength, format!("cells of {} m", self.cell), expected));
         }
         let is_angle = |v: f64| v > 0.0 && v <= FRAC_PI_2;
         if !is_angle(self.angle) || !is_angle(self.max_tilt) || !(self.min_area >= 0.0) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::RoofAngle,
-                value: format!("{} and {} rad, {} m²", self.angle, self.max_tilt, self.min_area),
-                expected: "angles above 0 to 90 degrees, an area of 0 or more",
-            });
+            return Err(Error::invalid(
+                Parameter::RoofAngle,
+                format!("{} and {} rad, {} m²", self.angle, self.max_tilt, self.min_area),
+                "angles above 0 to 90 degrees, an area of 0 or more",
+            ));
         }
         Ok(())
     }

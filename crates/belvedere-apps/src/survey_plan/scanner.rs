@@ -34,14 +34,12 @@ impl ScannerParams {
     /// # Errors
     /// [`Error::InvalidParameter`] for one outside its range.
     pub fn validate(&self) -> Result<()> {
-        let invalid = |parameter, value: f64, expected| {
-            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
-        };
         if !(self.max_range.is_finite() && self.max_range > 0.0) {
-            return invalid(Parameter::MaxDistance, self.max_range, "finite and above zero metres");
+            return Err(Error::invalid(Parameter::MaxDistance, self.max_range, "finite and above zero metres"));
         }
         if !(self.angular_step > 0.0 && self.angular_step <= FRAC_PI_2) {
-            return invalid(Parameter::AngleStep, self.angular_step.to_degrees(), "above 0, and at most 90");
+            let expected = "above 0, and at most 90";
+            return Err(Error::invalid(Parameter::AngleStep, self.angular_step.to_degrees(), expected));
         }
         Ok(())
     }

@@ -279,21 +279,13 @@ impl Ask for CamerasQuestion {
         self.earth.validate()?;
         self.coverage_params()?;
         if self.per_target == 0 {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::RequiredCameras,
-                value: "0".to_owned(),
-                expected: "1 or more",
-            });
+            return Err(Error::invalid(Parameter::RequiredCameras, "0", "1 or more"));
         }
         self.lens.mounting()?.poses_at(&Mount::default())?;
         if let CameraGoal::CoveragePercent(percent) = self.goal
             && !(percent > 0.0 && percent <= 100.0)
         {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Coverage,
-                value: format!("{percent} %"),
-                expected: "above 0 to 100 %",
-            });
+            return Err(Error::invalid(Parameter::Coverage, format!("{percent} %"), "above 0 to 100 %"));
         }
         self.targets.check()
     }

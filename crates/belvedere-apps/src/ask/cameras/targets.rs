@@ -64,11 +64,7 @@ impl CameraTargets {
     pub(super) fn check(&self) -> Result<()> {
         let weights = self.weights.iter().copied().chain(self.areas.iter().map(|area| area.weight));
         match weights.into_iter().find(|weight| !(*weight >= 0.0 && weight.is_finite())) {
-            Some(weight) => Err(Error::InvalidParameter {
-                parameter: Parameter::TargetWeight,
-                value: weight.to_string(),
-                expected: "a number, 0 or more",
-            }),
+            Some(weight) => Err(Error::invalid(Parameter::TargetWeight, weight, "a number, 0 or more")),
             None => Ok(()),
         }
     }

@@ -96,11 +96,11 @@ impl SunHoursQuestion {
         let days = self.days_by_hour(year, &site, &zone)?;
         let schedule = SunSchedule::new(&days, self.binning())?;
         if schedule.directions.len().saturating_mul(targets.len()) > MAX_BITS {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Cell,
-                value: format!("{} cells with {} suns each", targets.len(), schedule.directions.len()),
-                expected: "fewer for the hours of a year: choose larger cells, or a smaller cloud",
-            });
+            return Err(Error::invalid(
+                Parameter::Cell,
+                format!("{} cells with {} suns each", targets.len(), schedule.directions.len()),
+                "fewer for the hours of a year: choose larger cells, or a smaller cloud",
+            ));
         }
         test_edge(scene, &targets, &schedule.directions, &mut context, control)?;
         let blockers = scene.blockers(UnprovenAs::Visible, control)?;

@@ -56,11 +56,11 @@ impl ViewshedQuestion {
             |place| StandingObserver { standing: Standing { place, height: None }, limits: ViewLimits::default() };
         let found: Vec<StandingObserver> = (1..=tries).filter_map(place).take(count).map(standing).collect();
         if found.len() < count {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::ObserverCount,
-                value: format!("{count}, of which {} found open ground", found.len()),
-                expected: "fewer, or of a cloud with more open ground",
-            });
+            return Err(Error::invalid(
+                Parameter::ObserverCount,
+                format!("{count}, of which {} found open ground", found.len()),
+                "fewer, or of a cloud with more open ground",
+            ));
         }
         Ok(found)
     }
