@@ -38,15 +38,15 @@ pub fn plane_normal(azimuth: f64, tilt: f64) -> [f64; 3] {
 /// # Errors
 /// [`Error::InvalidParameter`] for a centre or normal that is not finite, or a size that is below zero or above 1000 m.
 pub fn window_places(center: [f64; 3], normal: [f64; 3], size: Option<[f64; 2]>) -> Result<Vec<[f64; 3]>> {
-    let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
     let Some(normal) = unit(normal).filter(|_| center.iter().all(|v| v.is_finite())) else {
-        return invalid(Parameter::Window, format!("at {center:?} looking to {normal:?}"), "finite, with a direction");
+        let expected = "finite, with a direction";
+        return Err(Error::invalid(Parameter::Window, format!("at {center:?} looking to {normal:?}"), expected));
     };
     let Some(size) = size else {
         return Ok(vec![[0, 1, 2].map(|i| center[i] + TARGET_LIFT * normal[i])]);
     };
     if !size.iter().all(|v| (0.0..=1000.0).contains(v)) {
-        return invalid(Parameter::Window, format!("of size {size:?} m"), "of size 0 to 1000 m");
+        return Err(Error::invalid(Parameter::Window, format!("of size {size:?} m"), "of size 0 to 1000 m"));
     }
     // a skylight that looks straight up has its width east
     let right = unit(cross([0.0, 0.0, 1.0], normal)).unwrap_or([1.0, 0.0, 0.0]);

@@ -102,7 +102,7 @@ impl GlareParams {
     pub fn validate(&self) -> Result<()> {
         let invalid = |parameter, radians: f64, expected| {
             let value = format!("{} degrees", radians.to_degrees());
-            Err(Error::InvalidParameter { parameter, value, expected })
+            Err(Error::invalid(parameter, value, expected))
         };
         if !(0.0..=0.2).contains(&self.scatter) {
             return invalid(Parameter::Scatter, self.scatter, "0 to 11.4 degrees");
@@ -128,8 +128,7 @@ impl Reflector {
     /// # Errors
     /// [`Error::InvalidParameter`] for one without a place, a direction or sides of 0.01 to 10 000 m.
     pub fn of(window: &Window) -> Result<Self> {
-        let invalid =
-            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Reflector, value, expected });
+        let invalid = |value: String, expected| Err(Error::invalid(Parameter::Reflector, value, expected));
         let normal =
             unit(plane_normal(window.azimuth, window.tilt)).filter(|normal| normal.iter().all(|v| v.is_finite()));
         let (Some(normal), true) = (normal, window.center.iter().all(|v| v.is_finite())) else {

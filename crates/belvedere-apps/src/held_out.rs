@@ -215,15 +215,11 @@ impl HeldOutParams {
     /// [`Error::InvalidParameter`] for the first that is outside its range.
     pub fn validate(&self) -> Result<()> {
         if !(self.share > 0.0 && self.share < 1.0) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::HeldOutShare,
-                value: self.share.to_string(),
-                expected: "above 0 and below 1, such as 0.1",
-            });
+            return Err(Error::invalid(Parameter::HeldOutShare, self.share, "above 0 and below 1, such as 0.1"));
         }
         let wrong = |name: &str, value: String, expected| {
             let value = format!("{value} for the {name}");
-            Err(Error::InvalidParameter { parameter: Parameter::MethodSetting, value, expected })
+            Err(Error::invalid(Parameter::MethodSetting, value, expected))
         };
         if !(0.0..=10.0).contains(&self.clearance) {
             return wrong("clearance before the first return", self.clearance.to_string(), "0 to 10 m");

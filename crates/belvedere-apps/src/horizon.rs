@@ -56,18 +56,10 @@ pub fn horizons(
 ) -> Result<Vec<Vec<SkylinePoint>>> {
     params.earth.validate()?;
     if !(1..=1_000_000).contains(&params.azimuth_count) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::DirectionCount,
-            value: params.azimuth_count.to_string(),
-            expected: "1 to 1000000",
-        });
+        return Err(Error::invalid(Parameter::DirectionCount, params.azimuth_count, "1 to 1000000"));
     }
     if !params.turn.is_finite() {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::North,
-            value: params.turn.to_string(),
-            expected: "finite",
-        });
+        return Err(Error::invalid(Parameter::North, params.turn, "finite"));
     }
     eyes.iter()
         .map(|&eye| {
@@ -140,11 +132,8 @@ fn first_certain(from: f64, step: f64, limit: f64, is_certain: impl Fn(f64) -> b
 pub fn azimuth_count(step: f64) -> Result<usize> {
     let count = TAU / step;
     if !(1.0 - 1e-9..=1e6).contains(&count) || (count - count.round()).abs() > 1e-6 * count {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::AngleStep,
-            value: format!("{}", step.to_degrees()),
-            expected: "a divisor of 360 degrees, such as 1, 2.5 or 7.5",
-        });
+        let expected = "a divisor of 360 degrees, such as 1, 2.5 or 7.5";
+        return Err(Error::invalid(Parameter::AngleStep, format!("{}", step.to_degrees()), expected));
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to a million")]
     let count = count.round() as usize;
@@ -160,7 +149,7 @@ pub fn azimuth_count(step: f64) -> Result<usize> {
 pub fn convergence(crs: &Crs, position: [f64; 2]) -> Result<f64> {
     if let Some(value) = far_outside(crs, position) {
         let expected = "one whose area of use holds the scene";
-        return Err(Error::InvalidParameter { parameter: Parameter::ReferenceSystem, value, expected });
+        return Err(Error::invalid(Parameter::ReferenceSystem, value, expected));
     }
     let by_place = crs.geographic_projection().and_then(|projection| convergence_of(&projection, position));
     by_place.or_else(|error| match crs.grid_projection() {

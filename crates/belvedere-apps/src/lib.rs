@@ -17,7 +17,6 @@ pub mod landmark;
 pub mod profile;
 pub mod protected_view;
 pub mod resampling;
-pub mod result_columns;
 pub mod roof_planes;
 pub mod rows;
 pub mod shadow;
@@ -35,3 +34,5 @@ pub mod tree_light;
 pub mod viewshed;
 pub mod window_views;
 pub mod wireline;
+
+pub use belvedere_data::result_columns;

@@ -87,11 +87,7 @@ pub fn protected_view(
 ) -> Result<ProtectedView> {
     if !(params.max_range > 0.0) {
         let value = params.max_range.to_string();
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::MaxDistance,
-            value,
-            expected: "above zero metres",
-        });
+        return Err(Error::invalid(Parameter::MaxDistance, value, "above zero metres"));
     }
     let mut limits = vec![f64::INFINITY; grid.len()];
     let mut viewpoints = Vec::with_capacity(eyes.len());

@@ -295,7 +295,7 @@ pub fn fold_blocks(
 ) -> Result<()> {
     if block == 0 {
         let value = "0".to_owned();
-        return Err(Error::InvalidParameter { parameter: Parameter::TargetCount, value, expected: "1 or more" });
+        return Err(Error::invalid(Parameter::TargetCount, value, "1 or more"));
     }
     for (number, of_block) in targets.chunks(block).enumerate() {
         control.check()?;

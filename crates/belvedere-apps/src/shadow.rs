@@ -18,6 +18,8 @@ use std::f64::consts::TAU;
 pub const SUN_RADIUS: f64 = 959.63 / 3600.0 * std::f64::consts::PI / 180.0;
 /// Description of a raster of light.
 pub const LIT: &str = "share of the sun, 0 in shadow";
+/// Name of the measure that says which light is unproven.
+pub const UNPROVEN: &str = "unproven";
 /// Number of points that represent the disc of the sun: shares of light are multiples of 1/64.
 const DISC_POINTS: usize = 64;
 /// Targets handed to a thread at once.

@@ -93,11 +93,7 @@ pub fn towers_seen(
 ) -> Result<TowersSeen> {
     params.earth.validate()?;
     if !(params.max_distance > 0.0) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::MaxDistance,
-            value: params.max_distance.to_string(),
-            expected: "above zero metres",
-        });
+        return Err(Error::invalid(Parameter::MaxDistance, params.max_distance, "above zero metres"));
     }
     let of_chunk = |eyes: &[[f32; 3]]| {
         let mut part = PlacesPart::new(eyes, towers.len());

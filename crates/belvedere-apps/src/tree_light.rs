@@ -72,11 +72,7 @@ impl Transmissivity {
     /// [`Error::InvalidParameter`] for a share outside 0 to 1.
     pub fn constant(share: f64) -> Result<Self> {
         if !(0.0..=1.0).contains(&share) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Transmissivity,
-                value: share.to_string(),
-                expected: "0 (opaque) to 1",
-            });
+            return Err(Error::invalid(Parameter::Transmissivity, share, "0 (opaque) to 1"));
         }
         Ok(Self { in_leaf: share, bare: share })
     }

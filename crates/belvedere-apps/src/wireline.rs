@@ -135,11 +135,7 @@ pub fn wireline(
     control: &Control<'_>,
 ) -> Result<Wireline> {
     if !eye.iter().all(|v| v.is_finite()) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::Eye,
-            value: format!("{eye:?}"),
-            expected: "three finite coordinates",
-        });
+        return Err(Error::invalid(Parameter::Eye, format!("{eye:?}"), "three finite coordinates"));
     }
     let within = |tower: &Tower| {
         let distance = (tower.line.foot[0] - eye[0]).hypot(tower.line.foot[1] - eye[1]);

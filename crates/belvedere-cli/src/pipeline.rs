@@ -17,7 +17,6 @@ use crate::run::CommandContext;
 use crate::scene_config::BallParameters;
 use crate::summary::Summary;
 use anyhow::{Result, anyhow, bail};
-use belvedere::apps::ask::scene::GroundStore;
 use belvedere::apps::ask::{self};
 use belvedere::cache::{BuiltScene, ReadBefore, model_of_balls, scene_model};
 use belvedere::depth::Profile;

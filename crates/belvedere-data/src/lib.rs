@@ -24,6 +24,7 @@ pub mod polygon;
 pub mod random;
 pub mod raster;
 pub mod report;
+pub mod result_columns;
 mod setters;
 pub mod shown;
 pub mod sky_region;

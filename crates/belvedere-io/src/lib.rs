@@ -90,7 +90,7 @@ pub use text::graphml::write_graphml;
 pub use text::horizon_profile::read_horizon;
 pub use text::observers::{ObserverRow, ObserverRows, RowsAre, property, read_observers};
 pub use text::stations::read_stations;
-pub use text::table::{Table, TableCells, read_table, row_properties, with_columns_read, write_table, write_text_rows};
+pub use text::table::{Table, read_table, row_properties, with_columns_read, write_table, write_text_rows};
 pub use text::text_rows::TextRows;
 pub use text::towers::{TowerRow, read_towers};
 pub use text::trajectory::{TrajectoryReport, read_trajectory};

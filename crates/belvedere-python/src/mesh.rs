@@ -3,6 +3,7 @@
 use crate::arrays::{column, fixed_rows, to_1d, to_2d};
 use crate::cloud::PyInput;
 use crate::errors::{exception, wrong};
+use crate::result_columns::to_python;
 use crate::system::System;
 use crate::work::run;
 use belvedere::apps::ask;
@@ -162,8 +163,8 @@ pub(crate) fn rows_of<'py>(py: Python<'py>, rows: FaceRows<'_>) -> PyResult<Boun
     dict.set_item("object_count", rows.object_count)?;
     dict.set_item("object", rows.objects)?;
     let columns = PyDict::new(py);
-    for (name, values, _) in rows.columns {
-        columns.set_item(name, to_1d(py, values))?;
+    for (name, values) in to_python(py, rows.columns)? {
+        columns.set_item(name, values)?;
     }
     dict.set_item("columns", columns)?;
     Ok(dict)

@@ -120,7 +120,7 @@ impl PyScene {
         let of_file: Vec<[f64; 3]> = found.eyes.places.iter().map(|&eye| scene.frame().file_from_local(eye)).collect();
         dict.set_item("place", to_2d(py, &of_file)?)?;
         for column in found.columns() {
-            dict.set_item(column.name, to_1d(py, column.values))?;
+            dict.set_item(&column.name, to_1d(py, column.numbers().to_vec()))?;
         }
         let panoramas = found.isovists.iter().flatten().map(|isovist| {
             let raster = &isovist.panorama;

@@ -4,6 +4,7 @@ use crate::arrays::{to_1d, to_2d};
 use crate::errors::{exception, wrong};
 use crate::mesh::PyMesh;
 use crate::remarks::remarks_of;
+use crate::result_columns::{NamedColumns, to_python};
 use crate::scene::{PyScene, unproven_as};
 use crate::sun::SiteKeywords;
 use crate::targets::PyColumn;
@@ -82,7 +83,7 @@ type WindowsReply<'py> = (
     Vec<PyColumn<'py>>,
     Bound<'py, PyArray2<f64>>,
     Vec<String>,
-    (Vec<String>, Vec<(&'static str, Bound<'py, PyAny>)>),
+    (Vec<String>, NamedColumns<'py>),
     Vec<Bound<'py, PyDict>>,
 );
 
@@ -114,9 +115,8 @@ impl PyScene {
         let places: Vec<[f64; 3]> = found.windows.iter().map(|w| frame.file_from_local(w.center)).collect();
         let buildings = found.by_name(&found.names);
         let counts = buildings.iter().map(|named| named.windows as u64).collect();
-        let mut of_buildings = vec![("windows", to_1d::<u64>(py, counts).into_any())];
-        let columns_of_buildings = named_columns(&buildings).into_iter();
-        of_buildings.extend(columns_of_buildings.map(|(name, values)| (name, to_1d(py, values).into_any())));
+        let mut of_buildings = vec![("windows".to_owned(), to_1d::<u64>(py, counts).into_any())];
+        of_buildings.extend(to_python(py, named_columns(&buildings))?);
         let of_names = buildings.into_iter().map(|named| named.name).collect();
         let remarks = remarks_of(py, &answers.remarks)?;
         Ok((columns, to_2d(py, &places)?, found.names, (of_names, of_buildings), remarks))

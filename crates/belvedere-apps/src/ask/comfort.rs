@@ -1,12 +1,16 @@
 //! Comfort: sun and sky of walkers on routes, and of windows.
 
-use super::places::test_edge;
-use super::sections::{LinesSection, NamedValues, PeriodSection};
+use super::answers::{Answers, Ask};
+use super::context::Context;
+use super::places::{Places, test_edge};
+use super::remark::Remark;
+use super::scene::Scene;
+use super::sections::{ExposureSection, LinesSection, NamedValues, PeriodSection};
+use super::sky_view::SkyParts;
 use super::sun::{Days, sun_days_above};
 use super::sun_hours::days_in_words;
 use super::sun_place::SunPlace;
 use super::windows::{GivenWindows, WindowTargets};
-use super::{Answers, Ask, Context, Places, Remark, Scene, SkyParts};
 use crate::exposure::{Exposure, ROUTE_STEP, ShadeAtEachSun, WALKER_HEIGHT, scene_exposure};
 use crate::sun::{Binning, SunSchedule, Zone};
 use crate::targets::{Route, Targets, Window, grid_around, set_on_ground};
@@ -82,19 +86,6 @@ pub struct ComfortResults {
     pub grid_north: f64,
 }
 
-/// Exposure of routes or windows, for reports.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ExposureSection {
-    /// Number of routes or windows.
-    #[serde(flatten)]
-    groups: NamedValues<usize>,
-    targets: usize,
-    sky_directions: usize,
-    /// Means by weight.
-    #[serde(flatten)]
-    means: NamedValues<f64>,
-}
-
 impl ComfortQuestion {
     fn targets(
         &self,
@@ -133,7 +124,7 @@ impl ComfortQuestion {
         let count = places().count();
         let Some(grid) = grid_around(places(), scene.frame().origin)? else { return Ok(routes) };
         let known = scene.ground(grid, self.ground, control)?;
-        context.ground(scene, &known);
+        context.ground(scene.frame(), &known);
         let height = self.target_height.unwrap_or(WALKER_HEIGHT);
         let all = routes.iter_mut().flat_map(|route| &mut route.places).map(|place| (place, height));
         let unknown = set_on_ground(all, &known.ground).len();
@@ -162,11 +153,7 @@ impl ComfortQuestion {
 }
 
 fn missing_period<T>() -> Result<T> {
-    refused(Parameter::Period, "missing".to_owned(), "given as days or as two times")
-}
-
-fn refused<T>(parameter: Parameter, value: String, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { parameter, value, expected })
+    Err(Error::invalid(Parameter::Period, "missing", "given as days or as two times"))
 }
 
 impl Ask for ComfortQuestion {
@@ -184,7 +171,7 @@ impl Ask for ComfortQuestion {
         }
         match self.target_height {
             Some(height) if !(height >= 0.0 && height.is_finite()) => {
-                refused(Parameter::HeightAboveGround, height.to_string(), "0 metres or more")
+                Err(Error::invalid(Parameter::HeightAboveGround, height, "0 metres or more"))
             }
             _ => Ok(()),
         }
@@ -205,7 +192,7 @@ impl Ask for ComfortQuestion {
         }
         let (mut found, routes) = self.targets(north.of_grid, scene, context, control)?;
         if found.targets.is_empty() {
-            return refused(Parameter::Targets, "missing".to_owned(), "routes or windows");
+            return Err(Error::invalid(Parameter::Targets, "missing", "routes or windows"));
         }
         found.leave_out_outside(scene, context)?;
         let WindowTargets { targets, windows, names } = found;

@@ -1,7 +1,12 @@
 //! Depth map: the distance to the first surface for each pixel of a view.
 
+use super::answers::{Answers, Ask};
+use super::context::Context;
+use super::places::Places;
+use super::remark::Remark;
 use super::scene::Scene;
-use super::{Answers, Ask, Context, Places, Remark, remark_on_eye};
+use super::sections::{PictureSection, ViewDirection, ViewSection};
+use super::viewer::remark_on_eye;
 use belvedere_core::depth::{ItemBuffer, Profile};
 use belvedere_core::query::Coverage;
 use belvedere_data::control::Control;
@@ -45,41 +50,11 @@ pub struct DepthMapResults {
     pub balls: Option<Raster<u32>>,
 }
 
-/// A view, for reports.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ViewSection {
-    width_px: usize,
-    height_px: usize,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pixel_m: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pixel_m_at_100_m: Option<f64>,
-    view_direction: ViewDirection,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
-enum ViewDirection {
-    Along(Vec<f64>),
-    Around(&'static str),
-}
-
-/// A picture, for reports.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct PictureSection {
-    pixels_hit_percent: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    balls_around_eye_ignored: Option<usize>,
-}
-
 impl ViewFrom {
     /// Refuses a question without a view.
     pub(super) fn given(from: Option<Self>) -> Result<Self> {
-        from.ok_or_else(|| Error::InvalidParameter {
-            parameter: Parameter::View,
-            value: "missing".to_owned(),
-            expected: "given: the sun, a direction, a camera or a panorama",
-        })
+        let expected = "given: the sun, a direction, a camera or a panorama";
+        from.ok_or_else(|| Error::invalid(Parameter::View, "missing", expected))
     }
 
     /// Returns the position of the eye, local metres; `None` for parallel views.
@@ -149,11 +124,11 @@ impl Ask for DepthMapQuestion {
                 let map = scene.model().depth_map(&view, profile, items, control)?;
                 Ok((map.depth, map.balls, map.around_eye_count))
             }
-            ViewFrom::Panorama { .. } if profile != Profile::Sphere => Err(Error::InvalidParameter {
-                parameter: Parameter::BallProfile,
-                value: "the paper's cone".to_owned(),
-                expected: "sphere: the cone is for parallel views only",
-            }),
+            ViewFrom::Panorama { .. } if profile != Profile::Sphere => Err(Error::invalid(
+                Parameter::BallProfile,
+                "the paper's cone",
+                "sphere: the cone is for parallel views only",
+            )),
             ViewFrom::Panorama { eye, width } => {
                 let map = scene.model().panorama(eye, width, items, control)?;
                 Ok((map.range, map.balls, map.around_eye_count))

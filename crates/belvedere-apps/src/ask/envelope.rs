@@ -1,10 +1,15 @@
 //! The solar envelope: how high one may build on a parcel without taking protected sun from others.
 
-use super::scene::KnownGround;
-use super::sections::{LinesSection, PeriodSection};
+use super::answers::{Answers, Ask};
+use super::context::Context;
+use super::known_ground::KnownGround;
+use super::places::Places;
+use super::remark::Remark;
+use super::scene::Scene;
+use super::sections::{EnvelopeSection, LinesSection, PeriodSection};
+use super::shared::SharedObject;
 use super::sun::{Days, SunRange, check_min_elevation, check_sun, remark_on_sun};
 use super::sun_place::{SunPlace, remark_on_solar_hours};
-use super::{Answers, Ask, Context, Places, Remark, Scene, SharedObject};
 use crate::solar_envelope::{
     EnvelopeParams, Parcel, ProtectedPiece, SolarEnvelope, check_fence, check_hours, envelope_suns, existing_shade,
     protected_faces, protected_line, solar_envelope,
@@ -110,35 +115,6 @@ pub struct EnvelopeResults {
     pub ground: Arc<KnownGround>,
 }
 
-/// The envelope, for reports.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct EnvelopeSection {
-    columns: usize,
-    cell_m: f64,
-    area_m2: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    volume_m3: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    mean_height_m: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    max_height_m: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    columns_unlimited: Option<usize>,
-    columns_of_zero_height: usize,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    columns_at_max_height: Option<usize>,
-    cells_without_ground: usize,
-    protected_pieces: usize,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    facing_away_percent: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    existing_shadow_percent: Option<f64>,
-    /// The suns that limit the largest areas.
-    limiting_suns: Vec<String>,
-    /// The places that do.
-    limiting_places: Vec<String>,
-}
-
 /// Directions to suns, and the name of each.
 struct NamedSuns {
     directions: Vec<[f64; 3]>,
@@ -155,16 +131,14 @@ struct Land {
     unknown: usize,
 }
 
-fn refused<T>(parameter: Parameter, value: impl Into<String>, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { parameter, value: value.into(), expected })
-}
-
 impl EnvelopeQuestion {
     fn dates(&self, days: &Days, site: &Site, zone: &Zone) -> Result<Vec<Date>> {
         match days.period(&self.place, site, zone)? {
             Some(Period::Days(dates)) => Ok(dates),
-            Some(_) => refused(Parameter::Period, "two times", "days; their hours are limited apart from them"),
-            None => refused(Parameter::Period, "missing", "given as days"),
+            Some(_) => {
+                Err(Error::invalid(Parameter::Period, "two times", "days; their hours are limited apart from them"))
+            }
+            None => Err(Error::invalid(Parameter::Period, "missing", "given as days")),
         }
     }
 
@@ -240,7 +214,7 @@ impl EnvelopeQuestion {
         }
         if land.pieces.is_empty() {
             let expected = "where the ground is known; is what is protected in the coordinates of the cloud?";
-            return refused(Parameter::ProtectedPlace, "without known ground", expected);
+            return Err(Error::invalid(Parameter::ProtectedPlace, "without known ground", expected));
         }
         Ok(land)
     }
@@ -310,7 +284,7 @@ impl Ask for EnvelopeQuestion {
             ProtectedSuns::Directions(directions) => {
                 directions.iter().try_for_each(|&sun| check_sun(sun, SunRange::AboveHorizon))?;
                 if directions.is_empty() {
-                    return refused(Parameter::SunDirection, "missing", SUN_EXPECTED);
+                    return Err(Error::invalid(Parameter::SunDirection, "missing", SUN_EXPECTED));
                 }
             }
             ProtectedSuns::Days { days, hours } => {
@@ -335,7 +309,7 @@ impl Ask for EnvelopeQuestion {
         let [wide, narrow] = self.grids(&parcel, scene)?;
         let around = scene.ground(wide, self.ground, control)?;
         let below = scene.ground(narrow, self.ground, control)?;
-        context.ground(scene, &below);
+        context.ground(scene.frame(), &below);
         let land = self.land(&around.ground, scene, control)?;
         let parts = land.unknown + land.pieces.len();
         let so = "have no known ground, and are not protected";

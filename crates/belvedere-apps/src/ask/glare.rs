@@ -1,15 +1,19 @@
 //! Glare: sun that panels and glass reflect to observers.
 
+use super::answers::{Answers, Ask};
+use super::context::Context;
 use super::observers::{Eyes, Observers, check_height};
-use super::sections::{LinesSection, PeriodSection};
+use super::places::Places;
+use super::remark::Remark;
+use super::scene::Scene;
+use super::sections::{GlareSection, LinesSection, PeriodSection};
 use super::sun::{Days, sun_days_above};
 use super::sun_place::{SunPlace, remark_on_solar_hours};
 use super::windows::{GivenWindow, with_number};
-use super::{Answers, Ask, Context, Places, Remark, Scene};
 use crate::eyes::{EyeFault, fault_of};
 use crate::glare::{EyeGlare, GlareParams, GlareStretch, Reflector, glare, glare_by_hour};
 use crate::irradiance::{ClearSky, extraterrestrial};
-use crate::result_columns::{ResultColumn, ResultValues};
+use crate::result_columns::ResultColumn;
 use crate::sun::{Binning, Date, Site, SunSchedule, Zone};
 use belvedere_core::ground::GroundPoints;
 use belvedere_core::query::{MedialScene, UnprovenAs};
@@ -79,20 +83,6 @@ pub struct GlareSummary {
     pub dates: Option<[Date; 2]>,
 }
 
-/// Glare for reports.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct GlareSection {
-    observers: usize,
-    reflectors: usize,
-    /// Hours of glare of all observers together, each counted once however many reflectors dazzle.
-    hours: f64,
-    after_image_hours: f64,
-    unproven_hours: f64,
-    scatter_deg: f64,
-    from_sun_deg: f64,
-    clear_sky: String,
-}
-
 impl GlareSummary {
     fn of(stretches: &[GlareStretch], schedule: &SunSchedule) -> Self {
         let sum = |hours: &dyn Fn(&GlareStretch) -> f32| {
@@ -147,11 +137,7 @@ impl GlareQuestion {
 }
 
 fn missing_days<T>() -> Result<T> {
-    Err(Error::InvalidParameter {
-        parameter: Parameter::Period,
-        value: "missing".to_owned(),
-        expected: "given as a year, as days, or as two times",
-    })
+    Err(Error::invalid(Parameter::Period, "missing", "given as a year, as days, or as two times"))
 }
 
 impl Ask for GlareQuestion {
@@ -159,11 +145,8 @@ impl Ask for GlareQuestion {
 
     fn check(&self) -> Result<()> {
         if self.reflectors.is_empty() {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Reflector,
-                value: "missing".to_owned(),
-                expected: "at least one, with place, azimuth, tilt, width and height",
-            });
+            let expected = "at least one, with place, azimuth, tilt, width and height";
+            return Err(Error::invalid(Parameter::Reflector, "missing", expected));
         }
         for (row, reflector) in self.reflectors.iter().enumerate() {
             let checked = reflector.check().and_then(|()| Reflector::of(&reflector.in_grid(0.0)));
@@ -285,37 +268,27 @@ impl GlareResults {
                 None => self.of_observer(observer),
             })
             .collect();
-        let whole = |name: &str, values: Vec<Option<usize>>| ResultColumn {
-            name: name.to_owned(),
-            values: ResultValues::Whole(values.into_iter().map(|value| u64::try_from(value?).ok()).collect()),
-        };
         let real = |name: &str, of: &dyn Fn(&GlareSummary) -> f64, decimals| {
-            let values = summaries.iter().map(|one| one.as_ref().map_or(f64::NAN, of)).collect();
-            ResultColumn::real(name, values, decimals)
+            ResultColumn::real(name, summaries.iter().map(|one| one.as_ref().map_or(f64::NAN, of)), decimals)
         };
-        let clock = |name: &str, end: usize| ResultColumn {
-            name: name.to_owned(),
-            values: ResultValues::Clock(
-                summaries
-                    .iter()
-                    .map(|one| one.and_then(|one| one.between).map_or(f64::NAN, |ends| ends[end]))
-                    .collect(),
-            ),
+        let clock = |name: &str, end: usize| {
+            let hour = |one: &Option<GlareSummary>| one.and_then(|one| one.between).map_or(f64::NAN, |ends| ends[end]);
+            ResultColumn::clock(name, summaries.iter().map(hour))
         };
         let day = |name: &str, end: usize| {
             let date = |one: &Option<GlareSummary>| {
                 one.and_then(|one| one.dates).map_or_else(String::new, |dates| dates[end].to_string())
             };
-            ResultColumn::words(name, summaries.iter().map(date).collect())
+            ResultColumn::words(name, summaries.iter().map(date))
         };
         let name = |&(_, reflector): &(usize, Option<usize>)| match reflector {
             Some(reflector) => names.get(reflector).cloned().unwrap_or_default(),
             None => "all".to_owned(),
         };
         vec![
-            whole("observer", rows.iter().map(|(observer, _)| Some(observer + 1)).collect()),
-            whole("reflector", rows.iter().map(|(_, reflector)| Some(reflector.map_or(0, |own| own + 1))).collect()),
-            ResultColumn::words("name", rows.iter().map(name).collect()),
+            ResultColumn::whole("observer", rows.iter().map(|(observer, _)| observer + 1)),
+            ResultColumn::whole("reflector", rows.iter().map(|(_, reflector)| reflector.map_or(0, |own| own + 1))),
+            ResultColumn::words("name", rows.iter().map(name)),
             real("hours", &|one| one.hours, 3),
             real("after_image_hours", &|one| one.after_image_hours, 3),
             real("unproven_hours", &|one| one.unproven_hours, 3),
@@ -338,16 +311,13 @@ impl GlareResults {
         };
         let minutes: Vec<[[f32; 24]; 12]> = self.of_observers.iter().enumerate().map(of_observer).collect();
         let rows = || (0..minutes.len()).flat_map(|observer| (0..12).map(move |month| (observer, month)));
-        let number = |name: &str, of: &dyn Fn((usize, usize)) -> usize| ResultColumn {
-            name: name.to_owned(),
-            values: ResultValues::Whole(rows().map(|row| u64::try_from(of(row) + 1).ok()).collect()),
-        };
         let hour = |hour: usize| {
-            let values = rows().map(|(observer, month)| f64::from(minutes[observer][month][hour])).collect();
+            let values = rows().map(|(observer, month)| f64::from(minutes[observer][month][hour]));
             ResultColumn::real(format!("min_{hour:02}"), values, 1)
         };
-        let ends = [number("observer", &|(observer, _)| observer), number("month", &|(_, month)| month)];
-        ends.into_iter().chain((0..24).map(hour)).collect()
+        let observers = ResultColumn::whole("observer", rows().map(|(observer, _)| observer + 1));
+        let months = ResultColumn::whole("month", rows().map(|(_, month)| month + 1));
+        [observers, months].into_iter().chain((0..24).map(hour)).collect()
     }
 
     fn summarise(&self, params: &GlareParams, context: &mut Context) {

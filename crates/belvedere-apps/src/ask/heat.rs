@@ -1,13 +1,17 @@
 //! Heat: radiant temperature and thermal stress of people at places, over the hours of days of weather.
 
-use super::irradiance::remark_on_place_of;
-use super::sections::{MeasuresSection, PlacesReport};
+use super::answers::{Answers, Ask};
+use super::context::{Context, spread};
+use super::places::Places;
+use super::remark::Remark;
+use super::scene::Scene;
+use super::sections::{HeatSection, MeasuresSection, PlacesReport};
+use super::seen_kinds::kinds_of_balls;
 use super::sun::{Days, moment};
 use super::sun_and_sky::{Light, OnTargets};
 use super::sun_place::{SunPlace, remark_on_solar_hours};
-use super::trees::remark_on_leaves;
-use super::window_views::kinds_of_balls;
-use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
+use super::trees::{ThroughTrees, remark_on_leaves};
+use super::weather::{remark_on_place_of, remark_on_wind};
 use crate::exposure::WALKER_HEIGHT;
 use crate::heat::{
     Body, HeatDays, HeatHour, HeatRows, Person, Receiver, SceneSurfaces, Stress, SurfaceParams, body_directions,
@@ -21,7 +25,7 @@ use belvedere_core::query::UnprovenAs;
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use belvedere_data::vector::to_f32;
-use belvedere_data::weather::{USUAL_WIND, Weather};
+use belvedere_data::weather::Weather;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -83,22 +87,6 @@ impl Default for HeatQuestion {
             pet: false,
         }
     }
-}
-
-/// Weather and model of an answer about heat, for reports.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct HeatSection {
-    weather: &'static str,
-    time_zone: String,
-    days: usize,
-    hours: f64,
-    mean_air_temperature_c: f64,
-    max_air_temperature_c: f64,
-    max_global_w_m2: f64,
-    body: Body,
-    #[serde(flatten)]
-    surfaces: SurfaceParams,
-    not_modelled: &'static str,
 }
 
 /// Sums of each target over the hours that count.
@@ -218,7 +206,7 @@ impl HeatQuestion {
     fn weather(&self) -> Result<&Weather> {
         match &self.weather {
             Some(weather) => Ok(weather),
-            None => refused(Parameter::Weather, self.file.clone(), "read before the question is put"),
+            None => Err(Error::invalid(Parameter::Weather, self.file.clone(), "read before the question is put")),
         }
     }
 
@@ -268,18 +256,8 @@ impl HeatQuestion {
     }
 }
 
-/// A warning of rows of weather without wind.
-pub(super) fn remark_on_wind(missing: usize, rows: usize) -> Option<Remark> {
-    let so = format!("of the weather have no wind: {USUAL_WIND} m/s is assumed");
-    Remark::of_share("rows-without-wind", missing, rows, "rows", &so)
-}
-
 fn missing_period<T>() -> Result<T> {
-    refused(Parameter::Period, "missing".to_owned(), "given as days or as two times")
-}
-
-fn refused<T>(parameter: Parameter, value: String, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { parameter, value, expected })
+    Err(Error::invalid(Parameter::Period, "missing", "given as days or as two times"))
 }
 
 impl Ask for HeatQuestion {
@@ -290,13 +268,14 @@ impl Ask for HeatQuestion {
             return missing_period();
         }
         if let Some([from, to]) = self.hours.filter(|[from, to]| !(0.0 <= *from && from <= to && *to <= 24.0)) {
-            return refused(Parameter::HoursOfDay, format!("{from} to {to}"), "0 to 24, the last not before the first");
+            let expected = "0 to 24, the last not before the first";
+            return Err(Error::invalid(Parameter::HoursOfDay, format!("{from} to {to}"), expected));
         }
         if !(1..=60).contains(&self.parts) {
-            return refused(Parameter::WeatherParts, self.parts.to_string(), "1 to 60");
+            return Err(Error::invalid(Parameter::WeatherParts, self.parts, "1 to 60"));
         }
         if !(0.0..=2.0).contains(&self.wind_factor) {
-            return refused(Parameter::WindFactor, self.wind_factor.to_string(), "0 to 2");
+            return Err(Error::invalid(Parameter::WindFactor, self.wind_factor, "0 to 2"));
         }
         self.surfaces.validate()?;
         self.dated().check(&self.place)
@@ -313,7 +292,7 @@ impl Ask for HeatQuestion {
         let (balls, points) = (scene.model().balls(), &scene.cloud().positions);
         if !are_made_from(balls, points) {
             let expected = "the points that the balls were made from, whose surfaces are warm: give that cloud";
-            return refused(Parameter::Surfaces, "unknown".to_owned(), expected);
+            return Err(Error::invalid(Parameter::Surfaces, "unknown", expected));
         }
         let site = self.place.site(scene, context, Some([weather.latitude, weather.longitude]))?;
         remark_on_place_of(weather, &site, context);
@@ -338,7 +317,8 @@ impl Ask for HeatQuestion {
         };
         if named.len() > MAX_LISTED_HOURS {
             let value = format!("{} hours", named.len());
-            return refused(Parameter::HoursOfDay, value, "48 at most where each is given; name fewer days or hours");
+            let expected = "48 at most where each is given; name fewer days or hours";
+            return Err(Error::invalid(Parameter::HoursOfDay, value, expected));
         }
         let sums = control.stage("testing surfaces", light.targets.len() + light.steps(), || {
             self.sums(&light, &surfaces, &found, named.len(), control)

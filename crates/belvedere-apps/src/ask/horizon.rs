@@ -1,11 +1,14 @@
 //! Horizon: above which elevation the sky is free around observers.
 
+use super::answers::{Answers, Ask};
+use super::context::Context;
 use super::how_sure::check_interval_scene;
+use super::north::North;
 use super::observers::{Eyes, Observers, check_height};
-use super::places::EDGE_WARNING_PERCENT;
+use super::places::{EDGE_WARNING_PERCENT, Places};
+use super::remark::Remark;
 use super::scene::Scene;
-use super::sections::LinesSection;
-use super::{Answers, Ask, Context, North, Places, Remark};
+use super::sections::{HorizonsSection, LinesSection};
 use crate::edge::horizon_share_near_edge;
 use crate::horizon::{HorizonParams, azimuth_count, horizon_intervals, horizons};
 use belvedere_core::ground::GroundPoints;
@@ -60,19 +63,6 @@ pub struct HorizonResults {
     pub elevations_deg: Vec<Vec<f64>>,
     /// Between which elevations the sky begins nine times in ten, degrees; `None` where that was not wanted.
     pub intervals_deg: Option<Vec<Vec<[f64; 2]>>>,
-}
-
-/// Statistics of horizons.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct HorizonsSection {
-    azimuths: usize,
-    mean_elevation_deg: f64,
-    max_elevation_deg: f64,
-    /// Mean width of the intervals.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    mean_interval_deg: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    azimuths_near_edge_percent: Option<f64>,
 }
 
 impl HorizonQuestion {

@@ -1,7 +1,10 @@
 //! Certainty of answers: a probability for each, and the uncertain ones.
 
+use super::context::Context;
+use super::remark::Remark;
 use super::scene::Scene;
-use super::{Context, Remark, ThroughTrees};
+use super::sections::CertaintySection;
+use super::trees::ThroughTrees;
 use crate::targets::{Measure, ResultKind};
 use crate::viewshed::SeenProbabilities;
 use belvedere_core::query::{Certainty, MedialScene, Proof, UnprovenAs};
@@ -35,23 +38,6 @@ pub struct HowSure {
     pub certain: Option<f64>,
 }
 
-/// Certainty of answers, for reports.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct CertaintySection {
-    /// Number of answers.
-    answers: usize,
-    /// Mean probability of being visible or lit.
-    mean_probability: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    certain_from: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    certainly_visible_percent: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    certainly_blocked_percent: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    uncertain_percent: Option<f64>,
-}
-
 impl HowSure {
     /// Returns true if probabilities are needed.
     #[must_use]
@@ -74,7 +60,7 @@ impl HowSure {
         if !self.is_wanted() {
             return Ok(());
         }
-        Err(Error::InvalidParameter { parameter: Parameter::Certainty, value: value.to_owned(), expected })
+        Err(Error::invalid(Parameter::Certainty, value, expected))
     }
 
     /// The certainty below which answers are uncertain.
@@ -230,11 +216,8 @@ pub fn check_interval(is_wanted: bool, trees: &ThroughTrees) -> Result<()> {
     if !is_wanted || !trees.is_light() {
         return Ok(());
     }
-    Err(Error::InvalidParameter {
-        parameter: Parameter::Interval,
-        value: "given with light through trees".to_owned(),
-        expected: "left out: how far such light may be from the truth is not known",
-    })
+    let expected = "left out: how far such light may be from the truth is not known";
+    Err(Error::invalid(Parameter::Interval, "given with light through trees", expected))
 }
 
 /// Returns true if the error of sums of a scene is known: the scene has pulses from the air. Intervals follow from
@@ -256,9 +239,6 @@ pub(super) fn check_interval_scene(is_wanted: bool, scene: &Scene, control: &Con
     if knows_intervals(scene, control)? {
         return Ok(());
     }
-    Err(Error::InvalidParameter {
-        parameter: Parameter::Interval,
-        value: "given for a scanner on the ground".to_owned(),
-        expected: "left out: only errors of surveys from the air are known",
-    })
+    let expected = "left out: only errors of surveys from the air are known";
+    Err(Error::invalid(Parameter::Interval, "given for a scanner on the ground", expected))
 }

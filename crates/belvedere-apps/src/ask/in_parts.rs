@@ -1,9 +1,15 @@
 //! Results of cells in parts, such as tile by tile, in the words and figures of one answer.
 
+use super::context::Context;
+use super::how_sure::{EXPECTED, PROBABILITY, UNCERTAIN};
+use super::irradiance;
+use super::question::Question;
 use super::scene::Whereabouts;
 use super::sections::{MeasuresSection, PlacesReport};
+use super::shadow;
+use super::sky_view;
 use super::sun::MAX_LISTED_SUNS;
-use super::{Context, EXPECTED, PROBABILITY, Question, UNCERTAIN, irradiance, shadow, sky_view, sun_hours};
+use super::sun_hours;
 use crate::targets::Measure;
 use crate::viewshed::title_of_cells;
 use belvedere_data::{Error, Parameter, Result};
@@ -55,7 +61,7 @@ pub fn summarise_parts(
         _ => {
             let (value, expected) =
                 ("another".to_owned(), "about shadow, sun hours, sky view, irradiance or viewsheds");
-            return Err(Error::InvalidParameter { parameter: Parameter::Questions, value, expected });
+            return Err(Error::invalid(Parameter::Questions, value, expected));
         }
     };
     context.report.measures = Some(MeasuresSection::of_count(count, listed));

@@ -1,17 +1,20 @@
 //! Irradiance: the energy that sun and sky send to places, and to the planes of roofs.
 
-use super::heat::remark_on_wind;
+use super::answers::{Answers, Ask};
+use super::context::{Context, spread};
 use super::how_sure::{check_interval, check_interval_scene};
-use super::scene::Whereabouts;
+use super::places::Places;
+use super::remark::Remark;
+use super::scene::{Scene, Whereabouts};
 use super::sections::{LinesSection, MeasuresSection, PlacesReport, PvSection, RadiationSection, RoofsSection};
 use super::sun_and_sky::{Light, OnTargets};
 use super::sun_place::SunPlace;
-use super::trees::remark_on_leaves;
-use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
+use super::trees::{ThroughTrees, remark_on_leaves};
+use super::weather::{remark_on_place_of, remark_on_wind};
 use crate::irradiance::{
     ClearSky, IrradianceParams, PeriodReport, PeriodRow, PeriodRows, PlaneHour, PlaneYield, PvSystem, RadiationSource,
-    RoofIrradiation, RoofRows, RoofsReport, SeasonRadiation, Surroundings, USUAL_TEMPERATURE, clock_contradiction,
-    hour_columns, look_count, period_seasons, plane_hours, roof_irradiation, roof_yields, season_irradiation,
+    RoofIrradiation, RoofRows, RoofsReport, SeasonRadiation, Surroundings, USUAL_TEMPERATURE, hour_columns, look_count,
+    period_seasons, plane_hours, roof_irradiation, roof_yields, season_irradiation,
 };
 use crate::result_columns::ResultColumn;
 use crate::roof_planes::{Buildings, GROUND_CELL, RoofPlane, RoofPlaneParams, RoofsFrom, roof_planes, roof_points};
@@ -32,8 +35,6 @@ use std::sync::Arc;
 
 /// Minimum number of cells of a plane that is listed.
 const MIN_CELLS: usize = 10;
-/// Distance from which on a weather file counts as that of another place, metres.
-const FAR: f64 = 50_000.0;
 
 /// Energy of sun and sky at places and on roofs over a period.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -213,11 +214,9 @@ impl Radiation {
             Self::Weather { weather: Some(weather), parts, .. } => {
                 Ok(RadiationSource::Weather { weather, parts: *parts })
             }
-            Self::Weather { file, .. } => Err(Error::InvalidParameter {
-                parameter: Parameter::Weather,
-                value: file.clone(),
-                expected: "read before the question is put",
-            }),
+            Self::Weather { file, .. } => {
+                Err(Error::invalid(Parameter::Weather, file.clone(), "read before the question is put"))
+            }
             Self::ClearSky { clear_sky, year } => Ok(RadiationSource::ClearSky { clear_sky: *clear_sky, year: *year }),
         }
     }
@@ -318,20 +317,6 @@ fn remark_on(weather: &Weather, site: &Site, context: &mut Context) {
     let period = weather.period_remark();
     context.add(period.map(|text| Remark::warning("weather-period", text).with("hours", weather.hours())));
     remark_on_place_of(weather, site, context);
-}
-
-/// Adds remarks on the place and the clock of weather.
-pub(super) fn remark_on_place_of(weather: &Weather, site: &Site, context: &mut Context) {
-    let distance = site.distance_to([weather.latitude, weather.longitude]);
-    if distance > FAR {
-        let text = format!("the weather is for a location {:.0} km away", distance / 1000.0);
-        context.add(Some(Remark::warning("weather-far-away", text).with("distance_km", rounded(distance / 1000.0, 1))));
-    }
-    // a place where the sun has no times has no remark on them
-    context.add(clock_contradiction(weather).ok().flatten().and_then(Remark::of_contradiction));
-    for note in &weather.notes {
-        context.add(Some(Remark::note("weather-note", note.clone())));
-    }
 }
 
 impl Roofs {

@@ -1,11 +1,16 @@
 //! Isovist: the space that observers see, in numbers.
 
+use super::answers::{Answers, Ask};
+use super::context::{Context, spread};
 use super::how_sure::check_interval_scene;
+use super::north::North;
 use super::observers::{Eyes, Observers, check_height};
+use super::places::Places;
+use super::remark::Remark;
 use super::scene::Scene;
 use super::sections::{LinesSection, NamedValues};
-use super::{Answers, Ask, Context, North, Places, Remark, spread};
 use crate::isovist::{Isovist, IsovistFigure, IsovistParams, isovist, isovist_intervals};
+use crate::result_columns::ResultColumn;
 use belvedere_core::ground::GroundPoints;
 use belvedere_core::query::UnprovenAs;
 use belvedere_data::Result;
@@ -45,17 +50,6 @@ pub struct IsovistsResults {
     pub isovists: Vec<Option<Isovist>>,
     /// Azimuth of grid north from the north that azimuths count from, radians.
     pub grid_north: f64,
-}
-
-/// One of the numbers that describe isovists, of each.
-#[derive(Clone, Debug, PartialEq)]
-pub struct IsovistColumn {
-    /// Its name, with its unit.
-    pub name: &'static str,
-    /// Decimals in tables.
-    pub decimals: usize,
-    /// The numbers; NaN for eyes that cannot look.
-    pub values: Vec<f64>,
 }
 
 impl IsovistsQuestion {
@@ -119,7 +113,7 @@ impl Ask for IsovistsQuestion {
 impl IsovistsResults {
     /// The numbers that describe each; none where nobody looks.
     #[must_use]
-    pub fn columns(&self) -> Vec<IsovistColumn> {
+    pub fn columns(&self) -> Vec<ResultColumn> {
         let figures = |isovist: &Isovist| isovist.figures(self.grid_north).collect::<Vec<IsovistFigure>>();
         let rows: Vec<Option<Vec<IsovistFigure>>> =
             self.isovists.iter().map(|isovist| isovist.as_ref().map(figures)).collect();
@@ -127,28 +121,26 @@ impl IsovistsResults {
         let value = |row: &Option<Vec<IsovistFigure>>, at: usize| {
             row.as_ref().and_then(|row| row.get(at)).map_or(f64::NAN, |figure| figure.value)
         };
-        let column = |(at, figure): (usize, &IsovistFigure)| IsovistColumn {
-            name: figure.name,
-            decimals: figure.decimals,
-            values: rows.iter().map(|row| value(row, at)).collect(),
+        let column = |(at, figure): (usize, &IsovistFigure)| {
+            ResultColumn::real(figure.name, rows.iter().map(|row| value(row, at)), figure.decimals)
         };
         first.iter().enumerate().map(column).collect()
     }
 
     fn summarise(&self, scene: &Scene, context: &mut Context) {
         let columns = self.columns();
-        if let [place] = &self.eyes.places[..] {
+        if let ([place], [isovist]) = (&self.eyes.places[..], &self.isovists[..]) {
             let place = scene.frame().file_from_local(*place);
             let place = ["x", "y", "z"].into_iter().zip(place).map(|(name, v)| (name.to_owned(), rounded(v, 3)));
-            let figure = |column: &IsovistColumn| {
-                let digits = i32::try_from(column.decimals).unwrap_or(4);
-                Some((column.name.to_owned(), rounded(*column.values.first()?, digits)))
+            let figures = isovist.iter().flat_map(|isovist| isovist.figures(self.grid_north));
+            let figure = |figure: IsovistFigure| {
+                (figure.name.to_owned(), rounded(figure.value, i32::try_from(figure.decimals).unwrap_or(4)))
             };
-            context.report.isovist = Some(NamedValues(place.chain(columns.iter().filter_map(figure)).collect()));
+            context.report.isovist = Some(NamedValues(place.chain(figures.map(figure)).collect()));
         }
         let values = |name: &str| -> Vec<f32> {
             let column = columns.iter().find(|column| column.name == name);
-            column.map_or_else(Vec::new, |column| column.values.iter().map(|&v| to_f32(v)).collect())
+            column.map_or_else(Vec::new, |column| column.numbers().iter().map(|&v| to_f32(v)).collect())
         };
         let count = self.isovists.len();
         let who = if count == 1 { "1 observer".to_owned() } else { format!("{count} observers") };

@@ -1,11 +1,15 @@
 //! Landmark: from where one thing is seen, and how much of it.
 
+use super::answers::{Answers, Ask};
+use super::cells::cells_of;
+use super::context::Context;
 use super::how_sure::remark_from_ground;
-use super::observers::{Reach, Standing, check_height, skip_unfit};
-use super::places::cells_of;
-use super::scene::KnownGround;
-use super::sections::LinesSection;
-use super::{Answers, Ask, Context, Places, Scene};
+use super::known_ground::KnownGround;
+use super::observers::{check_height, skip_unfit};
+use super::places::Places;
+use super::scene::Scene;
+use super::sections::{LandmarkSection, LinesSection};
+use super::standing::{Reach, Standing};
 use crate::landmark::{
     LandmarkParams, LandmarkPoints, LandmarkReport, LandmarkView, landmark_points, landmark_views, measures,
     observer_cell_for, spacing_for,
@@ -109,19 +113,6 @@ pub struct LandmarkResults {
     pub middle: [f64; 2],
 }
 
-/// A landmark, for reports.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct LandmarkSection {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    triangles: Option<usize>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    spacing_m: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    points: Option<usize>,
-    sample_points: usize,
-    area_m2: f64,
-}
-
 /// Observers of a landmark.
 struct Lookers {
     places: Vec<[f64; 3]>,
@@ -144,9 +135,7 @@ impl LandmarkShape {
         origin: [f64; 3],
         control: &Control<'_>,
     ) -> Result<(SurfacePieces, LandmarkSection)> {
-        let invalid = |value: &str, expected| {
-            Err(Error::InvalidParameter { parameter: Parameter::Targets, value: value.to_owned(), expected })
-        };
+        let invalid = |value: &str, expected| Err(Error::invalid(Parameter::Targets, value, expected));
         let mut section = LandmarkSection::default();
         let which = match self {
             Self::Mesh { mesh: Some(mesh), spacing, seed } => {
@@ -269,7 +258,7 @@ impl Ask for LandmarkQuestion {
         let area = section.area_m2;
         context.report.landmark = Some(section);
         let known = scene.ground(self.grid(scene)?, self.ground, control)?;
-        context.ground(scene, &known);
+        context.ground(scene.frame(), &known);
         let blockers = scene.blockers(self.unproven(), control)?;
         context.add(remark_from_ground(&blockers).filter(|_| self.probability));
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));

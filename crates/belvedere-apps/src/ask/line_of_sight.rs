@@ -1,11 +1,17 @@
 //! Lines of sight: whether the observers of pairs see their targets, and the first obstacle of each.
 
+use super::answers::{Answers, Ask};
+use super::cells::GridCells;
+use super::context::Context;
 use super::how_sure::HowSure;
-use super::observers::{Standing, check_height, note_beside, note_enclosed, stand};
+use super::observers::{check_height, note_beside, note_enclosed, stand};
+use super::places::{NetworkPlaces, Places};
+use super::remark::Remark;
 use super::scene::Scene;
-use super::sections::{LinesSection, PairsSection};
-use super::sight_network::{NetworkSection, SightNetwork};
-use super::{Answers, Ask, Context, GridCells, NetworkPlaces, Places, Remark, remark_on_inside};
+use super::sections::{LineSection, LinesSection, NetworkSection, PairsSection};
+use super::sight_network::SightNetwork;
+use super::standing::Standing;
+use super::viewer::remark_on_inside;
 use crate::profile::{SightProfile, sight_profile};
 use crate::targets::{Measure, TARGET_LIFT};
 use crate::viewshed::OBSERVER_HEIGHT;
@@ -98,31 +104,6 @@ pub struct SightColumns<'a> {
     pub is_terrain: Option<Vec<Option<bool>>>,
 }
 
-/// A single line.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct LineSection {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    answer: Option<&'static str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    first_block_range_m: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    block_position: Option<[f64; 3]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    block_ball: Option<usize>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    block_source: Option<u32>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    block_mesh: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    block_surface: Option<&'static str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    block_terrain: Option<bool>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    unproven_m: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    fresnel_free_percent: Option<f64>,
-}
-
 impl LinesOfSightQuestion {
     fn wave(&self) -> Result<Option<RadioWave>> {
         self.frequency_ghz.map(RadioWave::of_frequency).transpose()
@@ -184,7 +165,7 @@ impl LinesOfSightQuestion {
             Err(_) => None,
         };
         if let Some(known) = &known {
-            context.ground(scene, known);
+            context.ground(scene.frame(), known);
         }
         let ground = known.as_ref().map(|known| &known.ground);
         let made = control
@@ -222,11 +203,7 @@ impl LinesOfSightQuestion {
         if self.profile.is_none() || count == 1 {
             return Ok(());
         }
-        Err(Error::InvalidParameter {
-            parameter: Parameter::ProfileLine,
-            value: format!("{count} lines"),
-            expected: "a single line",
-        })
+        Err(Error::invalid(Parameter::ProfileLine, format!("{count} lines"), "a single line"))
     }
 }
 
@@ -239,11 +216,7 @@ impl Ask for LinesOfSightQuestion {
         check_height(self.target_height)?;
         self.earth.validate()?;
         if let Some(step) = self.profile.and_then(|rows| rows.step).filter(|step| !(step.is_finite() && *step > 0.0)) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::ProfileStep,
-                value: step.to_string(),
-                expected: "finite and above zero metres",
-            });
+            return Err(Error::invalid(Parameter::ProfileStep, step, "finite and above zero metres"));
         }
         self.wave().map(|_| ())
     }

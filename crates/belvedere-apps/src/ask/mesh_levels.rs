@@ -1,7 +1,8 @@
 //! Contradictions between a model and its input: findings of its construction, and added meshes off the level of the
 //! ground.
 
-use super::{Remark, remark_on_axis};
+use super::remark::Remark;
+use super::viewer::remark_on_axis;
 use belvedere_core::model::SceneModel;
 use belvedere_data::contradiction::{FoundContradiction, MESH_FLOATS, MESH_IS_HUGE, MESH_SINKS};
 use belvedere_data::report::rounded;

@@ -1,7 +1,9 @@
 //! North of azimuths: true north, or grid north if that is wanted or true north is unknown.
 
-use super::Remark;
+use super::context::Context;
+use super::remark::Remark;
 use super::scene::Scene;
+use super::sections::NorthReport;
 use belvedere_data::report::rounded;
 use serde::{Deserialize, Serialize};
 
@@ -31,14 +33,6 @@ enum CountedFrom {
     GridNorth,
     /// True north was wanted.
     GridNorthForWantOfBetter,
-}
-
-/// The north of a scene, for reports.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct NorthReport {
-    azimuths_from: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    meridian_convergence_deg: Option<f64>,
 }
 
 const UNKNOWN: &str =
@@ -93,5 +87,13 @@ impl AzimuthNorth {
     pub fn remark(&self) -> Option<Remark> {
         (self.counted_from == CountedFrom::GridNorthForWantOfBetter)
             .then(|| Remark::note("true-north-unknown", format!("azimuths count from {UNKNOWN}")))
+    }
+}
+
+impl Context {
+    /// Reports on the north of azimuths.
+    pub(super) fn north(&mut self, north: &AzimuthNorth) {
+        self.report.north = Some(north.report());
+        self.add(north.remark());
     }
 }

@@ -1,9 +1,12 @@
 //! Observers and observed places: places on the ground become eyes, and those that cannot look are skipped and named.
 
+use super::context::Context;
 use super::places::Places;
+use super::remark::Remark;
 use super::scene::Scene;
+use super::sections::ObserversSection;
+use super::standing::{Reach, Standing};
 use super::viewer::remark_on_beside;
-use super::{Context, Remark};
 use crate::eyes::{EyeFault, EyesReport, SkippedEye, skip_unfit_eyes, skip_unfit_far_eyes};
 use crate::targets::{grid_around, set_on_ground, set_on_terrain};
 use crate::viewshed::OBSERVER_HEIGHT;
@@ -12,7 +15,6 @@ use belvedere_core::query::{MedialScene, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use belvedere_data::{Error, Parameter, Result};
-use serde::Serialize;
 use std::sync::Arc;
 
 /// Maximum number of eyes that are named one by one in remarks.
@@ -22,15 +24,6 @@ const FOOTING_RADIUS: f64 = 10.0;
 /// Maximum height difference between the ground below a place and that around it, metres: more than steps, ramps and
 /// moats.
 const MAX_STEP: f64 = 2.0;
-
-/// A place where somebody stands, or that is looked at.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Standing {
-    /// Local metres; the height is NaN where it follows from the ground.
-    pub place: [f64; 3],
-    /// Height of the eye above the ground, metres; `None` for that of the question.
-    pub height: Option<f64>,
-}
 
 /// Eyes of which some cannot look.
 #[derive(Clone, Debug)]
@@ -47,29 +40,6 @@ pub struct Eyes {
 pub(super) struct Observers {
     pub(super) eyes: Eyes,
     pub(super) blockers: Arc<MedialScene>,
-}
-
-/// Extent of lines of sight.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reach {
-    /// Within the cloud.
-    Cloud,
-    /// To the terrain beyond it, where there is any.
-    FarTerrain,
-}
-
-/// Observers that cannot look, for reports.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct ObserversSection {
-    /// Number that cannot look, with the reasons.
-    #[serde(flatten)]
-    pub eyes: EyesReport,
-    /// Eye of a single observer, in the coordinates of the file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub eye: Option<[f64; 3]>,
-    /// Height of that eye above the ground, metres.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub above_ground_m: Option<f64>,
 }
 
 impl Observers {
@@ -104,11 +74,7 @@ impl Observers {
 /// [`Error::InvalidParameter`] for one below it, or that is not finite.
 pub(super) fn check_height(height: Option<f64>) -> Result<()> {
     match height.filter(|height| !(height.is_finite() && *height >= 0.0)) {
-        Some(height) => Err(Error::InvalidParameter {
-            parameter: Parameter::HeightAboveGround,
-            value: height.to_string(),
-            expected: "0 metres or more",
-        }),
+        Some(height) => Err(Error::invalid(Parameter::HeightAboveGround, height, "0 metres or more")),
         None => Ok(()),
     }
 }
@@ -133,7 +99,7 @@ pub(super) fn stand(
     let is_over = |place: &[f64; 3]| coverage.is_none_or(|coverage| coverage.holds_on_map(*place));
     if let Some(grid) = grid_around(places.iter().copied().filter(is_over), scene.frame().origin)? {
         let known = scene.ground(grid, points, control)?;
-        context.ground(scene, &known);
+        context.ground(scene.frame(), &known);
         set_on_ground(places.iter_mut().zip(heights()), &known.ground);
         let feet = places.iter().zip(heights()).zip(is_on_ground);
         let feet = feet.map(

@@ -1,16 +1,18 @@
 //! The places of questions: from a user's input to targets, with the places left out and why.
 
-use super::observers::{Reach, Standing};
+use super::cells::GridCells;
+use super::context::Context;
+use super::remark::Remark;
 use super::scene::Scene;
 use super::sections::PlacesReport;
-use super::{Context, Remark, remark_on_outside, single_places};
+use super::single_places::positions;
+use super::standing::{Reach, Standing};
+use super::viewer::remark_on_outside;
 use crate::edge::{EdgeReport, near_edge};
-use crate::targets::{AreaMeans, CellLevel, CellParams, MeshParams, TargetLayout, Targets};
-use crate::viewshed::cell_for;
-use belvedere_core::ground::{Ground, GroundPoints, MapGrid};
+use crate::targets::{AreaMeans, MeshParams, TargetLayout, Targets};
+use belvedere_core::ground::GroundPoints;
 use belvedere_core::query::MedialScene;
 use belvedere_data::control::Control;
-use belvedere_data::polygon::is_inside;
 use belvedere_data::report::percent;
 use belvedere_data::{Error, Mesh, Parameter, PointCloud, Result};
 use std::sync::Arc;
@@ -68,24 +70,6 @@ pub enum Turned {
     Normals,
 }
 
-/// Cells of a grid over the scene.
-#[derive(Clone, Debug, Default)]
-pub struct GridCells {
-    /// Side, metres; `None` for 0.5 m, doubled until there are at most 4 million cells.
-    pub cell: Option<f64>,
-    /// Level of the cells.
-    pub level: CellLevel,
-    /// Height of the target above that, metres; `None` for the default of [`CellParams`].
-    pub height: Option<f64>,
-    /// Source of ground points.
-    pub ground: GroundPoints,
-    /// South-west and north-east corner of the grid on the map, local metres; `None` for those of the scene.
-    pub bounds: Option<([f64; 2], [f64; 2])>,
-    /// Rings of an area on the map, local metres: cells whose middle lies beside it are no targets. Empty for all
-    /// cells.
-    pub within: Vec<Vec<[f64; 2]>>,
-}
-
 impl Places {
     /// The same places, with cells and single places that have no height of their own `height` metres above the ground,
     /// or what covers it.
@@ -130,9 +114,7 @@ impl Places {
             Self::Cells(cells) => return Ok(Arc::new(cells.targets(scene, context, control)?)),
             Self::Own(turned) => own_points(scene, *turned)?,
             Self::Points(positions, normals) => of_points(positions.clone(), normals.clone()),
-            Self::At(places, points) => {
-                of_points(single_places::positions(places, *points, scene, context, control)?, None)
-            }
+            Self::At(places, points) => of_points(positions(places, *points, scene, context, control)?, None),
             Self::Cloud(cloud, normals) => of_points(moved(cloud, scene)?, normals.clone()),
             Self::Mesh(mesh, params) => {
                 control.stage("sampling mesh", 0, || Targets::of_mesh(mesh, scene.frame(), params))?
@@ -161,7 +143,7 @@ impl Places {
 
 /// Refuses places of another kind than a question is about.
 pub(super) fn other<T>(parameter: Parameter, value: &str, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { parameter, value: value.to_owned(), expected })
+    Err(Error::invalid(parameter, value, expected))
 }
 
 /// Leaves out targets outside the cloud, and outside the terrain beyond it where lines of sight reach so far, which is
@@ -201,9 +183,7 @@ impl Targets {
 
 fn own_points(scene: &Scene, turned: Turned) -> Result<Targets> {
     let cloud = scene.cloud();
-    let invalid = |value: &str, expected| {
-        Err(Error::InvalidParameter { parameter: Parameter::Targets, value: value.to_owned(), expected })
-    };
+    let invalid = |value: &str, expected| Err(Error::invalid(Parameter::Targets, value, expected));
     if cloud.is_empty() {
         return invalid("the points of a ball file", "points: a ball file has none; give its cloud");
     }
@@ -224,83 +204,14 @@ fn own_points(scene: &Scene, turned: Turned) -> Result<Targets> {
 pub fn moved(cloud: &PointCloud, scene: &Scene) -> Result<Vec<[f32; 3]>> {
     let frame = scene.frame();
     if cloud.frame.crs.contradicts(&frame.crs) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::ReferenceSystem,
-            value: cloud.frame.crs.describe(),
-            expected: "that of the scene; convert one of them",
-        });
+        let expected = "that of the scene; convert one of them";
+        return Err(Error::invalid(Parameter::ReferenceSystem, cloud.frame.crs.describe(), expected));
     }
     if cloud.frame == *frame {
         return Ok(cloud.positions.clone());
     }
     let bare = PointCloud { positions: cloud.positions.clone(), ..PointCloud::in_frame(cloud.frame.clone()) };
     Ok(bare.moved_to(frame).positions)
-}
-
-/// Cells without those under a cover or inside added meshes.
-pub(super) fn cells_of(
-    scene: &Scene,
-    ground: Ground,
-    params: &CellParams,
-    context: &mut Context,
-    control: &Control<'_>,
-) -> Result<Targets> {
-    let name = if params.level == CellLevel::Surface { "finding the surface" } else { "finding hidden ground" };
-    let cloud = scene.ground_cloud()?;
-    let (mut targets, report) = control.stage(name, 0, || Targets::of_cells(cloud, ground, params, control))?;
-    let mut under_cover = report.cells_below_objects_excluded;
-    if let Some(added) = scene.model().added() {
-        under_cover += targets.set_on_added(added, params);
-    }
-    if params.level == CellLevel::Ground {
-        context.report.places.cells_under_cover_left_out = Some(under_cover);
-    }
-    Ok(targets)
-}
-
-impl GridCells {
-    /// The grid of these cells, over all of a scene unless they have bounds.
-    ///
-    /// # Errors
-    /// Those of [`MapGrid::covering`].
-    pub fn grid(&self, scene: &Scene) -> Result<MapGrid> {
-        self.grid_over(scene, self.bounds.unwrap_or_else(|| scene.model().bounds().on_map()))
-    }
-
-    /// The grid of these cells over the box from `low` to `high`, local metres.
-    ///
-    /// # Errors
-    /// Those of [`MapGrid::covering`].
-    pub fn grid_over(&self, scene: &Scene, (low, high): ([f64; 2], [f64; 2])) -> Result<MapGrid> {
-        let [x, y, _] = scene.frame().origin;
-        MapGrid::covering(low, high, self.cell.unwrap_or_else(|| cell_for(low, high)), [x, y])
-    }
-
-    fn targets(&self, scene: &Scene, context: &mut Context, control: &Control<'_>) -> Result<Targets> {
-        let known = scene.ground(self.grid(scene)?, self.ground, control)?;
-        context.ground(scene, &known);
-        let mut params = CellParams::default().with_level(self.level);
-        if let Some(height) = self.height {
-            params = params.with_height(height);
-        }
-        let mut targets = cells_of(scene, known.ground.clone(), &params, context, control)?;
-        self.keep_within(&mut targets);
-        Ok(targets)
-    }
-
-    /// Leaves out cells beside the area.
-    fn keep_within(&self, targets: &mut Targets) {
-        let TargetLayout::Cells(ground) = &targets.layout else { return };
-        if self.within.is_empty() {
-            return;
-        }
-        let (grid, width) = (ground.grid, ground.grid.width.max(1));
-        for (cell, position) in targets.positions.iter_mut().enumerate() {
-            if !is_inside(&self.within, grid.center(cell % width, cell / width)) {
-                *position = [f32::NAN; 3];
-            }
-        }
-    }
 }
 
 /// Flags the targets near the edge of the cloud for light from `directions`. Reports their number, with a warning if

@@ -1,9 +1,15 @@
 //! Protected views: how high one may build without entering the view of a landmark.
 
-use super::observers::{Eyes, ObserversSection, Reach, Standing, note_enclosed, skip_unfit, stand};
-use super::scene::KnownGround;
-use super::sections::LinesSection;
-use super::{Answers, Ask, Context, Places, Remark, Scene, SharedObject};
+use super::answers::{Answers, Ask};
+use super::context::Context;
+use super::known_ground::KnownGround;
+use super::observers::{Eyes, note_enclosed, skip_unfit, stand};
+use super::places::Places;
+use super::remark::Remark;
+use super::scene::Scene;
+use super::sections::{LinesSection, ObserversSection, ProtectedViewSection};
+use super::shared::SharedObject;
+use super::standing::{Reach, Standing};
 use crate::landmark::LandmarkParams;
 use crate::protected_view::{self as limits, ViewpointReport, protected_view};
 use crate::viewshed::OBSERVER_HEIGHT;
@@ -57,24 +63,6 @@ pub struct ProtectedViewResults {
     pub eyes: Eyes,
 }
 
-/// Protected lines and their limits.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct ProtectedViewSection {
-    lines_protected: usize,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    lines_unproven: Option<usize>,
-    lines_blocked: usize,
-    lines_not_tested: usize,
-    cells_limited: usize,
-    area_limited_m2: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    lowest_limit_m: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    mean_limit_m: Option<f64>,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    viewpoint: Vec<ViewpointReport>,
-}
-
 impl ProtectedViewQuestion {
     /// Figures of the limits found on cells of `cell` metres, and the answer in words.
     fn sum_up(&self, found: &limits::ProtectedView, heights: &Raster<f32>, cell: f64, context: &mut Context) {
@@ -115,14 +103,11 @@ impl Ask for ProtectedViewQuestion {
     type Found = ProtectedViewResults;
 
     fn check(&self) -> Result<()> {
-        let invalid = |parameter, value: f64, expected| {
-            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
-        };
         if let Some(distance) = self.max_distance.filter(|distance| !(*distance > 0.0)) {
-            return invalid(Parameter::MaxDistance, distance, "above zero metres");
+            return Err(Error::invalid(Parameter::MaxDistance, distance, "above zero metres"));
         }
         if !self.observer_height.is_finite() {
-            return invalid(Parameter::HeightAboveGround, self.observer_height, "finite");
+            return Err(Error::invalid(Parameter::HeightAboveGround, self.observer_height, "finite"));
         }
         Ok(())
     }
@@ -151,7 +136,7 @@ impl Ask for ProtectedViewQuestion {
         let unproven = self.unproven.unwrap_or(UnprovenAs::Reported);
         let standing = stand(&self.observers, (self.observer_height, cells.ground), scene, context, control)?;
         let ground = scene.ground(cells.grid(scene)?, cells.ground, control)?;
-        context.ground(scene, &ground);
+        context.ground(scene.frame(), &ground);
         let blockers = scene.blockers(unproven, control)?;
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         let eyes =

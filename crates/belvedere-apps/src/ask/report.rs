@@ -1,29 +1,12 @@
 //! Report of how answers were found. Sections that a question does not have are left out.
 
-use super::cameras::CamerasReport;
-use super::comfort::ExposureSection;
-use super::depth_map::{PictureSection, ViewSection};
-use super::envelope::EnvelopeSection;
-use super::glare::GlareSection;
-use super::heat::HeatSection;
-use super::horizon::HorizonsSection;
-use super::how_sure::CertaintySection;
-use super::landmark::LandmarkSection;
-use super::line_of_sight::LineSection;
-use super::north::NorthReport;
-use super::observers::ObserversSection;
-use super::protected_view::ProtectedViewSection;
 use super::sections::{
-    GroundSection, LinesSection, LocationSection, MeasuresSection, NamedValues, PeriodSection, PlacesReport, PvSection,
-    RadiationSection, RoofsSection, SunSection, TreesSection,
+    CamerasReport, CertaintySection, EnvelopeSection, ExposureSection, FacesSection, GlareSection, GroundSection,
+    HeatSection, HorizonsSection, LandmarkSection, LineSection, LinesSection, LocationSection, MeasuresSection,
+    NamedValues, NetworkSection, NorthReport, ObserversSection, PeriodSection, PictureSection, PlaceSection,
+    PlacesReport, ProtectedViewSection, PvSection, RadiationSection, RoofsSection, SeenSection, SunSection,
+    SurveyPlanSection, TargetsSection, TowersSection, TreesSection, ViewSection, ViewsSection, WindowsSection,
 };
-use super::sight_network::NetworkSection;
-use super::single_places::PlaceSection;
-use super::survey_plan::SurveyPlanSection;
-use super::towers::TowersSection;
-use super::view_targets::{FacesSection, TargetsSection};
-use super::viewshed::SeenSection;
-use super::window_views::{ViewsSection, WindowsSection};
 use crate::eyes::EyesReport;
 use crate::landmark::LandmarkReport;
 use crate::survey_reliability::SurveyReliability;

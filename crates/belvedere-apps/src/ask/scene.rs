@@ -1,11 +1,13 @@
 //! The scene that questions are put to: a model with its cloud, and derived data that take long to make and several
 //! questions need.
 
+use super::context::Context;
+pub use super::known_ground::KnownGround;
+use super::remark::Remark;
 use super::terrain_heights::{remark_on_ground_cloud, remark_on_terrain};
 use super::viewer::remark_on_doubt;
-use super::{Context, Remark};
 use crate::horizon::convergence;
-use belvedere_core::ground::{Ground, GroundBySquares, GroundParams, GroundPoints, GroundReport, MapGrid};
+use belvedere_core::ground::{Ground, GroundBySquares, GroundParams, GroundPoints, MapGrid};
 use belvedere_core::model::SceneModel;
 use belvedere_core::query::{BlockRule, MedialScene, UnprovenAs};
 use belvedere_core::strips::move_strips;
@@ -86,14 +88,6 @@ impl Whereabouts<'_> {
 
 /// Boxes of areas of use are rounded, metres.
 const OUTSIDE_AREA: f64 = 2e3;
-
-/// The ground on a grid, and where it came from.
-pub struct KnownGround {
-    /// Its heights.
-    pub ground: Ground,
-    /// The points that show it.
-    pub report: GroundReport,
-}
 
 /// Maximum number of cells of a ground that is not made from the whole cloud once more: 25 times the need of one place.
 const FEW_CELLS: usize = 40_000;
@@ -182,11 +176,11 @@ impl Scene {
                 |axis: usize| f64::from((own.low[axis] - of_scene.high[axis]).max(of_scene.low[axis] - own.high[axis]));
             let distance = gap(0).max(0.0).hypot(gap(1).max(0.0));
             if GROUND_ELSEWHERE.is_exceeded_by(distance) {
-                return Err(Error::InvalidParameter {
-                    parameter: Parameter::Ground,
-                    value: format!("a cloud that lies {} beside the scene", distance_in_words(distance)),
-                    expected: "a cloud of the same place, in the coordinates of the scene",
-                });
+                return Err(Error::invalid(
+                    Parameter::Ground,
+                    format!("a cloud that lies {} beside the scene", distance_in_words(distance)),
+                    "a cloud of the same place, in the coordinates of the scene",
+                ));
             }
         }
         Ok(Self { ground_cloud, ground: Mutex::default(), ground_store: None, ..self })
@@ -224,11 +218,8 @@ impl Scene {
     /// [`Error::InvalidParameter`] where there are none.
     pub fn ground_cloud(&self) -> Result<&Arc<PointCloud>> {
         if self.ground_cloud.is_empty() {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Ground,
-                value: "unknown".to_owned(),
-                expected: "shown by points, and a ball file has none: give its cloud",
-            });
+            let expected = "shown by points, and a ball file has none: give its cloud";
+            return Err(Error::invalid(Parameter::Ground, "unknown", expected));
         }
         Ok(&self.ground_cloud)
     }
@@ -312,11 +303,11 @@ impl Scene {
         if self.model.pulses().is_some() {
             return Ok(());
         }
-        Err(Error::InvalidParameter {
+        Err(Error::invalid(
             parameter,
-            value: "given".to_owned(),
-            expected: "left out: it needs pulses, from a cloud with known scanner positions or an .npz ball file of such a cloud",
-        })
+            "given",
+            "left out: it needs pulses, from a cloud with known scanner positions or an .npz ball file of such a cloud",
+        ))
     }
 
     /// A warning where far terrain and the scene disagree on heights.

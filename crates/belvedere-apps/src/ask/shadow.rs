@@ -1,16 +1,19 @@
 //! Shadow: light of one or more suns at places.
 
-mod casters;
-
+use super::answers::{Answers, Ask};
+use super::casters::{casters, check_casters};
+use super::context::{Context, spread};
 use super::how_sure::HowSure;
+use super::places::Places;
+use super::remark::Remark;
+use super::scene::Scene;
 use super::sections::{MeasuresSection, PlacesReport};
 use super::sun::{MAX_LISTED_SUNS, NamedSun, Suns};
 use super::sun_and_sky::{Light, OnTargets};
 use super::sun_place::SunPlace;
-use super::trees::remark_on_leaves;
-use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
+use super::trees::{ThroughTrees, remark_on_leaves};
 use crate::shadow::{
-    Edges, LIT, ShadowSun, half_or_more, lit_probabilities, scene_shadow, sun_directions, unproven_light,
+    Edges, LIT, ShadowSun, UNPROVEN, half_or_more, lit_probabilities, scene_shadow, sun_directions, unproven_light,
 };
 use crate::targets::{Measure, ResultKind, Targets};
 use crate::tree_light::TreeLight;
@@ -19,7 +22,6 @@ use belvedere_data::control::Control;
 use belvedere_data::report::percent;
 use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Parameter, Result};
-pub use casters::{CASTER, caster_name};
 use serde::{Deserialize, Serialize};
 
 /// Places in the sun.
@@ -56,20 +58,17 @@ pub struct ShadowResults {
     pub suns: Vec<NamedSun>,
 }
 
-/// Name of the measure that says which light is unproven.
-pub const UNPROVEN: &str = "unproven";
-
 impl ShadowQuestion {
     /// Returns whether pulses are tested: for one sun that is a point. For many suns it would take long.
     fn proof(&self, suns: usize) -> Result<UnprovenAs> {
         let is_possible = suns == 1 && self.edges == Edges::Hard;
         match self.unproven {
             Some(UnprovenAs::Visible) => Ok(UnprovenAs::Visible),
-            Some(_) if !is_possible => Err(Error::InvalidParameter {
-                parameter: Parameter::UnprovenAs,
-                value: "given".to_owned(),
-                expected: "left out: pulses are tested only for one sun with hard edges",
-            }),
+            Some(_) if !is_possible => Err(Error::invalid(
+                Parameter::UnprovenAs,
+                "given",
+                "left out: pulses are tested only for one sun with hard edges",
+            )),
             Some(unproven) => Ok(unproven),
             None if is_possible => Ok(UnprovenAs::Reported),
             None => Ok(UnprovenAs::Visible),
@@ -142,7 +141,7 @@ impl Ask for ShadowQuestion {
     ) -> Result<Answers<ShadowResults>> {
         self.how_sure.check_scene(scene)?;
         if self.casters {
-            casters::check(places, scene)?;
+            check_casters(places, scene)?;
         }
         let suns = self.suns.resolve(&self.place, &scene.whereabouts(), context)?;
         let kinds: Vec<ShadowSun> = suns.iter().map(|sun| sun.sun).collect();
@@ -199,7 +198,7 @@ impl Ask for ShadowQuestion {
         }
         if self.casters {
             let of_suns = (&suns[..], &measures[..suns.len()]);
-            measures.extend(casters::casters(of_suns, &light, suffix, (scene, context), control)?);
+            measures.extend(casters(of_suns, &light, suffix, (scene, context), control)?);
         }
         let title = suns.first().map(|sun| sun.title.clone()).unwrap_or_default();
         Ok(Answers::new(ShadowResults { on: light.titled(title), suns }, measures))

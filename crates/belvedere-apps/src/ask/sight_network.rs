@@ -1,12 +1,13 @@
 //! Networks of lines of sight: which of several places see each other.
 
-use super::{NetworkPlaces, Remark};
+use super::places::NetworkPlaces;
+use super::remark::Remark;
+use super::sections::NetworkSection;
 use belvedere_core::query::{Answer, MedialScene};
 use belvedere_data::control::Control;
 use belvedere_data::report::{percent, rounded};
 use belvedere_data::vector::{length, sub};
 use belvedere_data::{Error, Parameter, Result};
-use serde::Serialize;
 
 /// Maximum number of pairs of a network: of 4472 places without a maximum distance.
 const MAX_PAIRS: usize = 10_000_000;
@@ -29,37 +30,16 @@ pub struct SightNetwork {
     pub groups: Vec<usize>,
 }
 
-/// A network of lines of sight, for reports.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct NetworkSection {
-    places: usize,
-    /// Pairs that see each other.
-    links: usize,
-    /// Percentage of the tested pairs.
-    links_percent: f64,
-    /// Groups of places that are linked, directly or through others.
-    groups: usize,
-    largest_group: usize,
-    places_without_link: usize,
-    /// The place with the maximum number of links, and that number.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    max_links: Option<(String, usize)>,
-    /// Mean length of the links, metres.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    mean_link_m: Option<f64>,
-}
-
 impl NetworkPlaces {
     /// Checks the number of places and their maximum distance.
     pub(super) fn check(&self) -> Result<()> {
-        let refused = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         if self.places.len() < 2 {
             let value = if self.places.is_empty() { "empty" } else { "of one place" };
-            return refused(Parameter::Network, value.to_owned(), "of two places or more");
+            return Err(Error::invalid(Parameter::Network, value, "of two places or more"));
         }
         match self.max_distance {
             Some(limit) if !(limit > 0.0 && limit.is_finite()) => {
-                refused(Parameter::MaxDistance, limit.to_string(), "finite and above zero metres")
+                Err(Error::invalid(Parameter::MaxDistance, limit, "finite and above zero metres"))
             }
             _ => Ok(()),
         }
@@ -85,19 +65,13 @@ impl SightNetwork {
             let near = beside.filter(|&&b| along(b, 0).hypot(along(b, 1)) <= limit);
             pairs.extend(near.map(|&b| [a.min(b), a.max(b)]));
             if pairs.len() > MAX_PAIRS {
-                return Err(Error::InvalidParameter {
-                    parameter: Parameter::Network,
-                    value: format!("of {} places", places.len()),
-                    expected: "of at most 10 million pairs: give fewer places, or a maximum distance",
-                });
+                let expected = "of at most 10 million pairs: give fewer places, or a maximum distance";
+                return Err(Error::invalid(Parameter::Network, format!("of {} places", places.len()), expected));
             }
         }
         if let (true, Some(limit)) = (pairs.is_empty(), given.max_distance) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::MaxDistance,
-                value: limit.to_string(),
-                expected: "at least the distance of the two nearest places, metres: no pair is nearer",
-            });
+            let expected = "at least the distance of the two nearest places, metres: no pair is nearer";
+            return Err(Error::invalid(Parameter::MaxDistance, limit, expected));
         }
         pairs.sort_unstable();
         let name = |row: usize| match given.names.get(row).filter(|name| !name.is_empty()) {

@@ -1,11 +1,13 @@
 //! Sky view: how much of the sky places see.
 
+use super::answers::{Answers, Ask};
+use super::context::{Context, spread};
 use super::how_sure::{check_interval, check_interval_scene};
-use super::scene::Whereabouts;
+use super::places::Places;
+use super::scene::{Scene, Whereabouts};
 use super::sections::{MeasuresSection, PlacesReport};
 use super::sun_and_sky::{Light, OnTargets};
-use super::trees::remark_on_leaves;
-use super::{Answers, Ask, Context, Places, Scene, ThroughTrees, spread};
+use super::trees::{ThroughTrees, remark_on_leaves};
 use crate::sky_view::{SKY_DIRECTIONS, SkyDirections, scene_sky_view};
 use crate::sum_errors::Intervals;
 use crate::targets::Measure;

@@ -1,9 +1,10 @@
 //! Suns and days that a user chooses.
 
+use super::context::Context;
+use super::remark::Remark;
 use super::scene::Whereabouts;
 use super::sections::{SunAt, SunSection};
 use super::sun_place::{SunPlace, remark_on_clock};
-use super::{Context, Remark};
 use crate::shadow::ShadowSun;
 use crate::sun::{Date, DayParams, Period, Site, SunDay, Zone, sun_days, sun_position_with};
 use crate::sun_hours::RuleDays;
@@ -92,7 +93,7 @@ pub fn check_sun([azimuth, elevation]: [f64; 2], range: SunRange) -> Result<()> 
         SunRange::NotBelowHorizon => "an azimuth of 0 to 360 degrees and an elevation of 0 to 90",
         SunRange::AboveHorizon => "an azimuth of 0 to 360 degrees and an elevation above 0 and at most 90",
     };
-    refused(Parameter::SunDirection, format!("{azimuth},{elevation}"), expected)
+    Err(Error::invalid(Parameter::SunDirection, format!("{azimuth},{elevation}"), expected))
 }
 
 /// Maximum declination of the sun, degrees, with additions for air, grids and rounded numbers.
@@ -117,10 +118,6 @@ pub fn remark_on_sun(site: Option<Site>, [azimuth, elevation]: [f64; 2]) -> Opti
         true => Remark::warning("sun-never-there", format!("{text}: azimuth comes first, then elevation")),
         false => Remark::note("sun-never-there", text),
     })
-}
-
-fn refused<T>(parameter: Parameter, value: impl Into<String>, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { parameter, value: value.into(), expected })
 }
 
 impl Days {
@@ -152,7 +149,7 @@ impl Days {
     pub fn check(&self, place: &SunPlace) -> Result<()> {
         let anywhere = place.check()?;
         if let Some(minutes) = self.time_step_min.filter(|minutes| !(1.0 / 6.0..=60.0).contains(minutes)) {
-            return refused(Parameter::TimeStep, format!("{minutes} minutes"), "1/6 to 60 minutes");
+            return Err(Error::invalid(Parameter::TimeStep, format!("{minutes} minutes"), "1/6 to 60 minutes"));
         }
         self.params(place).validate()?;
         let zone = place.any_zone(&anywhere, self.times())?;
@@ -166,7 +163,7 @@ impl Days {
     pub fn dates_of(&self, days: RuleDays, site: &Site, zone: &Zone) -> Result<Vec<Date>> {
         match self.year {
             Some(year) => days.dates(year, site, zone),
-            None => refused(Parameter::Year, "missing", "given for days that have none"),
+            None => Err(Error::invalid(Parameter::Year, "missing", "given for days that have none")),
         }
     }
 
@@ -178,11 +175,13 @@ impl Days {
         if let Some([from, to]) = &self.between {
             return Ok(Some(match (Date::parse(from), Date::parse(to)) {
                 (Ok(first), Ok(last)) if last < first => {
-                    return refused(Parameter::LastDay, last.to_string(), "the first day or a later one");
+                    return Err(Error::invalid(Parameter::LastDay, last, "the first day or a later one"));
                 }
                 (Ok(first), Ok(last)) => Period::Days(first.to(last).collect()),
                 (Err(_), Err(_)) => Period::Between([place.instant(from, zone)?, place.instant(to, zone)?]),
-                _ => return refused(Parameter::Period, format!("{from} to {to}"), "two days, or two times"),
+                _ => {
+                    return Err(Error::invalid(Parameter::Period, format!("{from} to {to}"), "two days, or two times"));
+                }
             }));
         }
         let mut dates = Vec::new();
@@ -198,7 +197,7 @@ impl Days {
     /// The times at which the sun is up, each a number of steps after the clock begins the day: 07:00, 07:30 and so on.
     fn instants(&self, place: &SunPlace, site: &Site, zone: &Zone) -> Result<Vec<f64>> {
         let Some(period) = self.period(place, site, zone)? else {
-            return refused(Parameter::Period, "missing", "given as days or as two times");
+            return Err(Error::invalid(Parameter::Period, "missing", "given as days or as two times"));
         };
         let params = self.params(place);
         let days = sun_days_above(site, zone, &period, &params)?;
@@ -209,13 +208,10 @@ impl Days {
             return Ok(instants);
         }
         if days.iter().any(|day| !day.steps.is_empty()) {
-            return refused(
-                Parameter::TimeStep,
-                format!("{} minutes", params.step / 60.0),
-                "shorter: the sun is up at no such time of the clock in this period",
-            );
+            let expected = "shorter: the sun is up at no such time of the clock in this period";
+            return Err(Error::invalid(Parameter::TimeStep, format!("{} minutes", params.step / 60.0), expected));
         }
-        refused(Parameter::Period, "without sun", "other days: the sun does not rise there in this period")
+        Err(Error::invalid(Parameter::Period, "without sun", "other days: the sun does not rise there in this period"))
     }
 }
 
@@ -253,7 +249,7 @@ pub(super) fn check_min_elevation(rises: bool, params: &DayParams) -> Result<()>
         return Ok(());
     }
     let lowest = format!("{} degrees", params.min_elevation.to_degrees());
-    refused(Parameter::MinSunElevation, lowest, "lower: the sun stays below it there in this period")
+    Err(Error::invalid(Parameter::MinSunElevation, lowest, "lower: the sun stays below it there in this period"))
 }
 
 impl Suns {

@@ -1,10 +1,11 @@
 //! Parts common to questions about sun and sky: targets, obstacles, and light through trees.
 
-use super::places::test_edge;
+use super::context::Context;
+use super::places::{Places, test_edge};
+use super::remark::Remark;
 use super::scene::Scene;
 use super::sections::LinesSection;
 use super::trees::ThroughTrees;
-use super::{Context, Places, Remark};
 use crate::rows::Obstacles;
 use crate::targets::Targets;
 use crate::tree_light::{CrownLight, TreeLight};

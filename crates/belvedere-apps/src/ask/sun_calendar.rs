@@ -1,13 +1,15 @@
 //! Sun calendars: from when to when the sun shines at windows and places, and what shades them otherwise.
 
-use super::places::test_edge;
+use super::answers::{Answers, Ask};
+use super::context::{Context, spread};
+use super::places::{Places, test_edge};
+use super::scene::Scene;
 use super::sections::{LinesSection, MeasuresSection, PeriodSection, PlacesReport};
+use super::seen_kinds::kinds_of_balls;
 use super::sun::{Days, sun_days_above};
 use super::sun_hours::{days_in_words, days_of_rule, missing_period, remark_on_hours_of_rules};
 use super::sun_place::SunPlace;
-use super::window_views::kinds_of_balls;
 use super::windows::GivenWindows;
-use super::{Answers, Ask, Context, Places, Scene, spread};
 use crate::sun::{Binning, Date, Site, SunSchedule, Zone};
 use crate::sun_calendar::{CalendarDay, SunObstacle, SunStretch, sun_calendars};
 use crate::sun_hours::SunRule;
@@ -124,7 +126,7 @@ impl SunCalendarQuestion {
 
 fn refused<T>(value: &str) -> Result<T> {
     let expected = "windows one by one, or places";
-    Err(Error::InvalidParameter { parameter: Parameter::Targets, value: value.to_owned(), expected })
+    Err(Error::invalid(Parameter::Targets, value, expected))
 }
 
 impl Ask for SunCalendarQuestion {

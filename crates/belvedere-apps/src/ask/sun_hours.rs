@@ -4,14 +4,17 @@ mod hourly_sun;
 
 pub use hourly_sun::HourlySun;
 
+use super::answers::{Answers, Ask};
+use super::context::{Context, spread};
 use super::how_sure::{check_interval, check_interval_scene, knows_intervals};
-use super::scene::Whereabouts;
+use super::places::Places;
+use super::remark::Remark;
+use super::scene::{Scene, Whereabouts};
 use super::sections::{MeasuresSection, NamedValues, PeriodSection, PlacesReport};
 use super::sun::{Days, sun_days_above};
 use super::sun_and_sky::{Light, OnTargets};
 use super::sun_place::{SunPlace, remark_on_solar_hours};
-use super::trees::remark_on_leaves;
-use super::{Answers, Ask, Context, Places, Remark, Scene, ThroughTrees, spread};
+use super::trees::{ThroughTrees, remark_on_leaves};
 use crate::sum_errors::Intervals;
 use crate::sun::{Binning, DayParams, Period, Site, SunDay, SunSchedule, Zone};
 use crate::sun_hours::{SunPlan, SunRule, WindowClock, scene_sun_hours};
@@ -50,9 +53,7 @@ pub struct SunHoursQuestion {
 /// # Errors
 /// [`Error::InvalidParameter`] for a rule that cannot be read, is given twice, and for more than eight of one's own.
 pub fn rules(texts: &[String]) -> Result<Vec<(&'static str, SunRule)>> {
-    let refused = |value: &str, expected| {
-        Err(Error::InvalidParameter { parameter: Parameter::Rule, value: value.to_owned(), expected })
-    };
+    let refused = |value: &str, expected| Err(Error::invalid(Parameter::Rule, value, expected));
     let mut own = OWN_RULES.into_iter();
     let mut rules: Vec<(&'static str, SunRule)> = Vec::new();
     for text in texts {
@@ -114,11 +115,7 @@ impl SunHoursQuestion {
 }
 
 pub(super) fn missing_period<T>() -> Result<T> {
-    Err(Error::InvalidParameter {
-        parameter: Parameter::Period,
-        value: "missing".to_owned(),
-        expected: "given as days, as two times, or by a rule",
-    })
+    Err(Error::invalid(Parameter::Period, "missing", "given as days, as two times, or by a rule"))
 }
 
 /// Returns the light that a rule counts on each of its days, and the parameters of their division: with its minimum

@@ -1,9 +1,10 @@
 //! Location of a scene on earth, its clock and its air.
 
+use super::context::Context;
 use super::north::North;
+use super::remark::Remark;
 use super::scene::{Scene, Whereabouts};
 use super::sections::LocationSection;
-use super::{Context, Remark};
 use crate::sun::{Refraction, Site, SiteFrom, Zone, ZoneOfPlace, parse_instant, sun_position_with, zone_of_instant};
 use belvedere_data::contradiction::CLOCK_OF_ZONE;
 use belvedere_data::crs::evidence::{CONTRADICTION_DISTANCE, distance_in_words, distance_on_earth, place_in_words};
@@ -90,10 +91,6 @@ pub(super) fn remark_on_solar_hours(happens: &str, hours: Option<[f64; 2]>, zone
     Some(Remark::warning("hours-in-solar-time", text).with("from_hour", from).with("to_hour", to))
 }
 
-fn refused<T>(parameter: Parameter, value: impl Into<String>, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { parameter, value: value.into(), expected })
-}
-
 impl SunPlace {
     /// Checks the values that do not depend on a scene.
     ///
@@ -118,7 +115,7 @@ impl SunPlace {
         let unknown = |value: String| {
             let expected =
                 "given as latitude and longitude, or follow from a reference system of the scene (EPSG:CODE)";
-            refused(Parameter::Location, value, expected)
+            Err(Error::invalid(Parameter::Location, value, expected))
         };
         let found = Site::of_scene(frame, bounds, given, elsewhere).or_else(|error| match error {
             Error::MissingAttribute { .. } => unknown("unknown".to_owned()),
@@ -133,7 +130,7 @@ impl SunPlace {
         match self.distance_from_crs(frame, bounds) {
             Some(beside) if beside.distance > CONTRADICTION_DISTANCE => {
                 let expected = "near the scene, or left out; where the reference system is wrong, give the right one with its override";
-                refused(Parameter::Location, beside.to_string(), expected)
+                Err(Error::invalid(Parameter::Location, beside, expected))
             }
             _ => Ok(found),
         }

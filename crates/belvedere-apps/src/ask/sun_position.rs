@@ -1,7 +1,10 @@
 //! Position of the sun above a scene.
 
+use super::answers::{Answers, Ask};
+use super::context::Context;
+use super::places::Places;
+use super::scene::Scene;
 use super::sun_place::SunPlace;
-use super::{Answers, Ask, Context, Places, Scene};
 use crate::sun::sun_position_with;
 use belvedere_data::Result;
 use belvedere_data::control::Control;

@@ -1,6 +1,6 @@
 //! Remarks on the survey itself: lines that do not fit, surveys years apart, ground points only.
 
-use super::Remark;
+use super::remark::Remark;
 use belvedere_core::model::{DatedSurvey, SurveyFindings};
 use belvedere_core::strips::StripReport;
 use belvedere_data::Frame;

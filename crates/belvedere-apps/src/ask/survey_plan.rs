@@ -1,11 +1,19 @@
 //! Survey plan: the stations that would prove most of the unproven lines of sight of a question.
 
-use super::cameras::{CameraSite, Candidates};
-use super::observers::{Reach, Standing, check_height, skip_unfit, stand};
-use super::sections::{LinesSection, PairsSection};
+use super::answers::{Answers, Ask};
+use super::cameras::CameraSite;
+use super::cameras::Candidates;
+use super::cells::GridCells;
+use super::context::Context;
+use super::line_of_sight::LinesOfSightQuestion;
+use super::observers::{check_height, skip_unfit, stand};
+use super::places::Places;
+use super::remark::Remark;
+use super::scene::Scene;
+use super::sections::{LinesSection, PairsSection, StationSection, SurveyPlanSection};
+use super::standing::{Reach, Standing};
 use super::sun::Suns;
 use super::sun_place::SunPlace;
-use super::{Answers, Ask, Context, GridCells, LinesOfSightQuestion, Places, Remark, Scene};
 use crate::eyes::EyesReport;
 use crate::survey_plan::{STATION_HEIGHT, ScannerParams, SurveyGain, SurveyPlan, missing_pulses, plan_survey};
 use crate::viewshed::OBSERVER_HEIGHT;
@@ -100,31 +108,6 @@ pub struct PlannedStation {
     pub alone: SurveyGain,
     /// Gain together with those chosen before it, for one that was chosen.
     pub together: Option<SurveyGain>,
-}
-
-/// Figures of a plan.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct SurveyPlanSection {
-    candidates: EyesReport,
-    max_range_m: f64,
-    angle_step_deg: f64,
-    unproven_lines: usize,
-    unproven_m: f64,
-    stations: Vec<StationSection>,
-    settled_percent: f64,
-    all_candidates_settle_percent: f64,
-    at_most_below_best_percent: f64,
-}
-
-/// A station that was chosen, with the sums of all up to it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-struct StationSection {
-    position: [f64; 3],
-    settled_alone: usize,
-    settled_lines: usize,
-    expected_lines: f64,
-    settled_percent: f64,
-    proven_m: f64,
 }
 
 impl SurveyPlanResults {
@@ -296,11 +279,7 @@ impl Ask for SurveyPlanQuestion {
         check_height(self.target_height)?;
         self.suns.as_ref().map_or(Ok(()), |suns| suns.check(&self.place))?;
         if self.count == 0 {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::StationCount,
-                value: "0".to_owned(),
-                expected: "1 or more",
-            });
+            return Err(Error::invalid(Parameter::StationCount, "0", "1 or more"));
         }
         self.scanner().validate()
     }
@@ -335,7 +314,7 @@ impl Ask for SurveyPlanQuestion {
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None).with_pairs(section));
         let cells = GridCells { cell: Some(GROUND_CELL), ..GridCells::default() };
         let known = scene.ground(cells.grid(scene)?, self.ground, control)?;
-        context.ground(scene, &known);
+        context.ground(scene.frame(), &known);
         let site = CameraSite { scene, blockers: &blockers, ground: &known.ground, grid_north: 0.0 };
         let height = self.station_height.unwrap_or(STATION_HEIGHT);
         let (eyes, candidates) = self.candidates.eyes((height, self.ground), &site, context, control)?;

@@ -1,6 +1,6 @@
 //! Heights of far terrain against those of the scene: a raster in feet is known by its ratio.
 
-use super::Remark;
+use super::remark::Remark;
 use belvedere_data::ElevationGrid;
 use belvedere_data::contradiction::{FoundContradiction, GROUND_HEIGHTS, TERRAIN_HEIGHTS};
 use belvedere_data::report::rounded;

@@ -1,8 +1,15 @@
 //! Towers: how much of wind turbines, masts and other tall things is seen.
 
-use super::observers::{Reach, Standing, check_height, stand};
-use super::sections::{LinesSection, MeasuresSection, PlacesReport};
-use super::{Answers, Ask, AzimuthNorth, Context, North, OnTargets, Places, Remark, Scene};
+use super::answers::{Answers, Ask};
+use super::context::Context;
+use super::north::{AzimuthNorth, North};
+use super::observers::{check_height, stand};
+use super::places::Places;
+use super::remark::Remark;
+use super::scene::Scene;
+use super::sections::{LinesSection, MeasuresSection, PlacesReport, TowerSection, TowersSection};
+use super::standing::{Reach, Standing};
+use super::sun_and_sky::OnTargets;
 use crate::targets::Measure;
 use crate::towers::{MAX_SCHEMES, Tower, TowersParams, TowersSeen, TowersView, towers_seen};
 use crate::viewshed::{OBSERVER_HEIGHT, Observer, SightLimits, far_targets, terrain_within_reach};
@@ -89,36 +96,6 @@ pub struct FarTowers {
     pub measures: Vec<Measure>,
 }
 
-/// Views of towers, for reports.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TowersSection {
-    /// Number of towers.
-    towers: usize,
-    /// Their heights together, metres.
-    height_m: f64,
-    /// Schemes, in the order of the bits of the band `schemes`.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    schemes: Vec<String>,
-    /// Each tower.
-    each: Vec<TowerSection>,
-}
-
-/// A tower, for reports.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-struct TowerSection {
-    name: String,
-    /// Height of its foot, in the coordinates of the file.
-    base: f64,
-    /// Shares of the places that see a part of it, its tip, and its hub, percent.
-    visible_percent: f64,
-    tip_percent: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    hub_percent: Option<f64>,
-    /// The same of the cells of far terrain.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    far_visible_percent: Option<f64>,
-}
-
 impl GivenTower {
     /// Its name; its number, from 1, where it has none.
     fn name(&self, number: usize) -> String {
@@ -128,7 +105,7 @@ impl GivenTower {
     fn check(&self, number: usize) -> Result<()> {
         let refused = |value: String, expected| {
             let value = format!("{} with {value}", self.name(number));
-            Err(Error::InvalidParameter { parameter: Parameter::Tower, value, expected })
+            Err(Error::invalid(Parameter::Tower, value, expected))
         };
         if !(self.tip > 0.0 && self.tip <= MAX_HEIGHT) {
             return refused(format!("a tip of {} m", self.tip), "a tip above its base, at most 1000 metres");
@@ -165,7 +142,7 @@ impl TowersQuestion {
         let one = |(number, (given, foot)): (usize, (&GivenTower, [f64; 3]))| {
             let refused = |value: &str, expected| {
                 let value = format!("{}, {value}", given.name(number));
-                Err(Error::InvalidParameter { parameter: Parameter::Tower, value, expected })
+                Err(Error::invalid(Parameter::Tower, value, expected))
             };
             if !((foot[0] - middle[0]).hypot(foot[1] - middle[1]) <= MAX_AWAY) {
                 return refused("more than 150 km from the cloud", "in the coordinates of the cloud, or in degrees");
@@ -191,9 +168,7 @@ impl TowersQuestion {
         (blockers, towers): (&MedialScene, &[Tower]),
         control: &Control<'_>,
     ) -> Result<(FarTowers, TowersSeen)> {
-        let invalid = |value: &str, expected| {
-            Err(Error::InvalidParameter { parameter: Parameter::Terrain, value: value.to_owned(), expected })
-        };
+        let invalid = |value: &str, expected| Err(Error::invalid(Parameter::Terrain, value, expected));
         let Some(terrain) = blockers.far_terrain().grid() else {
             return invalid("missing", "given, where cells of it are wanted");
         };
@@ -277,10 +252,9 @@ impl Ask for TowersQuestion {
         check_height(self.observer_height)?;
         if let Some(distance) = self.max_distance.filter(|distance| !(*distance > 0.0)) {
             let (parameter, value) = (Parameter::MaxDistance, distance.to_string());
-            return Err(Error::InvalidParameter { parameter, value, expected: "above zero metres" });
+            return Err(Error::invalid(parameter, value, "above zero metres"));
         }
-        let refused =
-            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Tower, value, expected });
+        let refused = |value: String, expected| Err(Error::invalid(Parameter::Tower, value, expected));
         if self.towers.is_empty() {
             return refused("missing".to_owned(), "given");
         }
@@ -301,16 +275,12 @@ impl Ask for TowersQuestion {
         let height = self.observer_height.unwrap_or(OBSERVER_HEIGHT);
         if self.wirelines && matches!(places, Places::Cells(_) | Places::Own(_) | Places::Mesh(..)) {
             let (parameter, value) = (Parameter::Targets, "cells, a whole cloud or a mesh".to_owned());
-            return Err(Error::InvalidParameter {
-                parameter,
-                value,
-                expected: "single places, where wirelines are wanted",
-            });
+            return Err(Error::invalid(parameter, value, "single places, where wirelines are wanted"));
         }
         let mut targets = places.at_height(height).targets_within(Reach::FarTerrain, scene, context, control)?;
         if self.wirelines && targets.len() > MAX_WIRELINES {
             let (parameter, value) = (Parameter::ObserverCount, targets.len().to_string());
-            return Err(Error::InvalidParameter { parameter, value, expected: "at most 100, for wirelines" });
+            return Err(Error::invalid(parameter, value, "at most 100, for wirelines"));
         }
         let blockers = scene.blockers(UnprovenAs::Reported, control)?;
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));

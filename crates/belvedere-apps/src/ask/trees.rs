@@ -1,9 +1,10 @@
 //! What gets through trees, as a user chooses it.
 
+use super::context::Context;
+use super::remark::Remark;
 use super::scene::{Scene, Whereabouts};
 use super::sections::TreesSection;
 use super::sun_place::SunPlace;
-use super::{Context, Remark};
 use crate::tree_light::{CrownLight, CrownShadows, Leaves, Transmissivity, TreeLight, measured_density};
 use belvedere_core::model::FlightDays;
 use belvedere_data::control::Control;
@@ -122,5 +123,5 @@ pub fn remark_on_leaves(crowns: CrownLight, factors: impl IntoIterator<Item = f6
 }
 
 fn refused<T>(value: &str, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { parameter: Parameter::ThroughTrees, value: value.to_owned(), expected })
+    Err(Error::invalid(Parameter::ThroughTrees, value, expected))
 }

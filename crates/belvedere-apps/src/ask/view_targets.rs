@@ -1,14 +1,13 @@
 //! Targets of one view: points, or the faces of a mesh, from the sun, along a direction, from a camera or all around.
 
+use super::answers::{Answers, Ask};
+use super::context::Context;
 use super::depth_map::ViewFrom;
-use super::how_sure::HowSure;
-use super::places::{moved, other};
+use super::how_sure::{HowSure, remark_from_ground};
+use super::places::{Places, moved, other};
 use super::scene::Scene;
-use super::sections::LinesSection;
-use super::{
-    Answers, Ask, Context, Places, remark_from_ground, remark_on_inside, remark_on_outside, remark_on_targets_beside,
-    remark_on_targets_inside,
-};
+use super::sections::{AnsweredBy, FacesSection, LinesSection, TargetsSection};
+use super::viewer::{remark_on_inside, remark_on_outside, remark_on_targets_beside, remark_on_targets_inside};
 use crate::targets::{Measure, MeshParams};
 use belvedere_core::depth::{ItemBuffer, depth_map};
 use belvedere_core::query::{
@@ -53,60 +52,6 @@ pub struct ViewTargetsResults {
     pub answers: Vec<Answer>,
     /// Visible area of each face of a mesh.
     pub faces: Vec<SeenArea>,
-}
-
-/// Number of points for each answer, and the way they were found.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TargetsSection {
-    targets: usize,
-    visible: usize,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    unproven: Option<usize>,
-    blocked: usize,
-    /// Unproven answers among the blocked ones.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    unproven_within: Option<usize>,
-    outside_view: usize,
-    outside_cloud: usize,
-    inside_obstacle: usize,
-    visible_percent: f64,
-    #[serde(flatten)]
-    by: AnsweredBy,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
-enum AnsweredBy {
-    DepthMap {
-        method: &'static str,
-        depth_bias_m: f64,
-    },
-    LinesOfSight {
-        depth_bias_m: f64,
-        shell_m: f64,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        balls_around_eye: Option<usize>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        proof_distance_m: Option<f64>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        max_unproven_length_m: Option<f64>,
-        method: &'static str,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        decided_by_map_percent: Option<f64>,
-    },
-}
-
-/// Visible area of the faces of a mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct FacesSection {
-    count: usize,
-    spacing_m: f64,
-    sample_points: usize,
-    area_m2: f64,
-    visible_m2: f64,
-    standard_error_m2: f64,
-    visible_percent: f64,
-    unproven_m2: f64,
 }
 
 /// Views of one viewer.

@@ -1,6 +1,6 @@
 //! Remarks on targets of one viewer, for all tests.
 
-use super::Remark;
+use super::remark::Remark;
 use belvedere_core::query::{BlockingTriangles, Coverage, MedialScene};
 use belvedere_data::contradiction::{FoundContradiction, REFERENCE_SYSTEM, UP_AXIS};
 use belvedere_data::{Bounds, Frame, Mesh};

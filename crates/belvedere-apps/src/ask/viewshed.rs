@@ -1,83 +1,41 @@
 //! Viewshed: cells, points and far terrain that observers see, or the places from where a target is seen.
 
 mod limits;
+mod question;
 mod seen_targets;
 mod spread;
 
 pub use limits::{StandingObserver, ViewLimits};
-pub use seen_targets::{FarSeen, SeenSection};
+pub use question::{ViewshedQuestion, ViewshedTargets};
+pub use seen_targets::FarSeen;
 
-use super::how_sure::HowSure;
-use super::north::North;
-use super::observers::{Eyes, ObserversSection, Reach, check_height, note_enclosed, remark_on_footing, skip_unfit};
-use super::scene::KnownGround;
-use super::sections::LinesSection;
-use super::{Answers, Ask, Context, GridCells, Places, Remark, Scene};
+use super::answers::{Answers, Ask};
+use super::cells::GridCells;
+use super::context::Context;
+use super::known_ground::KnownGround;
+use super::observers::{Eyes, check_height, note_enclosed, remark_on_footing, skip_unfit};
+use super::places::Places;
+use super::remark::Remark;
+use super::scene::Scene;
+use super::sections::{LinesSection, ObserversSection, SeenSection};
+use super::standing::Reach;
 use crate::eyes::{EyesReport, fault_of_target};
-use crate::targets::{Measure, TARGET_LIFT, Targets, set_on_ground, set_on_terrain};
+use crate::targets::{Measure, Targets, set_on_ground, set_on_terrain};
 use crate::viewshed::{
-    OBSERVER_HEIGHT, Observer, SightLimits, Viewshed as Seen, ViewshedParams, answers_of_bands, box_within_reach,
-    cell_for, far_targets, terrain_within_reach, tested_height,
+    Observer, SightLimits, Viewshed as Seen, ViewshedParams, answers_of_bands, box_within_reach, cell_for, far_targets,
+    terrain_within_reach, tested_height,
 };
-use belvedere_core::ground::{Ground, GroundPoints, MapGrid};
-use belvedere_core::query::{Answer, EarthParams, MedialScene, UnprovenAs};
+use belvedere_core::ground::{Ground, MapGrid};
+use belvedere_core::query::{Answer, MedialScene, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::report::rounded;
 use belvedere_data::{ElevationGrid, Error, Frame, Parameter, Result};
 use seen_targets::{Sights, Things};
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Maximum number of eyes below the ground that are named one by one.
 const MAX_NAMED: usize = 5;
-
-/// Places visible from observers, or from which a target is visible.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct ViewshedQuestion {
-    /// Observers; for a reverse viewshed the one target.
-    #[serde(skip)]
-    pub observers: Vec<StandingObserver>,
-    /// True for a reverse viewshed: observers stand in all cells, and look at one target. Default: false.
-    pub reverse: bool,
-    /// Height of observers above the ground, metres, 0 or more; `None` for 1.7.
-    pub observer_height: Option<f64>,
-    /// Height of targets above the ground, metres, 0 or more; `None` for 0.1.
-    pub target_height: Option<f64>,
-    /// Limits of observers without their own. Default: none.
-    pub limits: ViewLimits,
-    /// The north that azimuths count from.
-    pub north: North,
-    /// Curvature of the earth on lines of sight.
-    pub earth: EarthParams,
-    /// Treatment of unproven targets; `None` to report them if pulses are known.
-    pub unproven: Option<UnprovenAs>,
-    /// Request for the certainty of answers for cells and points.
-    pub how_sure: HowSure,
-    /// Side of a cell, metres, above 0; `None` for 0.5, doubled until there are at most 4 million cells.
-    pub cell: Option<f64>,
-    /// Source of ground points.
-    pub ground: GroundPoints,
-    /// Targets. Default: cells.
-    pub targets: Vec<ViewshedTargets>,
-    /// True to keep a mask of the cells of each observer. Default: counts only.
-    pub masks: bool,
-    /// Height above the ground up to which lowest visible heights are computed, metres, 0 or more; `None` for none.
-    pub max_height: Option<f64>,
-}
-
-/// Targets of a viewshed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ViewshedTargets {
-    /// Cells on the ground.
-    Cells,
-    /// The points that show the ground, which are those of the scene unless its ground comes from another cloud.
-    Points,
-    /// Cells of the terrain beyond the cloud.
-    FarTerrain,
-}
 
 /// Results of a viewshed.
 pub struct ViewshedResults {
@@ -102,59 +60,7 @@ pub struct ViewshedResults {
     pub heights: Option<Raster<f32>>,
 }
 
-impl Default for ViewshedQuestion {
-    fn default() -> Self {
-        Self {
-            observers: Vec::new(),
-            reverse: false,
-            observer_height: None,
-            target_height: None,
-            limits: ViewLimits::default(),
-            north: North::default(),
-            earth: EarthParams::default(),
-            unproven: None,
-            how_sure: HowSure::default(),
-            cell: None,
-            ground: GroundPoints::default(),
-            targets: vec![ViewshedTargets::Cells],
-            masks: false,
-            max_height: None,
-        }
-    }
-}
-
 impl ViewshedQuestion {
-    fn who(&self) -> &'static str {
-        if self.reverse { "target" } else { "observer" }
-    }
-
-    fn who_is_blind(&self) -> &'static str {
-        if self.reverse { "no cell sees the target" } else { "the observer sees no cell" }
-    }
-
-    /// Returns advice for a view in which nothing is visible.
-    fn way_to_see(&self) -> &'static str {
-        match self.reverse {
-            true => "give a greater height above its surface",
-            false => "does it stand below a tree or between obstacles?",
-        }
-    }
-
-    fn wants(&self, targets: ViewshedTargets) -> bool {
-        self.targets.contains(&targets)
-    }
-
-    fn unproven(&self) -> UnprovenAs {
-        self.unproven.unwrap_or(UnprovenAs::Reported)
-    }
-
-    /// Height above the ground of the given places, and of the targets in cells, metres.
-    fn heights(&self) -> [f64; 2] {
-        let [observer, target] =
-            [self.observer_height.unwrap_or(OBSERVER_HEIGHT), self.target_height.unwrap_or(TARGET_LIFT)];
-        if self.reverse { [target, observer] } else { [observer, target] }
-    }
-
     /// The cells that it looks at, on the ground.
     #[must_use]
     pub fn grid_cells(&self) -> GridCells {
@@ -207,8 +113,7 @@ impl ViewshedQuestion {
     }
 
     fn check_observers(&self) -> Result<()> {
-        let invalid =
-            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Observer, value, expected });
+        let invalid = |value: String, expected| Err(Error::invalid(Parameter::Observer, value, expected));
         match self.observers.len() {
             0 => invalid("missing".to_owned(), "given: who looks, or a target"),
             count @ 2.. if self.reverse => invalid(format!("one of {count} targets"), "the only one"),
@@ -276,11 +181,11 @@ impl ViewshedQuestion {
         let who = self.who();
         let far = eyes.iter().position(|&eye| blockers.is_on_far_terrain(eye));
         if let (Some(row), Some(_)) = (far, self.max_height) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::VisibleHeights,
-                value: format!("wanted from {who} {}, on the terrain beyond the cloud", row + 1),
-                expected: "wanted from places in the cloud",
-            });
+            return Err(Error::invalid(
+                Parameter::VisibleHeights,
+                format!("wanted from {who} {}, on the terrain beyond the cloud", row + 1),
+                "wanted from places in the cloud",
+            ));
         }
         if far.is_none() && !self.wants(ViewshedTargets::FarTerrain) {
             let text =
@@ -337,9 +242,7 @@ impl ViewshedQuestion {
 
     /// The terrain beyond the cloud that observers may see.
     fn far_cells(&self, blockers: &MedialScene, observers: &[Observer]) -> Result<ElevationGrid> {
-        let invalid = |value: &str, expected| {
-            Err(Error::InvalidParameter { parameter: Parameter::Terrain, value: value.to_owned(), expected })
-        };
+        let invalid = |value: &str, expected| Err(Error::invalid(Parameter::Terrain, value, expected));
         let Some(terrain) = blockers.far_terrain().grid() else {
             return invalid("missing", "given, where cells of it are among the targets");
         };
@@ -365,11 +268,8 @@ impl Ask for ViewshedQuestion {
             (Parameter::Elevation, self.limits.elevation_range_deg),
         ];
         if let Some((parameter, _)) = of_view.into_iter().find(|(_, range)| self.reverse && range.is_some()) {
-            return Err(Error::InvalidParameter {
-                parameter,
-                value: "given".to_owned(),
-                expected: "left out with a target: it limits the view of one observer, and here there are many",
-            });
+            let expected = "left out with a target: it limits the view of one observer, and here there are many";
+            return Err(Error::invalid(parameter, "given", expected));
         }
         self.how_sure.check()?;
         if self.wants(ViewshedTargets::FarTerrain) {
@@ -379,11 +279,7 @@ impl Ask for ViewshedQuestion {
         check_height(self.observer_height)?;
         check_height(self.target_height)?;
         match self.max_height {
-            Some(height) if !(height >= 0.0) => Err(Error::InvalidParameter {
-                parameter: Parameter::MaxHeight,
-                value: height.to_string(),
-                expected: "0 metres or more",
-            }),
+            Some(height) if !(height >= 0.0) => Err(Error::invalid(Parameter::MaxHeight, height, "0 metres or more")),
             _ => Ok(()),
         }
     }
@@ -402,7 +298,7 @@ impl Ask for ViewshedQuestion {
         }
         let limits = self.sight_limits(scene, context)?;
         let known = scene.ground(self.grid(scene, &limits)?, self.ground, control)?;
-        context.ground(scene, &known);
+        context.ground(scene.frame(), &known);
         let blockers = scene.blockers(self.unproven(), control)?;
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         let ground = &known.ground;
@@ -455,6 +351,8 @@ impl Ask for ViewshedQuestion {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ask::how_sure::HowSure;
+    use belvedere_core::query::EarthParams;
 
     #[test]
     fn what_no_viewshed_can_have_is_refused_before_a_scene_is_known() {

@@ -1,13 +1,18 @@
 //! Window views: kinds and ranges of the surfaces seen from windows.
 
-use super::places::test_edge;
-use super::sections::{LinesSection, NamedValues};
+use super::answers::{Answers, Ask};
+use super::context::{Context, spread};
+use super::north::North;
+use super::places::{Places, test_edge};
+use super::remark::Remark;
+use super::scene::Scene;
+use super::sections::{LinesSection, NamedValues, ViewsSection, WindowsSection};
+use super::seen_kinds::kinds_of_balls;
 use super::windows::{GivenWindows, WindowTargets};
-use super::{Answers, Ask, Context, North, Places, Remark, Scene, spread};
-use crate::targets::{Measure, MeasureStatistics, Window};
+use crate::targets::{Measure, Window};
 use crate::window_views::{
-    ClassMeanings, Kinds, NamedView, Proving, SeenKind, VIEW_DIRECTIONS, VIEW_SPACING, WindowView, are_made_from,
-    balls_seen, leave_out_level, leave_out_walled_up, view_directions, view_measures, views_by_name, window_views,
+    ClassMeanings, Kinds, NamedView, Proving, SeenKind, VIEW_DIRECTIONS, VIEW_SPACING, WindowView, leave_out_level,
+    leave_out_walled_up, view_directions, view_measures, views_by_name, window_views,
 };
 use belvedere_core::query::UnprovenAs;
 use belvedere_data::control::Control;
@@ -82,23 +87,6 @@ impl WindowViewsResults {
     }
 }
 
-/// The windows of a question.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct WindowsSection {
-    windows: usize,
-    targets: usize,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    targets_on_roofs_and_floors: Option<usize>,
-}
-
-/// Statistics of views from windows.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct ViewsSection {
-    directions: usize,
-    #[serde(flatten)]
-    measures: NamedValues<Option<MeasureStatistics>>,
-}
-
 impl WindowViewsQuestion {
     /// The windows of a scene, without roofs, floors and windows outside the cloud.
     fn targets(
@@ -130,42 +118,21 @@ impl WindowViewsQuestion {
     }
 }
 
-/// Returns the kind of each ball of a scene.
-///
-/// # Errors
-/// Those of [`balls_seen`].
-pub(super) fn kinds_of_balls(scene: &Scene, meanings: &ClassMeanings, context: &mut Context) -> Result<Vec<SeenKind>> {
-    let (model, cloud) = (scene.model(), scene.cloud());
-    let classes = cloud.attributes.classification.as_deref();
-    let of_balls = classes.filter(|_| are_made_from(model.balls(), &cloud.positions));
-    if of_balls.is_none() {
-        let why = match classes {
-            _ if cloud.is_empty() => "; give the cloud that the balls were built from",
-            Some(_) => "; the balls were not built from the cloud that was given",
-            None => "",
-        };
-        let text = format!("the classes of points are unknown: only vegetation is known, from pulses{why}");
-        context.add(Some(Remark::warning("classes-unknown", text)));
-    }
-    balls_seen(model.balls(), of_balls, model.vegetation(), meanings)
-}
-
 impl Ask for WindowViewsQuestion {
     type Found = WindowViewsResults;
 
     fn check(&self) -> Result<()> {
-        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         if self.unproven == Some(UnprovenAs::Blocked) {
             let expected = "reported or visible: a view has no targets that could be blocked";
-            return invalid(Parameter::UnprovenAs, "blocked".to_owned(), expected);
+            return Err(Error::invalid(Parameter::UnprovenAs, "blocked", expected));
         }
         if !(self.spacing > 0.0 && self.spacing.is_finite()) {
-            return invalid(Parameter::Spacing, self.spacing.to_string(), "above zero metres");
+            return Err(Error::invalid(Parameter::Spacing, self.spacing, "above zero metres"));
         }
         if let Some((class, seen)) = self.classes.iter().find(|(_, seen)| SeenKind::thing_called(seen.name()).is_none())
         {
             let value = format!("{class} as {}", seen.name());
-            return invalid(Parameter::ClassMeaning, value, "vegetation, water, building, ground or other");
+            return Err(Error::invalid(Parameter::ClassMeaning, value, "vegetation, water, building, ground or other"));
         }
         view_directions(self.directions)?;
         self.windows.check()

@@ -1,9 +1,10 @@
 //! Windows: from a user's input to the targets in front of them.
 
-use super::observers::Reach;
+use super::context::Context;
 use super::places::leave_out_outside;
 use super::scene::Scene;
-use super::{Context, SharedObject};
+use super::shared::SharedObject;
+use super::standing::Reach;
 use crate::targets::{Targets, Window, objects_of_windows};
 use belvedere_data::frame::Frame;
 use belvedere_data::report::rounded;
@@ -86,8 +87,7 @@ impl GivenWindow {
     /// # Errors
     /// [`Error::InvalidParameter`] for an azimuth beyond a full circle, and a tilt that is not 0 to 180 degrees.
     pub(super) fn check(&self) -> Result<()> {
-        let invalid =
-            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Window, value, expected });
+        let invalid = |value: String, expected| Err(Error::invalid(Parameter::Window, value, expected));
         if self.azimuth_deg.abs() > 360.0 {
             let value = format!("with an azimuth of {} degrees", self.azimuth_deg);
             return invalid(value, "turned to an azimuth of -360 to 360 degrees, clockwise from north");
@@ -108,7 +108,7 @@ impl GivenWindow {
 pub(super) fn with_number((row, error): (usize, Error)) -> Error {
     match error {
         Error::InvalidParameter { parameter, value, expected } => {
-            Error::InvalidParameter { parameter, value: format!("number {}, {value}", row + 1), expected }
+            Error::invalid(parameter, format!("number {}, {value}", row + 1), expected)
         }
         other => other,
     }
@@ -139,7 +139,7 @@ impl WindowTargets {
         let value =
             format!("all outside of the cloud: {}, while the cloud has {}", ranges(from, to), ranges(low, high));
         let expected = "in the coordinates of the cloud; z is a height of its system, not above the ground, and degrees must be converted";
-        Err(Error::InvalidParameter { parameter: Parameter::Window, value, expected })
+        Err(Error::invalid(Parameter::Window, value, expected))
     }
 }
 

@@ -82,9 +82,8 @@ impl Lens {
     /// # Errors
     /// [`Error::InvalidParameter`] for angles and pixels outside their range.
     pub fn validate(&self) -> Result<()> {
-        let invalid = |parameter, value: f64, expected| {
-            Err(Error::InvalidParameter { parameter, value: rounded(value, 6).to_string(), expected })
-        };
+        let invalid =
+            |parameter, value: f64, expected| Err(Error::invalid(parameter, rounded(value, 6).to_string(), expected));
         if !(self.width > 0.0 && self.width <= TAU + 1e-9) {
             return invalid(Parameter::FieldOfView, self.width.to_degrees(), "above 0 to 360 degrees");
         }
@@ -125,9 +124,7 @@ impl Lens {
     /// # Errors
     /// [`Error::InvalidParameter`] for a density below 0, and for one above 0 without a flat picture.
     pub fn required_density(&self, given: Option<f64>) -> Result<f64> {
-        let invalid = |density: f64, expected| {
-            Err(Error::InvalidParameter { parameter: Parameter::PixelsPerMetre, value: density.to_string(), expected })
-        };
+        let invalid = |density: f64, expected| Err(Error::invalid(Parameter::PixelsPerMetre, density, expected));
         match given {
             None => Ok(if self.is_flat() { Level::Detect.pixels_per_metre() } else { 0.0 }),
             Some(density) if !(density >= 0.0 && density.is_finite()) => invalid(density, "0 or more"),

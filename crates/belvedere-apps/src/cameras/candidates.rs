@@ -113,9 +113,8 @@ impl MountingParams {
             let camera = Camera::turning(mount.eye, &lens, limits);
             return Ok(vec![CameraPose { camera, heading: f64::NAN, tilt: f64::NAN, width: lens.width }]);
         }
-        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         if self.headings == 0 || self.headings > 360 {
-            return invalid(Parameter::Headings, self.headings.to_string(), "1 to 360");
+            return Err(Error::invalid(Parameter::Headings, self.headings, "1 to 360"));
         }
         let sees_all_around = lens.width >= TAU - 1e-9;
         let headings: Vec<f64> = match mount.heading {
@@ -128,7 +127,8 @@ impl MountingParams {
         for (&heading, &tilt) in headings.iter().flat_map(|heading| tilts.iter().map(move |tilt| (heading, tilt))) {
             if !(tilt.abs() <= TAU / 4.0 + 1e-9 && heading.is_finite()) {
                 let value = format!("{} and {}", heading.to_degrees(), tilt.to_degrees());
-                return invalid(Parameter::HeadingAndTilt, value, "a finite heading, and a tilt from -90 to 90");
+                let expected = "a finite heading, and a tilt from -90 to 90";
+                return Err(Error::invalid(Parameter::HeadingAndTilt, value, expected));
             }
             let camera = Camera::fixed(mount.eye, heading, tilt, &lens, distance);
             let heading = if sees_all_around { f64::NAN } else { heading };
@@ -145,11 +145,11 @@ impl MountingParams {
     pub fn existing_at(&self, mount: &Mount) -> Result<CameraPose> {
         match self.poses_at(mount)?[..] {
             [pose] => Ok(pose),
-            _ => Err(Error::InvalidParameter {
-                parameter: Parameter::ExistingCamera,
-                value: "without heading or tilt".to_owned(),
-                expected: "one heading and one tilt for each camera: give the columns heading and tilt",
-            }),
+            _ => Err(Error::invalid(
+                Parameter::ExistingCamera,
+                "without heading or tilt",
+                "one heading and one tilt for each camera: give the columns heading and tilt",
+            )),
         }
     }
 }

@@ -45,11 +45,7 @@ impl FresnelZone {
     /// [`Error::InvalidParameter`] for another share.
     pub fn new(wave: RadioWave, share: f64) -> Result<Self> {
         if !(share > 0.0 && share <= 1.0) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::FresnelShare,
-                value: format!("{} %", 100.0 * share),
-                expected: "above 0 to 100 %",
-            });
+            return Err(Error::invalid(Parameter::FresnelShare, format!("{} %", 100.0 * share), "above 0 to 100 %"));
         }
         Ok(Self { wave, share })
     }

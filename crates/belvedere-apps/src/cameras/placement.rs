@@ -116,7 +116,7 @@ pub fn place_cameras(
     let problem = Problem::new(table, weights, params.required)?;
     if let Some(bad) = params.existing.iter().find(|&&camera| camera >= table.camera_count()) {
         let expected = "the number of a camera of the table, counted from 0";
-        return Err(Error::InvalidParameter { parameter: Parameter::ExistingCamera, value: bad.to_string(), expected });
+        return Err(Error::invalid(Parameter::ExistingCamera, bad, expected));
     }
     let solver = PlacementSolver::new(&problem, params);
     match params.goal {
@@ -194,8 +194,7 @@ impl<'a> PlacementSolver<'a> {
 
     /// The fewest new cameras that cover `share`, as far as they are found, and a number below which none do.
     fn fewest_for(&self, share: f64, control: &Control<'_>) -> Result<Placement> {
-        let invalid =
-            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Coverage, value, expected });
+        let invalid = |value: String, expected| Err(Error::invalid(Parameter::Coverage, value, expected));
         if !(share > 0.0 && share <= 1.0) {
             return invalid(share.to_string(), "a share above 0, and at most 1");
         }

@@ -24,16 +24,15 @@ impl<'a> Problem<'a> {
         if expected != found {
             return Err(Error::LengthMismatch { what: "weights of targets", expected, found });
         }
-        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
         if required == 0 {
-            return invalid(Parameter::RequiredCameras, required.to_string(), "1 or more");
+            return Err(Error::invalid(Parameter::RequiredCameras, required, "1 or more"));
         }
         if let Some(bad) = weights.iter().find(|w| !(w.is_finite() && **w >= 0.0)) {
-            return invalid(Parameter::TargetWeight, bad.to_string(), "a finite number, 0 or more");
+            return Err(Error::invalid(Parameter::TargetWeight, bad, "a finite number, 0 or more"));
         }
         let whole: f64 = weights.iter().sum();
         if !(whole > 0.0) {
-            return invalid(Parameter::TargetWeight, whole.to_string(), "at least one target with a weight above 0");
+            return Err(Error::invalid(Parameter::TargetWeight, whole, "at least one target with a weight above 0"));
         }
         let worth: Vec<f64> = weights.iter().map(|w| w / whole / f64::from(required)).collect();
         let mut counted = vec![0; worth.len().div_ceil(64)];

@@ -26,11 +26,7 @@ impl CoverageTable {
             for &target in list {
                 if target >= target_count {
                     let expected = "the number of a target, counted from 0";
-                    return Err(Error::InvalidParameter {
-                        parameter: Parameter::Target,
-                        value: target.to_string(),
-                        expected,
-                    });
+                    return Err(Error::invalid(Parameter::Target, target, expected));
                 }
                 bits[camera * words + target / 64] |= 1 << (target % 64);
             }
@@ -79,7 +75,7 @@ pub(super) fn check_size(cameras: usize, targets: usize) -> Result<()> {
     }
     let value = format!("{cameras} x {targets}");
     let expected = "at most 69 billion pairs; use fewer candidates, or larger cells";
-    Err(Error::InvalidParameter { parameter: Parameter::TargetCount, value, expected })
+    Err(Error::invalid(Parameter::TargetCount, value, expected))
 }
 
 /// Places of the bits of a word.

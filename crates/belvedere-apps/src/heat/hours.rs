@@ -145,7 +145,7 @@ impl HeatRows<'_> {
 }
 
 fn missing<T>(date: Date, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { parameter: Parameter::Period, value: date.to_string(), expected })
+    Err(Error::invalid(Parameter::Period, date, expected))
 }
 
 /// Returns the rows of `weather` that a question is about, day by day, each cut into `parts` under the sun of `site`.

@@ -145,6 +145,6 @@ impl SurfaceParams {
             return Ok(());
         }
         let value = self.warming.to_string();
-        Err(Error::InvalidParameter { parameter: Parameter::GroundWarming, value, expected: "0 to 2" })
+        Err(Error::invalid(Parameter::GroundWarming, value, "0 to 2"))
     }
 }

@@ -68,9 +68,8 @@ impl ClearSky {
     /// [`Error::InvalidParameter`] for a turbidity that is not 1 to 20, and for parameters of Bird's model outside
     /// their range.
     pub fn validate(&self) -> Result<()> {
-        let invalid = |parameter: Parameter, value: f64, expected: &'static str| {
-            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
-        };
+        let invalid =
+            |parameter: Parameter, value: f64, expected: &'static str| Err(Error::invalid(parameter, value, expected));
         match self {
             Self::Ineichen { linke } if !(1.0..=20.0).contains(linke) => {
                 invalid(Parameter::Turbidity, *linke, "1 to 20; 3 is usual")

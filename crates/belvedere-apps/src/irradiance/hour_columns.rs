@@ -2,7 +2,7 @@
 
 use super::period_rows::{PeriodRow, PeriodRows, RowRadiation};
 use super::yields::PlaneHour;
-use crate::result_columns::{ResultColumn, ResultValues};
+use crate::result_columns::ResultColumn;
 use belvedere_data::weather::RowsHold;
 use std::ops::Range;
 
@@ -18,16 +18,13 @@ pub fn hour_columns(rows: &PeriodRows, hours: &[PlaneHour], peak_power: f64) -> 
     let times: Vec<String> = rows.rows.iter().map(time).collect();
     // such as 2026-06-21T12:00:00+01:00
     let part = |name: &str, range: Range<usize>| {
-        let cut = |text: &String| text.get(range.clone()).unwrap_or_default().to_owned();
-        ResultColumn { name: name.to_owned(), values: ResultValues::Words(times.iter().map(cut).collect()) }
+        ResultColumn::words(name, times.iter().map(|text| text.get(range.clone()).unwrap_or_default()))
     };
     let real = |name: &str, decimals, value: &dyn Fn(&PlaneHour) -> f64| {
-        let values = hours.iter().map(value).collect();
-        ResultColumn { name: name.to_owned(), values: ResultValues::Real(values, decimals) }
+        ResultColumn::real(name, hours.iter().map(value), decimals)
     };
     let air = |name: &str, value: fn(&PeriodRow) -> Option<f64>| {
-        let values = rows.rows.iter().map(|row| value(row).unwrap_or(f64::NAN)).collect();
-        ResultColumn { name: name.to_owned(), values: ResultValues::Real(values, 1) }
+        ResultColumn::real(name, rows.rows.iter().map(|row| value(row).unwrap_or(f64::NAN)), 1)
     };
     let peak_w = 1000.0 * peak_power;
     vec![

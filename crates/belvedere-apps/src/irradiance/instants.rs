@@ -46,7 +46,7 @@ pub fn weather_instants(weather: &Weather, site: &Site, parts: usize) -> Result<
     weather.validate()?;
     if !(1..=MAX_PARTS).contains(&parts) {
         let value = parts.to_string();
-        return Err(Error::InvalidParameter { parameter: Parameter::WeatherParts, value, expected: "1 to 120" });
+        return Err(Error::invalid(Parameter::WeatherParts, value, "1 to 120"));
     }
     let of_steps: Vec<Vec<Instant>> = weather
         .steps
@@ -101,11 +101,8 @@ pub fn clear_instants(
     clear_sky.validate()?;
     let count = ((to - from) / step).ceil();
     if !(step > 0.0 && (1.0..=MAX_INSTANTS).contains(&count)) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::Period,
-            value: format!("{from} to {to} in steps of {step} s"),
-            expected: "1 to 11 million steps",
-        });
+        let expected = "1 to 11 million steps";
+        return Err(Error::invalid(Parameter::Period, format!("{from} to {to} in steps of {step} s"), expected));
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "tested to be a small count")]
     let count = count as usize;

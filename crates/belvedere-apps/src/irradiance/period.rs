@@ -90,9 +90,8 @@ impl IrradianceParams {
     /// # Errors
     /// [`Error::InvalidParameter`] for one outside its range.
     pub fn validate(&self) -> Result<()> {
-        let invalid = |parameter: Parameter, value: f64, expected: &'static str| {
-            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
-        };
+        let invalid =
+            |parameter: Parameter, value: f64, expected: &'static str| Err(Error::invalid(parameter, value, expected));
         if !(0.0..=1.0).contains(&self.albedo) {
             return invalid(Parameter::Albedo, self.albedo, "0 to 1");
         }
@@ -331,11 +330,8 @@ fn check(instant: &Instant) -> Result<()> {
     if values.iter().all(|v| v.is_finite() && *v >= 0.0) && is_at && is_unit {
         return Ok(());
     }
-    Err(Error::InvalidParameter {
-        parameter: Parameter::Instant,
-        value: format!("{instant:?}"),
-        expected: "finite, with radiation of 0 or more and a vector of length 1 to the sun",
-    })
+    let expected = "finite, with radiation of 0 or more and a vector of length 1 to the sun";
+    Err(Error::invalid(Parameter::Instant, format!("{instant:?}"), expected))
 }
 
 /// The cell of a direction: rows of equal height from the horizon up, each in columns of about the same width.

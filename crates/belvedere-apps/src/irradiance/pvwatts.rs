@@ -98,7 +98,7 @@ impl PvSystem {
             ((0.5..=3.0).contains(&dc_ac_ratio), Parameter::DcAcRatio, dc_ac_ratio, "0.5 to 3"),
         ] {
             if !is_usable {
-                return Err(Error::InvalidParameter { parameter, value: value.to_string(), expected });
+                return Err(Error::invalid(parameter, value, expected));
             }
         }
         Ok(())

@@ -29,7 +29,7 @@ fn building_numbers(numbers: Vec<Option<u64>>, names: &[String]) -> Vec<ResultCo
         let at = number.and_then(|number| usize::try_from(number).ok()?.checked_sub(1));
         at.and_then(|at| names.get(at)).cloned().unwrap_or_default()
     };
-    let named = (!names.is_empty()).then(|| ResultColumn::words("building_name", numbers.iter().map(name).collect()));
+    let named = (!names.is_empty()).then(|| ResultColumn::words("building_name", numbers.iter().map(name)));
     let number = ResultColumn { name: "building".to_owned(), values: ResultValues::Whole(numbers) };
     std::iter::once(number).chain(named).collect()
 }
@@ -47,15 +47,14 @@ fn yield_columns(yields: &[PlaneYield], kwh_m2: &[f64]) -> Vec<ResultColumn> {
         ResultColumn::real("string_ac_kwh", of_yields(&|own| own.string_limited.total().ac), 0),
         ResultColumn::real("kwh_per_kwp", of_yields(&|own| own.mean.total().ac / own.peak_power), 1),
         ResultColumn::real("string_kwh_per_kwp", of_yields(&|own| own.string_limited.total().ac / own.peak_power), 1),
-        ResultColumn::real("performance_ratio", yields.iter().zip(kwh_m2).map(ratio).collect(), 3),
+        ResultColumn::real("performance_ratio", yields.iter().zip(kwh_m2).map(ratio), 3),
     ]
 }
 
 /// Returns the columns of the electricity of each month.
 fn yield_months(yields: &[PlaneYield]) -> Vec<ResultColumn> {
     let of_month = |name: &str, month: usize, energy: fn(&PlaneYield) -> &PvEnergy| {
-        let values = yields.iter().map(|own| energy(own).ac[month]).collect();
-        ResultColumn::real(format!("{name}_{:02}", month + 1), values, 1)
+        ResultColumn::real(format!("{name}_{:02}", month + 1), yields.iter().map(|own| energy(own).ac[month]), 1)
     };
     let alone = (0..12).map(|month| of_month("ac_kwh", month, |own| &own.mean));
     alone.chain((0..12).map(|month| of_month("string_ac_kwh", month, |own| &own.string_limited))).collect()
@@ -76,11 +75,10 @@ pub fn roof_columns(roofs: RoofRows<'_>, frame: &Frame, site: &Site) -> Vec<Resu
     let middle = |axis: usize| of_planes(&|plane| (plane.middle[axis] + frame.origin[axis]) / scale[axis]);
     let from_north = |azimuth: f64| (azimuth + site.convergence).to_degrees().rem_euclid(360.0);
     let azimuth = |plane: &RoofPlane| plane.azimuth().map_or(f64::NAN, from_north);
-    let cells = rows.iter().map(|row| Some(row.cell_count as u64)).collect();
     let kwh_m2 = of_rows(&|row| row.mean.total());
     let mut columns = building_numbers(buildings.of_plane.clone(), &buildings.names);
     columns.extend([
-        ResultColumn { name: "cells".to_owned(), values: ResultValues::Whole(cells) },
+        ResultColumn::whole("cells", rows.iter().map(|row| row.cell_count)),
         ResultColumn::real("x", middle(0), 3),
         ResultColumn::real("y", middle(1), 3),
         ResultColumn::real("z", middle(2), 3),
@@ -89,7 +87,7 @@ pub fn roof_columns(roofs: RoofRows<'_>, frame: &Frame, site: &Site) -> Vec<Resu
         ResultColumn::real("tilt_deg", of_planes(&|plane| plane.tilt().to_degrees()), 2),
         ResultColumn::real("azimuth_deg", of_planes(&azimuth), 2),
         ResultColumn::real("roughness_m", of_planes(&|plane| plane.roughness), 3),
-        ResultColumn::words("radiation", vec![radiation.to_owned(); planes.len()]),
+        ResultColumn::words("radiation", std::iter::repeat_n(radiation, planes.len())),
         ResultColumn::real("kwh_m2", kwh_m2.clone(), 1),
         ResultColumn::real("beam_kwh_m2", of_rows(&|row| row.mean.beam), 1),
         ResultColumn::real("sky_kwh_m2", of_rows(&|row| row.mean.diffuse), 1),
@@ -154,7 +152,7 @@ pub fn building_columns(roofs: RoofRows<'_>) -> Vec<ResultColumn> {
         ResultColumn::real("planes", sum(&|_| 1.0), 0),
         ResultColumn::real("area_m2", sum(&|plane| planes[plane].area), 2),
         ResultColumn::real("panel_area_m2", panel_area, 2),
-        ResultColumn::words("radiation", vec![radiation.to_owned(); numbers.len()]),
+        ResultColumn::words("radiation", std::iter::repeat_n(radiation, numbers.len())),
         ResultColumn::real("radiation_kwh", radiation_kwh, 0),
     ]);
     columns.extend(yield_columns(&electricity, &kwh_m2));

@@ -4,7 +4,7 @@
 //! expected area or volume of a ray and its variance follow. Errors of neighbouring rays come from the same edges.
 //! Their deviations are added up within a sector, and sectors are treated as independent.
 
-use super::{Isovist, IsovistParams, direction};
+use super::{Isovist, IsovistIntervals, IsovistParams, direction};
 use belvedere_core::query::MedialScene;
 use belvedere_data::Result;
 use belvedere_data::control::Control;
@@ -25,15 +25,6 @@ const SPACE_RAYS: usize = 72;
 const SECTORS: usize = 12;
 /// Standard deviations from the mean to the end of an interval that holds 90 % of a normal distribution.
 const DEVIATIONS: f64 = 1.645;
-
-/// Between which sizes an isovist lies nine times in ten.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct IsovistIntervals {
-    /// Area seen in the level plane, m².
-    pub plan_area: [f64; 2],
-    /// Volume seen, m³.
-    pub volume: [f64; 2],
-}
 
 /// Returns the intervals of `seen`, the isovist of `eye`, local metres; `None` without pulses.
 ///

@@ -3,11 +3,15 @@
 mod figures;
 mod intervals;
 mod leaks;
+mod params;
 mod plan;
+mod ranges;
 
 pub use figures::IsovistFigure;
-pub use intervals::{IsovistIntervals, isovist_intervals};
+pub use intervals::isovist_intervals;
+pub use params::IsovistParams;
 pub use plan::PlanIsovist;
+pub use ranges::RadialStatistics;
 
 use belvedere_core::query::MedialScene;
 use belvedere_data::control::Control;
@@ -21,54 +25,6 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Rays between two looks at whether the work was cancelled: a few milliseconds.
 const CHECKED: usize = 1024;
-
-/// Parameters of isovists.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct IsovistParams {
-    /// Angle between rays of the panorama, and between the first rays of the plan, radians, a ten-thousandth to a
-    /// quarter of a circle. Default 1°: 64 800 rays.
-    pub step: f64,
-    /// Range at which sight ends where nothing blocks, metres, above 0. Default 100: beyond it streets are no longer
-    /// read as a space.
-    pub max_range: f64,
-    /// Minimum jump in range that is an edge of the plan, metres, above 0. Default 0.25: balls bulge by centimetres.
-    pub jump: f64,
-}
-
-belvedere_data::setters!(IsovistParams {
-    with_step(step: f64),
-    with_max_range(max_range: f64),
-    with_jump(jump: f64),
-});
-
-impl Default for IsovistParams {
-    fn default() -> Self {
-        Self { step: 1f64.to_radians(), max_range: 100.0, jump: 0.25 }
-    }
-}
-
-impl IsovistParams {
-    /// Checks the parameters.
-    ///
-    /// # Errors
-    /// [`Error::InvalidParameter`] for one outside its range.
-    pub fn validate(&self) -> Result<()> {
-        let invalid = |parameter, value: f64, expected| {
-            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
-        };
-        if !(self.step >= 1e-4 * TAU && self.step <= FRAC_PI_2) {
-            return invalid(Parameter::AngleStep, self.step.to_degrees(), "0.036 to 90");
-        }
-        if !(self.max_range.is_finite() && self.max_range > 0.0) {
-            return invalid(Parameter::MaxDistance, self.max_range, "finite and above zero metres");
-        }
-        if !(self.jump.is_finite() && self.jump > 0.0) {
-            return invalid(Parameter::MinJump, self.jump, "finite and above zero metres");
-        }
-        Ok(())
-    }
-}
 
 /// Space visible from an eye.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,40 +54,13 @@ pub struct Isovist {
     pub intervals: Option<IsovistIntervals>,
 }
 
-/// Statistics of ranges, metres.
+/// Between which sizes an isovist lies nine times in ten.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RadialStatistics {
-    /// Minimum.
-    pub min: f64,
-    /// Mean.
-    pub mean: f64,
-    /// Maximum.
-    pub greatest: f64,
-    /// Mean square deviation from the mean, m².
-    pub variance: f64,
-    /// Mean cube of the deviation over that of the standard deviation, without unit; 0 where all are equal.
-    pub skewness: f64,
-}
-
-impl RadialStatistics {
-    /// Statistics of ranges, each with the weight beside it.
-    fn of(weighted: &[(f64, f64)]) -> Self {
-        let total: f64 = weighted.iter().map(|(_, weight)| weight).sum();
-        let moment =
-            |f: &dyn Fn(f64) -> f64| weighted.iter().map(|&(range, weight)| weight * f(range)).sum::<f64>() / total;
-        let mean = moment(&|range| range);
-        let variance = moment(&|range| (range - mean).powi(2));
-        let third = moment(&|range| (range - mean).powi(3));
-        // rounding leaves about 1e-16 of the square of the mean where all ranges are equal
-        let is_even = variance <= 1e-14 * mean * mean;
-        Self {
-            min: weighted.iter().map(|w| w.0).fold(f64::INFINITY, f64::min),
-            mean,
-            greatest: weighted.iter().map(|w| w.0).fold(0.0, f64::max),
-            variance,
-            skewness: if is_even { 0.0 } else { third / variance.powf(1.5) },
-        }
-    }
+pub struct IsovistIntervals {
+    /// Area seen in the level plane, m².
+    pub plan_area: [f64; 2],
+    /// Volume seen, m³.
+    pub volume: [f64; 2],
 }
 
 /// Computes the isovist of an eye at `eye`, local metres, in `scene`. Balls that hold the eye are left out
@@ -142,11 +71,7 @@ impl RadialStatistics {
 /// [`Error::Cancelled`].
 pub fn isovist(scene: &MedialScene, eye: [f64; 3], params: &IsovistParams, control: &Control<'_>) -> Result<Isovist> {
     if !eye.iter().all(|v| v.is_finite()) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::Eye,
-            value: format!("{eye:?}"),
-            expected: "finite",
-        });
+        return Err(Error::invalid(Parameter::Eye, format!("{eye:?}"), "finite"));
     }
     let range = |direction: [f64; 3]| scene.seen_along(eye, direction, params.max_range).map(|(_, range)| range);
     isovist_of(&range, params, control)

@@ -1,6 +1,7 @@
 //! The isovist in the level plane through the eye, as plans of buildings have it.
 
-use super::{IsovistParams, RadialStatistics};
+use super::params::IsovistParams;
+use super::ranges::RadialStatistics;
 use belvedere_data::view::to_sun;
 use rayon::prelude::*;
 use std::f64::consts::TAU;

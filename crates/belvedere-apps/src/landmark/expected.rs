@@ -1,6 +1,6 @@
 //! Expected visible part of a landmark.
 
-use super::{LandmarkParams, LandmarkView, NEAREST};
+use super::view::{LandmarkParams, LandmarkView, NEAREST};
 use belvedere_core::query::{MedialScene, SurfacePieces, Viewer};
 use belvedere_core::ray_index::Ray;
 use belvedere_data::vector::{length, sub};

@@ -5,122 +5,27 @@ mod extent;
 mod measures;
 mod points;
 mod report;
+mod view;
 
 pub use measures::{LandmarkMeasure, measures};
 pub use points::{LandmarkPoints, landmark_points};
 pub use report::{BestView, LandmarkReport};
+pub use view::{LandmarkParams, LandmarkView};
 
 use belvedere_core::query::target_tree::TargetTree;
-use belvedere_core::query::{
-    Answer, BackFaces, EarthParams, MedialScene, MeshTargetParams, Sides, SurfacePiece, SurfacePieces, UnprovenAs,
-    Viewer,
-};
+use belvedere_core::query::{Answer, BackFaces, EarthParams, MedialScene, Sides, SurfacePieces, UnprovenAs, Viewer};
 use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, dot, length, sub, unit};
-use belvedere_data::{Error, Parameter, Result};
+use belvedere_data::{Error, Result};
 use extent::{Arcs, SkyBox, sky_box};
 use rayon::prelude::*;
+use view::NEAREST;
 
 /// Pieces that a landmark is cut into where nothing is said: a share of it is then known to 1.6 % at worst, mostly to
 /// much less.
 const USUAL_PIECES: f64 = 1000.0;
 /// Minimum default spacing, metres: balls represent walls to about a decimetre.
 const MIN_SPACING: f64 = 0.25;
-/// Minimum range of a measured piece, metres: a piece that touches the eye would fill half of its view.
-const NEAREST: f64 = 1e-3;
-
-/// Parameters of views of landmarks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct LandmarkParams {
-    /// Treatment of its faces. Default: those turned away are not visible, so that shares are those of the whole
-    /// landmark.
-    pub faces: MeshTargetParams,
-    /// Treatment of unproven pieces that nothing blocks. Default: reported apart from the visible.
-    pub unproven: UnprovenAs,
-    /// Curvature of the earth on lines of sight.
-    pub earth: EarthParams,
-    /// Maximum range of pieces that count, metres, above 0. Default: infinite.
-    pub max_range: f64,
-    /// True to compute the expected visible area; needs pulses. Default: false.
-    pub has_expected: bool,
-}
-
-belvedere_data::setters!(LandmarkParams {
-    with_faces(faces: MeshTargetParams),
-    with_unproven(unproven: UnprovenAs),
-    with_earth(earth: EarthParams),
-    with_max_range(max_range: f64),
-    with_expected(has_expected: bool),
-});
-
-impl LandmarkParams {
-    /// Checks the parameters.
-    ///
-    /// # Errors
-    /// [`Error::InvalidParameter`] for one outside its range.
-    pub fn validate(&self) -> Result<()> {
-        self.earth.validate()?;
-        self.faces.validate()?;
-        if !(self.max_range > 0.0) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::MaxDistance,
-                value: self.max_range.to_string(),
-                expected: "above zero metres",
-            });
-        }
-        Ok(())
-    }
-
-    /// Returns true if a piece is turned to an eye, or both of its sides count.
-    fn can_be_seen(&self, landmark: &SurfacePieces, piece: &SurfacePiece, eye: [f64; 3]) -> bool {
-        let backs_count = self.faces.back_faces == BackFaces::BothSides || landmark.sides == Sides::Both;
-        backs_count || dot(piece.normal.map(f64::from), sub(piece.corners[0].map(f64::from), eye)) < 0.0
-    }
-}
-
-impl Default for LandmarkParams {
-    fn default() -> Self {
-        Self {
-            faces: MeshTargetParams::default(),
-            unproven: UnprovenAs::Reported,
-            earth: EarthParams::default(),
-            max_range: f64::INFINITY,
-            has_expected: false,
-        }
-    }
-}
-
-/// Visible part of a landmark for one observer. Angles are those at the eye; all are 0 if nothing is visible.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LandmarkView {
-    /// Area seen, m².
-    pub visible_area: f64,
-    /// Area that nothing blocks but is not proven, m²; not among the visible.
-    pub unproven_area: f64,
-    /// Area that counts, m²: the whole landmark, or the faces turned to the observer ([`BackFaces::LeftOut`]).
-    pub area: f64,
-    /// Solid angle of the visible parts, steradians.
-    pub solid_angle: f64,
-    /// Share of the full circle of azimuths in which some of it is seen, 0 to 1.
-    pub horizon_share: f64,
-    /// Angle on the map between the outermost visible parts, hidden parts between them included, radians, 0 to 2π.
-    pub horizontal_extent: f64,
-    /// Elevation of the highest part seen minus that of the lowest, radians, 0 to π.
-    pub vertical_extent: f64,
-    /// Range of the nearest and of the farthest part seen, metres; `None` where nothing is seen.
-    pub ranges: Option<[f64; 2]>,
-    /// Expected area seen, m², by how likely each part is visible; `None` where that was not wanted.
-    pub expected_area: Option<f64>,
-}
-
-impl LandmarkView {
-    /// Share of the area that is seen, 0 to 1; NaN without area.
-    #[must_use]
-    pub fn visible_share(&self) -> f64 {
-        self.visible_area / self.area
-    }
-}
 
 /// Default side of the cells that observers of a grid stand in, metres: a step or two.
 const OBSERVER_CELL: f64 = 2.0;

@@ -5,104 +5,30 @@ mod buildings;
 mod cells;
 mod fit;
 mod grow;
+mod params;
 mod points;
 mod room;
 
 pub use buildings::Buildings;
 pub use cells::PlaneCells;
+pub use params::RoofPlaneParams;
 pub use points::{GROUND_CELL, RoofsFrom, roof_points};
 
 use belvedere_core::neighbors::NeighborIndex;
 use belvedere_core::normals::estimate::{Neighborhood, estimate};
+use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::vector::compare_places;
-use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use room::Room;
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 
 /// ASPRS class of buildings.
 pub const BUILDING: u8 = 6;
 
-/// Minimum side of a cell, metres: points resolve no more, and the cells of a whole town would fill the memory.
-const MIN_CELL: f64 = 0.1;
-
 /// Maximum tilt of a level plane without an aspect, radians. Flat roofs have 2 to 3 % of slope for the rain, and a few
 /// of these degrees are noise.
 pub const MAX_LEVEL: f64 = 2.0 * std::f64::consts::PI / 180.0;
-
-/// Parameters of the detection of planes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct RoofPlaneParams {
-    /// Maximum distance of a point of a plane from it, metres, above 0. Default 0.12: four times the noise of airborne
-    /// scans.
-    pub distance: f64,
-    /// Maximum angle between the normals of a point and of its plane, radians, above 0 to π/2. Default 25 degrees:
-    /// wide, since normals bend near ridges and eaves; distance decides.
-    pub angle: f64,
-    /// Maximum step from point to point of a plane, metres, above 0. Default 1: the gap of two points a square metre.
-    pub reach: f64,
-    /// Steepest plane that counts, radians from level, below π/2. Default 75 degrees: walls are no roofs.
-    pub max_tilt: f64,
-    /// Minimum area of a plane, m². Default 4: two panels.
-    pub min_area: f64,
-    /// Side of the cells that a plane is cut into, metres, 0.1 to 1000. Default 1: the width of a panel.
-    pub cell: f64,
-}
-
-belvedere_data::setters!(RoofPlaneParams {
-    with_distance(distance: f64),
-    with_angle(angle: f64),
-    with_reach(reach: f64),
-    with_max_tilt(max_tilt: f64),
-    with_min_area(min_area: f64),
-    with_cell(cell: f64),
-});
-
-impl Default for RoofPlaneParams {
-    fn default() -> Self {
-        Self {
-            distance: 0.12,
-            angle: 25f64.to_radians(),
-            reach: 1.0,
-            max_tilt: 75f64.to_radians(),
-            min_area: 4.0,
-            cell: 1.0,
-        }
-    }
-}
-
-impl RoofPlaneParams {
-    fn validate(&self) -> Result<()> {
-        let lengths = [self.distance, self.reach, self.cell];
-        let is_usable = |v: &f64| *v > 0.0 && *v < 1000.0;
-        if let Some(bad) = lengths.iter().find(|v| !is_usable(v)) {
-            let value = bad.to_string();
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::RoofLength,
-                value,
-                expected: "above 0 to 1000 m",
-            });
-        }
-        if self.cell < MIN_CELL {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::RoofLength,
-                value: format!("cells of {} m", self.cell),
-                expected: "cells of 0.1 m or more",
-            });
-        }
-        let is_angle = |v: f64| v > 0.0 && v <= FRAC_PI_2;
-        if !is_angle(self.angle) || !is_angle(self.max_tilt) || !(self.min_area >= 0.0) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::RoofAngle,
-                value: format!("{} and {} rad, {} m²", self.angle, self.max_tilt, self.min_area),
-                expected: "angles above 0 to 90 degrees, an area of 0 or more",
-            });
-        }
-        Ok(())
-    }
-}
 
 /// A plane part of a roof.
 #[derive(Clone, Debug, PartialEq)]

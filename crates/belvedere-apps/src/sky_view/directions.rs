@@ -30,11 +30,7 @@ impl SkyDirections {
     /// González 2010, Measurement of areas on a sphere using Fibonacci and latitude–longitude lattices.
     pub fn even(count: usize) -> Result<Self> {
         if !(1..=MAX_DIRECTIONS).contains(&count) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::DirectionCount,
-                value: count.to_string(),
-                expected: "1 to 100000",
-            });
+            return Err(Error::invalid(Parameter::DirectionCount, count, "1 to 100000"));
         }
         let golden_ratio = f64::midpoint(1.0, 5f64.sqrt());
         let direction = |i: usize| {
@@ -54,11 +50,7 @@ impl SkyDirections {
     /// Tregenza 1987, Subdivision of the sky hemisphere for luminance measurements; Reinhart & Walkenhorst 2001.
     pub fn patches(division: usize) -> Result<Self> {
         if !(1..=26).contains(&division) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::PatchDivision,
-                value: division.to_string(),
-                expected: "1 to 26",
-            });
+            return Err(Error::invalid(Parameter::PatchDivision, division, "1 to 26"));
         }
         let row_count = TREGENZA.len() * division;
         let row_height = 0.5 * PI / (row_count as f64 + 0.5);

@@ -95,11 +95,11 @@ impl SolarEnvelope {
     /// [`Error::InvalidParameter`] where a column is bounded by nothing.
     pub fn to_mesh(&self, origin: [f64; 3]) -> Result<Mesh> {
         if let Some(count) = Some(self.unbounded_count()).filter(|count| *count > 0) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Envelope,
-                value: format!("infinitely high in {count} columns, which no sun limits"),
-                expected: "limited, to be a solid; give a maximum height",
-            });
+            return Err(Error::invalid(
+                Parameter::Envelope,
+                format!("infinitely high in {count} columns, which no sun limits"),
+                "limited, to be a solid; give a maximum height",
+            ));
         }
         let mut builder = VertexMerger::default();
         let mut blocks: HashMap<usize, [f64; 2]> = HashMap::new();

@@ -30,15 +30,15 @@ pub fn envelope_suns(
     between: [f64; 2],
     params: &DayParams,
 ) -> Result<(Vec<EnvelopeSun>, usize)> {
-    let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
     check_hours(between)?;
     if !(10.0..=3600.0).contains(&params.step) {
-        return invalid(Parameter::TimeStep, params.step.to_string(), "10 to 3600 seconds");
+        return Err(Error::invalid(Parameter::TimeStep, params.step, "10 to 3600 seconds"));
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "8640 at most")]
     let count = ((between[1] - between[0]) * 3600.0 / params.step - 1e-9).ceil() as usize;
     if dates.len().saturating_mul(count + 1) > MAX_INSTANTS {
-        return invalid(Parameter::InstantCount, format!("{} x {}", dates.len(), count + 1), "at most 200 000");
+        let expected = "at most 200 000";
+        return Err(Error::invalid(Parameter::InstantCount, format!("{} x {}", dates.len(), count + 1), expected));
     }
     let (mut suns, mut low_count) = (Vec::new(), 0);
     for &date in dates {
@@ -62,11 +62,7 @@ pub(crate) fn check_hours(between: [f64; 2]) -> Result<()> {
     if 0.0 <= between[0] && between[0] <= between[1] && between[1] <= 24.0 {
         return Ok(());
     }
-    Err(Error::InvalidParameter {
-        parameter: Parameter::HoursOfDay,
-        value: format!("{between:?}"),
-        expected: "from 0 to 24, the first not after the last",
-    })
+    Err(Error::invalid(Parameter::HoursOfDay, format!("{between:?}"), "from 0 to 24, the first not after the last"))
 }
 
 #[cfg(test)]

@@ -55,11 +55,9 @@ impl EnvelopeParams {
     /// [`Error::InvalidParameter`] for a ceiling that is not above zero.
     pub fn validate(&self) -> Result<()> {
         match self.ceiling {
-            Some(ceiling) if !(ceiling > 0.0 && ceiling.is_finite()) => Err(Error::InvalidParameter {
-                parameter: Parameter::MaxHeight,
-                value: ceiling.to_string(),
-                expected: "above zero metres",
-            }),
+            Some(ceiling) if !(ceiling > 0.0 && ceiling.is_finite()) => {
+                Err(Error::invalid(Parameter::MaxHeight, ceiling, "above zero metres"))
+            }
             _ => Ok(()),
         }
     }
@@ -211,11 +209,8 @@ fn check_pairs(pieces: usize, suns: usize) -> Result<()> {
     if pieces.saturating_mul(suns) <= MAX_PAIRS {
         return Ok(());
     }
-    Err(Error::InvalidParameter {
-        parameter: Parameter::ProtectedPairs,
-        value: format!("{pieces} x {suns}"),
-        expected: "at most 200 million; use longer time steps, or a larger spacing",
-    })
+    let expected = "at most 200 million; use longer time steps, or a larger spacing";
+    Err(Error::invalid(Parameter::ProtectedPairs, format!("{pieces} x {suns}"), expected))
 }
 
 /// The strips of the protected edges that a sun above the horizon lights, each with the row of its piece.
@@ -282,13 +277,12 @@ fn check(
     free: Option<&VisibilityMatrix>,
     params: &EnvelopeParams,
 ) -> Result<()> {
-    let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
     if let Some(sun) = suns.iter().find(|sun| !((length(**sun) - 1.0).abs() < 1e-6)) {
-        return invalid(Parameter::SunDirection, format!("{sun:?}"), "a vector of length 1");
+        return Err(Error::invalid(Parameter::SunDirection, format!("{sun:?}"), "a vector of length 1"));
     }
     let finite = |piece: &&ProtectedPiece| !piece.corners.as_flattened().iter().all(|v| v.is_finite());
     if let Some(piece) = protected.iter().find(finite) {
-        return invalid(Parameter::ProtectedPlace, format!("{:?}", piece.corners), "finite");
+        return Err(Error::invalid(Parameter::ProtectedPlace, format!("{:?}", piece.corners), "finite"));
     }
     params.validate()?;
     check_pairs(protected.len(), suns.len())?;

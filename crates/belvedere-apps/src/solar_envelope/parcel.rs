@@ -39,8 +39,7 @@ impl Parcel {
     /// [`Error::InvalidParameter`] for a corner that is not finite, a ring with less than three corners, sides that
     /// cross each other, more than 10 000 corners, and rings that enclose nothing.
     pub fn new(rings: &[Vec<[f64; 2]>]) -> Result<Self> {
-        let invalid =
-            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Parcel, value, expected });
+        let invalid = |value: String, expected| Err(Error::invalid(Parameter::Parcel, value, expected));
         let count: usize = rings.iter().map(Vec::len).sum();
         if count == 0 || count > MAX_CORNERS {
             return invalid(format!("of {count} corners"), "a polygon of 3 to 10 000 corners");

@@ -47,11 +47,11 @@ pub fn protected_line(
     ground: &Ground,
     source: u32,
 ) -> Result<(Vec<ProtectedPiece>, usize)> {
-    let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
     check_fence(fence, spacing)?;
     let flat = |p: [f64; 3]| p[0].abs() < 1e7 && p[1].abs() < 1e7 && (p[2].is_nan() || p[2].abs() < 1e7);
     if let Some(corner) = corners.iter().find(|corner| !flat(**corner)) {
-        return invalid(Parameter::ProtectedPlace, format!("{corner:?}"), "finite, within 10 000 km of the scene");
+        let expected = "finite, within 10 000 km of the scene";
+        return Err(Error::invalid(Parameter::ProtectedPlace, format!("{corner:?}"), expected));
     }
     let top = |mut place: [f64; 3]| {
         if place[2].is_nan() {
@@ -66,7 +66,7 @@ pub fn protected_line(
         let &[a, b] = pair else { continue };
         let count = ((b[0] - a[0]).hypot(b[1] - a[1]) / spacing).ceil().max(1.0);
         if count + pieces.len() as f64 > MAX_PIECES as f64 {
-            return invalid(Parameter::Spacing, spacing.to_string(), "enough for at most a million pieces");
+            return Err(Error::invalid(Parameter::Spacing, spacing, "enough for at most a million pieces"));
         }
         let at = |share: f64| [0, 1, 2].map(|i| a[i] + share * (b[i] - a[i]));
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most a million")]
@@ -89,14 +89,11 @@ pub fn protected_line(
 
 /// Refuses fences that are below zero and spacings that are not above it.
 pub(crate) fn check_fence(fence: f64, spacing: f64) -> Result<()> {
-    let invalid = |parameter, value: f64, expected| {
-        Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
-    };
     if !(fence >= 0.0 && fence.is_finite()) {
-        return invalid(Parameter::FenceHeight, fence, "0 or more metres");
+        return Err(Error::invalid(Parameter::FenceHeight, fence, "0 or more metres"));
     }
     if !(spacing > 0.0 && spacing.is_finite()) {
-        return invalid(Parameter::Spacing, spacing, "above zero metres");
+        return Err(Error::invalid(Parameter::Spacing, spacing, "above zero metres"));
     }
     Ok(())
 }

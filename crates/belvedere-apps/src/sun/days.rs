@@ -136,8 +136,7 @@ pub enum Period {
 /// # Errors
 /// [`Error::InvalidParameter`] for a period without days or that ends before it begins, and those of [`sun_day`].
 pub fn sun_days(site: &Site, zone: &Zone, period: &Period, params: &DayParams) -> Result<Vec<SunDay>> {
-    let invalid =
-        |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Period, value, expected });
+    let invalid = |value: String, expected| Err(Error::invalid(Parameter::Period, value, expected));
     let (dates, within) = match period {
         Period::Days(dates) => (dates.clone(), None),
         Period::Between([from, to]) if to > from && to - from <= DAY * MAX_DAYS as f64 => {
@@ -164,9 +163,7 @@ impl DayParams {
     /// # Errors
     /// [`Error::InvalidParameter`] where one is not.
     pub fn validate(&self) -> Result<()> {
-        let invalid = |parameter, value: f64, expected| {
-            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
-        };
+        let invalid = |parameter, value: f64, expected| Err(Error::invalid(parameter, value, expected));
         if !(10.0..=3600.0).contains(&self.step) {
             return invalid(Parameter::TimeStep, self.step, "10 to 3600 seconds");
         }

@@ -219,11 +219,7 @@ pub struct SunTimes {
 pub fn sun_times(site: &Site, from: f64, to: f64) -> Result<SunTimes> {
     let site = site.validate()?;
     if !(to >= from && to - from <= 400.0 * DAY) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::Period,
-            value: format!("{from} to {to} s"),
-            expected: "forward, at most 400 days",
-        });
+        return Err(Error::invalid(Parameter::Period, format!("{from} to {to} s"), "forward, at most 400 days"));
     }
     let [start, end] = [julian(from)?, julian(to)?];
     let location = Location { latitude: site.latitude.to_degrees(), longitude: site.longitude.to_degrees() };
@@ -263,27 +259,21 @@ fn correction(site: &Site, refraction: Refraction) -> Result<Option<RefractionCo
     };
     if !(-90.0..=60.0).contains(&temperature) {
         let value = format!("of {temperature} degrees");
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::Air,
-            value,
-            expected: "of -90 to 60 degrees Celsius",
-        });
+        return Err(Error::invalid(Parameter::Air, value, "of -90 to 60 degrees Celsius"));
     }
-    RefractionCorrection::new(pressure, temperature).map(Some).map_err(|_| Error::InvalidParameter {
-        parameter: Parameter::Air,
-        value: format!("of {pressure} hPa"),
-        expected: "of a pressure above 0, up to 2000 hPa",
+    RefractionCorrection::new(pressure, temperature).map(Some).map_err(|_| {
+        Error::invalid(Parameter::Air, format!("of {pressure} hPa"), "of a pressure above 0, up to 2000 hPa")
     })
 }
 
 fn julian(unix_s: f64) -> Result<JulianDate> {
     let year = 1970.0 + unix_s / (DAY * YEAR);
     if !YEARS.contains(&year) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::Instant,
-            value: format!("{unix_s} s from 1970, in the year {:.0}", year.floor()),
-            expected: "in the years 1000 to 3000",
-        });
+        return Err(Error::invalid(
+            Parameter::Instant,
+            format!("{unix_s} s from 1970, in the year {:.0}", year.floor()),
+            "in the years 1000 to 3000",
+        ));
     }
     delta_t::estimate(year)
         .and_then(|delta_t| JulianDate::new(UNIX_EPOCH + unix_s / DAY, delta_t))
@@ -291,11 +281,7 @@ fn julian(unix_s: f64) -> Result<JulianDate> {
 }
 
 fn invalid_time(unix_s: f64, why: &solar_positioning::Error) -> Error {
-    Error::InvalidParameter {
-        parameter: Parameter::Instant,
-        value: format!("{unix_s} s from 1970 ({why})"),
-        expected: "in the years 1000 to 3000",
-    }
+    Error::invalid(Parameter::Instant, format!("{unix_s} s from 1970 ({why})"), "in the years 1000 to 3000")
 }
 
 #[cfg(test)]

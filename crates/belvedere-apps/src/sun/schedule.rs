@@ -90,11 +90,8 @@ impl SunSchedule {
     /// [`Error::InvalidParameter`] for an angle outside its range, and where there is no day.
     pub fn new(days: &[SunDay], binning: Binning) -> Result<Self> {
         if days.is_empty() {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Period,
-                value: "0".to_owned(),
-                expected: "at least one day, and the last day not before the first",
-            });
+            let expected = "at least one day, and the last day not before the first";
+            return Err(Error::invalid(Parameter::Period, "0", expected));
         }
         let step_count: usize = days.iter().map(|day| day.steps.len()).sum();
         let angle = match binning {
@@ -240,7 +237,7 @@ fn checked(angle: f64) -> Result<f64> {
         return Ok(angle);
     }
     let value = angle.to_degrees().to_string();
-    Err(Error::InvalidParameter { parameter: Parameter::SunTolerance, value, expected: "above 0 to 5 degrees" })
+    Err(Error::invalid(Parameter::SunTolerance, value, "above 0 to 5 degrees"))
 }
 
 /// Angle between unit vectors, exact for small ones, radians.

@@ -100,7 +100,7 @@ impl Site {
         };
         if let Some(value) = far_outside(crs, position) {
             let expected = "one whose area of use holds the scene";
-            return Err(Error::InvalidParameter { parameter: Parameter::ReferenceSystem, value, expected });
+            return Err(Error::invalid(Parameter::ReferenceSystem, value, expected));
         }
         let [latitude, longitude] = projection.unproject(position)?;
         let height = height.clamp(LOWEST, HIGHEST);
@@ -113,20 +113,17 @@ impl Site {
     /// [`Error::InvalidParameter`] for values out of range or not finite; longitudes of up to one more turn are
     /// wrapped.
     pub fn validate(self) -> Result<Self> {
-        let invalid = |parameter, value: f64, expected| {
-            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
-        };
         if !(self.latitude.abs() <= FRAC_PI_2) {
-            return invalid(Parameter::Latitude, self.latitude.to_degrees(), "-90 to 90 degrees");
+            return Err(Error::invalid(Parameter::Latitude, self.latitude.to_degrees(), "-90 to 90 degrees"));
         }
         if !(self.longitude.abs() <= TAU) {
-            return invalid(Parameter::Longitude, self.longitude.to_degrees(), "-180 to 180 degrees");
+            return Err(Error::invalid(Parameter::Longitude, self.longitude.to_degrees(), "-180 to 180 degrees"));
         }
         if !(LOWEST..=HIGHEST).contains(&self.height) {
-            return invalid(Parameter::SiteHeight, self.height, "-500 to 10000 m above the sea");
+            return Err(Error::invalid(Parameter::SiteHeight, self.height, "-500 to 10000 m above the sea"));
         }
         if !(self.convergence.abs() <= TAU) {
-            return invalid(Parameter::North, self.convergence.to_degrees(), "-180 to 180 degrees");
+            return Err(Error::invalid(Parameter::North, self.convergence.to_degrees(), "-180 to 180 degrees"));
         }
         let turns = if self.longitude.abs() > PI { TAU.copysign(self.longitude) } else { 0.0 };
         Ok(Self { longitude: self.longitude - turns, ..self })

@@ -44,11 +44,8 @@ impl Zone {
             TimeZoneDatabase::bundled().get(text).ok()
         };
         let Some(zone) = zone else {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::TimeZone,
-                value: shortened(text),
-                expected: "a name such as Europe/Amsterdam, or an offset such as +02:00",
-            });
+            let expected = "a name such as Europe/Amsterdam, or an offset such as +02:00";
+            return Err(Error::invalid(Parameter::TimeZone, shortened(text), expected));
         };
         let name = zone.iana_name().unwrap_or(text).to_owned();
         Ok(Self { zone, name })
@@ -99,11 +96,8 @@ impl Zone {
     /// # Errors
     /// [`Error::InvalidParameter`] for instants that no calendar holds.
     pub fn date_at(&self, unix_s: f64) -> Result<Date> {
-        let t = timestamp(unix_s).ok_or_else(|| Error::InvalidParameter {
-            parameter: Parameter::Instant,
-            value: unix_s.to_string(),
-            expected: "in the years 1000 to 3000",
-        })?;
+        let t =
+            timestamp(unix_s).ok_or_else(|| Error::invalid(Parameter::Instant, unix_s, "in the years 1000 to 3000"))?;
         Ok(Date(self.zone.to_datetime(t).date()))
     }
 
@@ -114,10 +108,8 @@ impl Zone {
     /// # Errors
     /// [`Error::InvalidParameter`] for an hour that is not from −48 to 48, and at the end of the calendar.
     pub fn instant_of(&self, date: Date, hour: f64) -> Result<f64> {
-        let failed = || Error::InvalidParameter {
-            parameter: Parameter::HoursOfDay,
-            value: format!("{hour} on {date}"),
-            expected: "-48 to 48, in the years 1000 to 3000",
+        let failed = || {
+            Error::invalid(Parameter::HoursOfDay, format!("{hour} on {date}"), "-48 to 48, in the years 1000 to 3000")
         };
         if !(hour.abs() <= 48.0) {
             return Err(failed());
@@ -142,7 +134,7 @@ impl Date {
     pub fn new(year: i16, month: i8, day: i8) -> Result<Self> {
         if !YEARS.contains(&year) {
             let value = year.to_string();
-            return Err(Error::InvalidParameter { parameter: Parameter::Year, value, expected: "1000 to 2999" });
+            return Err(Error::invalid(Parameter::Year, value, "1000 to 2999"));
         }
         Self::checked(jiff::civil::Date::new(year, month, day).ok(), &format!("{year:04}-{month:02}-{day:02}"))
     }
@@ -159,10 +151,8 @@ impl Date {
     }
 
     fn checked(date: Option<jiff::civil::Date>, text: &str) -> Result<Self> {
-        date.filter(|date| YEARS.contains(&date.year())).map(Self).ok_or_else(|| Error::InvalidParameter {
-            parameter: Parameter::Date,
-            value: shortened(text),
-            expected: "a day such as 2026-06-21, in the years 1000 to 2999",
+        date.filter(|date| YEARS.contains(&date.year())).map(Self).ok_or_else(|| {
+            Error::invalid(Parameter::Date, shortened(text), "a day such as 2026-06-21, in the years 1000 to 2999")
         })
     }
 
@@ -218,7 +208,7 @@ impl fmt::Display for Date {
 /// begins or ends; an offset resolves these.
 pub fn parse_instant(text: &str, zone: Option<&Zone>) -> Result<f64> {
     let text = text.trim();
-    let invalid = |expected| Error::InvalidParameter { parameter: Parameter::Time, value: shortened(text), expected };
+    let invalid = |expected| Error::invalid(Parameter::Time, shortened(text), expected);
     const WRITING: &str =
         "written as 2026-06-21T12:00+02:00, with a zone as 2026-06-21T12:00[Europe/Amsterdam], or with --zone";
     let pieces = Pieces::parse(text).map_err(|_| match Date::parse(text.get(..10).unwrap_or_default()) {

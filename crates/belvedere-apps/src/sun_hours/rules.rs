@@ -211,11 +211,9 @@ impl SunRule {
             }),
             None => Self::of_text(text),
         };
-        rule.ok_or_else(|| Error::InvalidParameter {
-            parameter: Parameter::Rule,
-            value: text.chars().take(80).collect(),
-            expected: "a name such as nl-light, en17037-minimum or pl (all are in the help), or your own rule such as 1.5@03-21, 2@02-19..10-21>10 or 2@shortest-day@9-15,piece",
-        })
+        let expected = "a name such as nl-light, en17037-minimum or pl (all are in the help), \
+             or your own rule such as 1.5@03-21, 2@02-19..10-21>10 or 2@shortest-day@9-15,piece";
+        rule.ok_or_else(|| Error::invalid(Parameter::Rule, text.chars().take(80).collect::<String>(), expected))
     }
 
     fn of_text(text: &str) -> Option<Self> {

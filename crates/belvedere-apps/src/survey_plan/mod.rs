@@ -7,21 +7,21 @@
 //!
 //! Stations are chosen by [`place_cameras`]: places and lines are its targets.
 
+mod scanner;
 mod virtual_scan;
+
+pub use scanner::{STATION_HEIGHT, ScannerParams};
 
 use crate::cameras::{CoverageTable, Goal, Placement, PlacementParams, place_cameras};
 use belvedere_core::ground::Ground;
 use belvedere_core::query::{MedialScene, Proof};
 use belvedere_data::control::Control;
 use belvedere_data::vector::{length, sub};
-use belvedere_data::{Error, Parameter, Result};
+use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 use std::collections::HashMap;
-use std::f64::consts::FRAC_PI_2;
 use virtual_scan::{LEVELS, ScannedSpace, SeenCells, VirtualScan, ways_around};
 
-/// Height of a scanner on a tripod above the ground, metres.
-pub const STATION_HEIGHT: f64 = 1.8;
 /// Side of the cells in which unproven pieces of lines are one place, as a share of how near a pulse must pass.
 const CELL_PER_NEARNESS: f64 = 0.5;
 /// Share of the worth of a line that its proven share counts for. The rest counts for a station that settles the line
@@ -29,47 +29,6 @@ const CELL_PER_NEARNESS: f64 = 0.5;
 const WORTH_OF_SHARE: f64 = 0.25;
 /// Probability that nothing stands in the unseen space that pulses must pass, for each level of it ([`LEVELS`]).
 const CHANCES: [f64; LEVELS.len()] = [0.75, 0.5, 0.2];
-
-/// Limits of a scanner.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct ScannerParams {
-    /// Maximum range at which a surface returns pulses, metres, above 0. Default 100: medium-range scanners on tripods
-    /// reach 100 to 130 m on most surfaces.
-    pub max_range: f64,
-    /// Angle between neighbouring pulses, radians, above 0. Default 0.1°: a coarse scan, of a minute or two.
-    pub angular_step: f64,
-}
-
-belvedere_data::setters!(ScannerParams {
-    with_max_range(max_range: f64),
-    with_angular_step(angular_step: f64),
-});
-
-impl Default for ScannerParams {
-    fn default() -> Self {
-        Self { max_range: 100.0, angular_step: 0.1_f64.to_radians() }
-    }
-}
-
-impl ScannerParams {
-    /// Checks the parameters.
-    ///
-    /// # Errors
-    /// [`Error::InvalidParameter`] for one outside its range.
-    pub fn validate(&self) -> Result<()> {
-        let invalid = |parameter, value: f64, expected| {
-            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
-        };
-        if !(self.max_range.is_finite() && self.max_range > 0.0) {
-            return invalid(Parameter::MaxDistance, self.max_range, "finite and above zero metres");
-        }
-        if !(self.angular_step > 0.0 && self.angular_step <= FRAC_PI_2) {
-            return invalid(Parameter::AngleStep, self.angular_step.to_degrees(), "above 0, and at most 90");
-        }
-        Ok(())
-    }
-}
 
 /// Proof of unproven lines by stations.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,6 +1,6 @@
 //! A scan of the model from one place.
 
-use super::{STATION_HEIGHT, ScannerParams};
+use super::scanner::{STATION_HEIGHT, ScannerParams};
 use belvedere_core::ground::Ground;
 use belvedere_core::pulses::FreeSegmentParams;
 use belvedere_core::query::{MedialScene, Proof};

@@ -77,11 +77,7 @@ impl Targets {
     ) -> Result<(Self, CellReport)> {
         if !(params.height >= 0.0 && params.height.is_finite()) {
             let value = params.height.to_string();
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::HeightAboveGround,
-                value,
-                expected: "0 metres or more",
-            });
+            return Err(Error::invalid(Parameter::HeightAboveGround, value, "0 metres or more"));
         }
         if params.level == CellLevel::Surface {
             ground.heights = control.stage("computing top surface", 0, || {

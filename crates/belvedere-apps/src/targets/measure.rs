@@ -2,6 +2,7 @@
 
 use super::ResultKind;
 use belvedere_data::report::rounded;
+use belvedere_data::result_columns::ResultColumn;
 use serde::Serialize;
 
 /// One figure for each target.
@@ -95,6 +96,12 @@ impl Measure {
     pub fn without_values(&self) -> Self {
         let (name, subject, tags) = (self.name.clone(), self.subject.clone(), self.tags.clone());
         Self { name, subject, tags, values: Vec::new(), ..*self }
+    }
+
+    /// Its values as a column of a table.
+    #[must_use]
+    pub fn to_column(&self) -> ResultColumn {
+        ResultColumn::real(&self.name, self.values.iter().map(|&value| f64::from(value)), self.decimals)
     }
 
     /// Returns the statistics of the known values; `None` if no target has a value.

@@ -13,10 +13,12 @@ use rayon::prelude::*;
 pub fn terrain_within_reach(terrain: &ElevationGrid, observers: &[Observer]) -> Result<ElevationGrid> {
     let reaches = observers.iter().filter(|observer| observer.eye.iter().all(|v| v.is_finite()));
     let reaches = reaches.map(|observer| ([observer.eye[0], observer.eye[1]], observer.limits.distance[1]));
-    terrain.part(box_within_reach(terrain.on_map(), reaches)).ok_or_else(|| Error::InvalidParameter {
-        parameter: Parameter::MaxDistance,
-        value: "one within which the terrain has no 2 x 2 cells with heights".to_owned(),
-        expected: "more than the cells of the terrain",
+    terrain.part(box_within_reach(terrain.on_map(), reaches)).ok_or_else(|| {
+        Error::invalid(
+            Parameter::MaxDistance,
+            "one within which the terrain has no 2 x 2 cells with heights",
+            "more than the cells of the terrain",
+        )
     })
 }
 
@@ -52,7 +54,7 @@ pub fn far_viewshed(
     check(observers, &params.earth)?;
     if !(height >= 0.0 && height.is_finite()) {
         let (parameter, value) = (Parameter::HeightAboveGround, height.to_string());
-        return Err(Error::InvalidParameter { parameter, value, expected: "0 metres or more" });
+        return Err(Error::invalid(parameter, value, "0 metres or more"));
     }
     let width = terrain.heights().width();
     let mut answers = vec![Answer::OutsideCloud; terrain.heights().values().len()];

@@ -403,18 +403,14 @@ pub fn min_visible_heights(
 ) -> Result<Raster<f32>> {
     check(observers, earth)?;
     if !(ceiling >= 0.0) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::MaxHeight,
-            value: ceiling.to_string(),
-            expected: "0 metres or more",
-        });
+        return Err(Error::invalid(Parameter::MaxHeight, ceiling, "0 metres or more"));
     }
     if let Some(row) = observers.iter().position(|observer| scene.is_on_far_terrain(observer.eye)) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::Observer,
-            value: format!("number {}, on the terrain beyond the cloud", row + 1),
-            expected: "observers in the cloud",
-        });
+        return Err(Error::invalid(
+            Parameter::Observer,
+            format!("number {}, on the terrain beyond the cloud", row + 1),
+            "observers in the cloud",
+        ));
     }
     let feet = cell_targets(ground, 0.0);
     let mut heights = Raster::filled(ground.grid.width, ground.grid.height, f32::NAN);

@@ -37,7 +37,7 @@ impl SightLimits {
     /// [`Error::InvalidParameter`] for limits that are not numbers or leave nothing.
     pub fn validate(&self) -> Result<()> {
         let invalid = |parameter, value: [f64; 2], expected| {
-            Err(Error::InvalidParameter { parameter, value: format!("{} to {}", value[0], value[1]), expected })
+            Err(Error::invalid(parameter, format!("{} to {}", value[0], value[1]), expected))
         };
         if let Some(azimuth) = self.azimuth
             && !azimuth.iter().all(|v| v.is_finite())
@@ -97,11 +97,8 @@ pub fn places_along(corners: &[[f64; 3]], step: f64) -> Result<Vec<[f64; 3]>> {
     };
     let total: f64 = corners.windows(2).map(size).sum();
     if !(step > 0.0 && total / step <= MAX_PLACES) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::PathStep,
-            value: format!("{step} m on {total} m"),
-            expected: "above zero, and large enough for at most a million places",
-        });
+        let expected = "above zero, and large enough for at most a million places";
+        return Err(Error::invalid(Parameter::PathStep, format!("{step} m on {total} m"), expected));
     }
     let mut places: Vec<[f64; 3]> = corners.first().copied().into_iter().collect();
     let mut left = step;

@@ -1,6 +1,7 @@
 //! Views of windows summed up by the building that they belong to.
 
 use super::{SeenKind, WindowView};
+use crate::result_columns::ResultColumn;
 use serde::Serialize;
 
 /// The mean view from the windows of one building, by their weight.
@@ -51,12 +52,13 @@ pub fn views_by_name(views: &[WindowView], names: &[&str], weights: &[f64]) -> V
 /// The figures of buildings by name, percent: mean shares of each of [`SeenKind::ALL`], then the green and blue of the
 /// worst and of the best view.
 #[must_use]
-pub fn named_columns(views: &[NamedView]) -> Vec<(&'static str, Vec<f64>)> {
-    let percent = |share: &dyn Fn(&NamedView) -> f64| views.iter().map(|named| 100.0 * share(named)).collect();
-    let shares = SeenKind::ALL.iter().enumerate().map(|(i, seen)| (seen.name(), percent(&|named| named.shares[i])));
+pub fn named_columns(views: &[NamedView]) -> Vec<ResultColumn> {
+    let percent = |name: &str, share: &dyn Fn(&NamedView) -> f64| {
+        ResultColumn::real(name, views.iter().map(|named| 100.0 * share(named)), 3)
+    };
+    let shares = SeenKind::ALL.iter().enumerate().map(|(i, seen)| percent(seen.name(), &|named| named.shares[i]));
     let pleasant = ["least_green_and_blue", "most_green_and_blue"].into_iter().enumerate();
-    let pleasant = pleasant.map(|(i, name)| (name, percent(&|named| named.green_and_blue[i])));
-    shares.chain(pleasant).collect()
+    shares.chain(pleasant.map(|(i, name)| percent(name, &|named| named.green_and_blue[i]))).collect()
 }
 
 #[cfg(test)]

@@ -4,7 +4,6 @@
 use super::scene::trees;
 use super::{CloudInput, OrientChoice, SceneConfig, above_zero};
 use belvedere::medial::{Rule, Trees};
-use clap::builder::TypedValueParser;
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Deserializer};
 use std::path::PathBuf;

@@ -3,7 +3,7 @@
 use crate::arguments::{ComfortArguments, CornersArgument, Global, refuse};
 use crate::inputs::map_shapes::{TypedAre, shapes, wrong_shape};
 use crate::inputs::sun::sky_parts;
-use crate::inputs::windows::{FaceChoice, WindowColumn, WindowFile, coordinates};
+use crate::inputs::windows::{FaceChoice, WindowFile};
 use crate::outputs::formats::check_output;
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
@@ -12,9 +12,10 @@ use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{self, Ask, ComfortResults, Places, RoutesOrWindows};
 use belvedere::apps::exposure::ShadeAtEachSun;
+use belvedere::apps::result_columns::ResultColumn;
 use belvedere::apps::sun_hours::CLOCK_MEASURES;
-use belvedere::apps::targets::{Measure, Route};
-use belvedere::io::{FeatureShape, TableCells, TextRows, with_columns_read, write_table};
+use belvedere::apps::targets::Route;
+use belvedere::io::{FeatureShape, TextRows, with_columns_read, write_table};
 use std::path::Path;
 
 pub(crate) fn run(arguments: &ComfortArguments, global: &Global) -> Result<Summary> {
@@ -123,63 +124,40 @@ impl ComfortOutput<'_> {
         }
         let ComfortResults { targets, exposure, routes, .. } = self.found;
         let places: Vec<[f64; 3]> = routes.iter().flat_map(|route| route.places.iter().copied()).collect();
-        let mut columns: Vec<WindowColumn> =
-            vec![("distance_m", routes.iter().flat_map(Route::distances).collect(), 2)];
-        columns.extend(coordinates(self.frame, &places));
-        let of_measure =
-            |(measure, _): &(Measure, _)| -> Vec<f64> { measure.values.iter().copied().map(f64::from).collect() };
-        let values: Vec<Vec<f64>> = exposure.measures.iter().map(of_measure).collect();
-        let numbered = targets.groups.iter().zip(1_u64..);
-        let groups: Vec<Option<u64>> =
-            numbered.flat_map(|(group, number)| group.clone().map(move |_| Some(number))).collect();
-        let mut cells = vec![("route", TableCells::Whole(&groups))];
-        cells.extend(columns.iter().map(|(name, values, decimals)| (*name, TableCells::Real(values, *decimals))));
-        cells.extend(self.of_measures(&values));
-        cells.extend(self.clocks(&values));
-        Ok(write_table(output, &cells)?)
+        let numbers = targets.groups.iter().zip(1..).flat_map(|(group, number)| group.clone().map(move |_| number));
+        let mut columns = vec![
+            ResultColumn::whole("route", numbers),
+            ResultColumn::real("distance_m", routes.iter().flat_map(Route::distances), 2),
+        ];
+        columns.extend(ResultColumn::coordinates(self.frame, &places));
+        let measured: Vec<ResultColumn> = exposure.measures.iter().map(|(measure, _)| measure.to_column()).collect();
+        columns.extend(with_clocks(measured));
+        Ok(write_table(output, &columns)?)
     }
 
     /// A row for each route or window.
     fn write_groups(&self, output: &Path) -> Result<()> {
         let ComfortResults { targets, exposure, routes, windows, grid_north, .. } = self.found;
         let no_rows = TextRows::default();
-        let (name, names, given, columns) = match &self.source {
+        let (name, names, given, further) = match &self.source {
             PlaceSource::Routes(names) => {
-                let lengths = routes.iter().map(Route::length).collect();
-                ("route", names, &no_rows, vec![("length_m", lengths, 2)])
+                ("route", names, &no_rows, vec![ResultColumn::real("length_m", routes.iter().map(Route::length), 2)])
             }
             PlaceSource::Windows(file) => {
                 ("window", &self.found.names, &file.rows, file.columns(windows, self.frame, *grid_north))
             }
         };
-        let values: Vec<Vec<f64>> =
-            (0..exposure.measures.len()).map(|number| exposure.of_groups(number, targets)).collect();
-        let numbers: Vec<Option<u64>> = (1..).take(targets.groups.len()).map(Some).collect();
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let mut cells = vec![(name, TableCells::Whole(&numbers))];
+        let mut columns = vec![ResultColumn::whole(name, 1..=targets.groups.len())];
         if !names.is_empty() {
-            cells.push(("name", TableCells::Words(&names)));
+            columns.push(ResultColumn::words("name", names));
         }
-        cells.extend(columns.iter().map(|(name, values, decimals)| (*name, TableCells::Real(values, *decimals))));
-        cells.extend(self.of_measures(&values));
-        cells.extend(self.clocks(&values));
+        columns.extend(further);
+        let measured = exposure.measures.iter().enumerate().map(|(number, (measure, _))| {
+            ResultColumn::real(&measure.name, exposure.of_groups(number, targets), measure.decimals)
+        });
+        columns.extend(with_clocks(measured.collect()));
         let read = given.columns(0..given.row_count());
-        Ok(write_table(output, &with_columns_read(&read, &["x", "y", "z", "azimuth", "tilt"], &cells))?)
-    }
-
-    /// Values of each measure as columns.
-    fn of_measures<'a>(&'a self, values: &'a [Vec<f64>]) -> impl Iterator<Item = (&'a str, TableCells<'a>)> {
-        let measures = self.found.exposure.measures.iter().zip(values);
-        measures.map(|((measure, _), values)| (measure.name.as_str(), TableCells::Real(values, measure.decimals)))
-    }
-
-    /// Hours of the day as times of the clock.
-    fn clocks<'a>(&'a self, values: &'a [Vec<f64>]) -> impl Iterator<Item = (&'a str, TableCells<'a>)> {
-        let measures = self.found.exposure.measures.iter().zip(values);
-        measures.filter_map(|((measure, _), hours)| {
-            let (_, name) = CLOCK_MEASURES.into_iter().find(|(hours, _)| *hours == measure.name)?;
-            Some((name, TableCells::Clock(hours)))
-        })
+        Ok(write_table(output, &with_columns_read(&read, &["x", "y", "z", "azimuth", "tilt"], columns))?)
     }
 
     /// A row for each route and sun.
@@ -187,12 +165,12 @@ impl ComfortOutput<'_> {
         let ComfortResults { exposure, schedule, grid_north, .. } = self.found;
         let (mut numbers, mut dates) = (Vec::new(), Vec::new());
         let mut columns: [Vec<f64>; 4] = std::array::from_fn(|_| Vec::new());
-        for (shares, number) in exposure.shaded_shares.iter().zip(1_u64..) {
+        for (shares, number) in exposure.shaded_shares.iter().zip(1_usize..) {
             for day in &schedule.days {
                 for step in &day.steps {
                     let row = step.direction as usize;
                     let [azimuth, elevation] = schedule.grid_azimuth_and_elevation(row);
-                    numbers.push(Some(number));
+                    numbers.push(number);
                     dates.push(day.date.to_string());
                     let azimuth = (azimuth + grid_north).to_degrees().rem_euclid(360.0);
                     let values = [step.middle(), azimuth, elevation.to_degrees(), shares[row]];
@@ -200,18 +178,26 @@ impl ComfortOutput<'_> {
                 }
             }
         }
-        let dates: Vec<&str> = dates.iter().map(String::as_str).collect();
-        let [hours, azimuths, elevations, shares] = &columns;
-        Ok(write_table(
-            output,
-            &[
-                ("route", TableCells::Whole(&numbers)),
-                ("date", TableCells::Words(&dates)),
-                ("hour", TableCells::Real(hours, 4)),
-                ("azimuth_deg", TableCells::Real(azimuths, 3)),
-                ("elevation_deg", TableCells::Real(elevations, 3)),
-                ("shaded_share", TableCells::Real(shares, 4)),
-            ],
-        )?)
+        let [hours, azimuths, elevations, shares] = columns;
+        let columns = [
+            ResultColumn::whole("route", numbers),
+            ResultColumn::words("date", dates),
+            ResultColumn::real("hour", hours, 4),
+            ResultColumn::real("azimuth_deg", azimuths, 3),
+            ResultColumn::real("elevation_deg", elevations, 3),
+            ResultColumn::real("shaded_share", shares, 4),
+        ];
+        Ok(write_table(output, &columns)?)
     }
+}
+
+/// Columns of measures; behind them those that are hours of the day, as times of the clock.
+fn with_clocks(mut columns: Vec<ResultColumn>) -> Vec<ResultColumn> {
+    let clock = |column: &ResultColumn| {
+        let (_, name) = CLOCK_MEASURES.into_iter().find(|(hours, _)| *hours == column.name)?;
+        Some(ResultColumn::clock(name, column.numbers().iter().copied()))
+    };
+    let clocks: Vec<ResultColumn> = columns.iter().filter_map(clock).collect();
+    columns.extend(clocks);
+    columns
 }

@@ -9,9 +9,10 @@ use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::apps::ask::Remark;
 use belvedere::apps::difference::{clear_added, clear_unproven, contradiction_of, difference};
+use belvedere::apps::result_columns::ResultColumn;
 use belvedere::figures::write_png;
 use belvedere::io::{
-    BandLabel, BandValues, Bands, Georeference, NamedBand, PlacedRaster, ReadOptions, TableCells, read_cloud, read_tif,
+    BandLabel, BandValues, Bands, Georeference, NamedBand, PlacedRaster, ReadOptions, read_cloud, read_tif,
     write_table, write_tif_bands,
 };
 use belvedere::raster::Raster;
@@ -99,12 +100,9 @@ fn warn_of_quantities(
 }
 
 fn write_figures(output: &Path, figures: &[(&str, f64)]) -> belvedere::Result<()> {
-    let cells: Vec<[f64; 1]> = figures.iter().map(|(_, value)| [*value]).collect();
     let decimals = |name: &str| if name.starts_with("cells") { 0 } else { 4 };
-    let columns: Vec<(&str, TableCells<'_>)> = (figures.iter().zip(&cells))
-        .map(|((name, _), value)| (*name, TableCells::Real(value, decimals(name))))
-        .collect();
-    write_table(output, &columns)
+    let column = |&(name, value): &(&str, f64)| ResultColumn::real(name, [value], decimals(name));
+    write_table(output, &figures.iter().map(column).collect::<Vec<_>>())
 }
 
 /// The changes of the further results that both rasters have.

@@ -4,14 +4,13 @@ use crate::arguments::{GlareArguments, Global, refuse};
 use crate::inputs::observers::min_count;
 use crate::inputs::windows::{FaceChoice, WindowFile};
 use crate::outputs::formats::{check_output, extension};
-use crate::outputs::result_columns::write_columns;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{self, Ask, Days, GivenWindow, GivenWindows, GlareResults, Places};
 use belvedere::figures::{DayPiece, day_chart, write_png};
-use belvedere::io::is_mesh;
+use belvedere::io::{is_mesh, write_table};
 use std::path::Path;
 
 /// Maximum number of days of a chart.
@@ -47,11 +46,11 @@ pub(crate) fn run(arguments: &GlareArguments, global: &Global) -> Result<Summary
     for output in &arguments.output {
         run.stage("writing", 0, |_| match extension(output).as_str() {
             "png" => write_chart(output, found),
-            _ => write_columns(output, None, &found.columns(&names)),
+            _ => Ok(write_table(output, &found.columns(&names))?),
         })?;
     }
     if let Some(output) = &arguments.by_hour {
-        run.stage("writing", 0, |_| write_columns(output, None, &found.columns_by_hour()))?;
+        run.stage("writing", 0, |_| write_table(output, &found.columns_by_hour()))?;
     }
     run.summary.add_paths("written", arguments.output.iter().chain(&arguments.by_hour));
     Ok(run.finish())

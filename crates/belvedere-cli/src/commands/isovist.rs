@@ -7,10 +7,11 @@ use crate::pipeline::scene_in_reach;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, Ask, IsovistColumn, IsovistsResults, Places, Scene};
+use belvedere::apps::ask::{self, Ask, IsovistsResults, Places, Scene};
 use belvedere::apps::isovist::IsovistParams;
+use belvedere::apps::result_columns::ResultColumn;
 use belvedere::figures::{panorama_picture, write_png};
-use belvedere::io::{TableCells, TextRows, atomic, with_columns_read, write_table};
+use belvedere::io::{TextRows, atomic, with_columns_read, write_table};
 use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::Path;
@@ -69,27 +70,19 @@ fn check_pictures(arguments: &IsovistArguments, count: usize) -> Result<()> {
 }
 
 /// Returns the columns of isovists: the position of each eye, in the coordinates of the file, and the measures.
-fn columns(found: &IsovistsResults, scene: &Scene) -> Vec<IsovistColumn> {
-    let places: Vec<[f64; 3]> = found.eyes.places.iter().map(|&place| scene.frame().file_from_local(place)).collect();
-    let place = |(axis, name): (usize, &'static str)| IsovistColumn {
-        name,
-        decimals: 3,
-        values: places.iter().map(|place| place[axis]).collect(),
-    };
-    ["x", "y", "z"].into_iter().enumerate().map(place).chain(found.columns()).collect()
+fn columns(found: &IsovistsResults, scene: &Scene) -> Vec<ResultColumn> {
+    ResultColumn::coordinates(scene.frame(), &found.eyes.places).into_iter().chain(found.columns()).collect()
 }
 
 /// A row for each observer, with what a table said of it.
-fn write_rows(output: &Path, columns: &[IsovistColumn], given: &TextRows) -> belvedere::Result<()> {
-    let named: Vec<(&'static str, TableCells<'_>)> =
-        columns.iter().map(|column| (column.name, TableCells::Real(&column.values, column.decimals))).collect();
+fn write_rows(output: &Path, columns: &[ResultColumn], given: &TextRows) -> belvedere::Result<()> {
     let read = given.columns(0..given.row_count());
-    write_table(output, &with_columns_read(&read, &["x", "y", "z"], &named))
+    write_table(output, &with_columns_read(&read, &["x", "y", "z"], columns.to_vec()))
 }
 
-fn write_json(output: &Path, columns: &[IsovistColumn], found: &IsovistsResults) -> belvedere::Result<()> {
+fn write_json(output: &Path, columns: &[ResultColumn], found: &IsovistsResults) -> belvedere::Result<()> {
     let object = |(row, isovist): (usize, &Option<belvedere::apps::isovist::Isovist>)| {
-        let value = |column: &IsovistColumn| (column.name.to_owned(), json!(column.values.get(row)));
+        let value = |column: &ResultColumn| (column.name.clone(), json!(column.numbers().get(row)));
         let mut object: Map<String, Value> = columns.iter().map(value).collect();
         let corners = isovist.iter().flat_map(|isovist| &isovist.plan.corners);
         let corners: Vec<Value> = corners

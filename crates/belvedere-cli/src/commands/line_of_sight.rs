@@ -15,10 +15,11 @@ use belvedere::apps::ask::{
     Standing,
 };
 use belvedere::apps::profile::SightProfile;
+use belvedere::apps::result_columns::ResultColumn;
+use belvedere::apps::targets::Measure;
 use belvedere::figures::{DistanceProfile, profile_picture, write_png};
 use belvedere::io::{
-    PathLine, RowsAre, TableCells, TextRows, row_properties, with_columns_read, write_graphml, write_places,
-    write_table,
+    PathLine, RowsAre, TextRows, row_properties, with_columns_read, write_graphml, write_places, write_table,
 };
 use belvedere::query::{Answer, UnprovenAs};
 use belvedere::vector::{length, sub};
@@ -113,47 +114,40 @@ fn network(path: &Path, max_distance: Option<f64>, scene: &Scene, run: &mut Comm
 
 fn write(output: &Path, found: &SightsResults, scene: &Scene, rows: &TextRows) -> belvedere::Result<()> {
     let frame = scene.frame();
-    let names: Option<[Vec<&str>; 2]> = found
-        .network
-        .as_ref()
-        .map(|network| [0, 1].map(|end| network.pairs.iter().map(|pair| &network.names[pair[end]][..]).collect()));
     let end = |column: usize| found.pairs.iter().map(move |pair| frame.file_from_local(pair[column / 3])[column % 3]);
-    let ends: [Vec<f64>; 6] = std::array::from_fn(|column| end(column).collect());
     let SightColumns { ranges, unproven, fresnel_free_percent, places, balls, sources, meshes, surfaces, is_terrain } =
         found.columns(scene);
-    let codes: Vec<Option<u64>> = found.answers.iter().map(|&answer| Some(u64::from(answer as u8))).collect();
-    let place: [Vec<f64>; 3] = std::array::from_fn(|axis| places.iter().map(|place| place[axis]).collect());
-    let balls: Vec<Option<u64>> = balls.into_iter().map(|ball| ball.map(|ball| ball as u64)).collect();
-    let sources: Vec<Option<u64>> = sources.into_iter().map(|source| source.map(u64::from)).collect();
-    let terrain: Option<Vec<Option<u64>>> = is_terrain.map(|all| all.into_iter().map(|is| is.map(u64::from)).collect());
-    let mut columns: Vec<(&str, TableCells<'_>)> = Vec::new();
-    columns.extend(names.iter().flatten().zip(["a", "b"]).map(|(words, name)| (name, TableCells::Words(words))));
-    columns.extend(ENDS.iter().zip(&ends).map(|(&name, values)| (name, TableCells::Real(values, 4))));
-    let lengths: Vec<f64> = found.pairs.iter().map(|&[a, b]| length(sub(b, a))).collect();
-    if found.network.is_some() || extension(output) != "csv" {
-        columns.push(("length_m", TableCells::Real(&lengths, 3)));
+    let mut columns = Vec::new();
+    if let Some(network) = &found.network {
+        let names = |end: usize| network.pairs.iter().map(move |pair| &network.names[pair[end]]);
+        columns.extend([ResultColumn::words("a", names(0)), ResultColumn::words("b", names(1))]);
     }
-    columns.push(("answer", TableCells::Whole(&codes)));
-    let sure: Vec<(Vec<f64>, usize)> = found
-        .sure
-        .iter()
-        .map(|measure| (measure.values.iter().map(|&v| f64::from(v)).collect(), measure.decimals))
-        .collect();
-    let names = found.sure.iter().map(|measure| measure.name.as_str());
-    columns.extend(names.zip(&sure).map(|(name, (values, decimals))| (name, TableCells::Real(values, *decimals))));
-    columns.push(("first_block_range_m", TableCells::Real(&ranges, 3)));
-    columns.extend(unproven.as_ref().map(|lengths| ("unproven_m", TableCells::Real(lengths, 3))));
-    columns.extend(fresnel_free_percent.as_ref().map(|free| ("fresnel_free_percent", TableCells::Real(free, 1))));
-    columns.extend(["block_x", "block_y", "block_z"].into_iter().zip(&place).map(|(n, v)| (n, TableCells::Real(v, 3))));
-    columns.push(("block_ball", TableCells::Whole(&balls)));
-    columns.push(("block_source", TableCells::Whole(&sources)));
-    columns.extend(meshes.as_ref().map(|names| ("block_mesh", TableCells::Words(names))));
-    columns.extend(surfaces.as_ref().map(|names| ("block_surface", TableCells::Words(names))));
-    columns.extend(terrain.as_ref().map(|terrain| ("block_terrain", TableCells::Whole(terrain))));
+    columns.extend(ENDS.iter().enumerate().map(|(column, name)| ResultColumn::real(*name, end(column), 4)));
+    if found.network.is_some() || extension(output) != "csv" {
+        columns.push(ResultColumn::real("length_m", found.pairs.iter().map(|&[a, b]| length(sub(b, a))), 3));
+    }
+    columns.push(ResultColumn::whole("answer", found.answers.iter().map(|&answer| usize::from(answer as u8))));
+    columns.extend(found.sure.iter().map(Measure::to_column));
+    columns.push(ResultColumn::real("first_block_range_m", ranges, 3));
+    columns.extend(unproven.map(|lengths| ResultColumn::real("unproven_m", lengths, 3)));
+    columns.extend(fresnel_free_percent.map(|free| ResultColumn::real("fresnel_free_percent", free, 1)));
+    columns.extend(
+        ["block_x", "block_y", "block_z"]
+            .into_iter()
+            .enumerate()
+            .map(|(axis, name)| ResultColumn::real(name, places.iter().map(|place| place[axis]), 3)),
+    );
+    columns.push(ResultColumn::whole("block_ball", balls));
+    columns.push(ResultColumn::whole("block_source", sources.into_iter().map(|source| source.map(|row| row as usize))));
+    columns.extend(meshes.map(|names| ResultColumn::words("block_mesh", names)));
+    columns.extend(surfaces.map(|names| ResultColumn::words("block_surface", names)));
+    columns.extend(is_terrain.map(|all| {
+        ResultColumn::whole("block_terrain", all.into_iter().map(|is_terrain| is_terrain.map(usize::from)))
+    }));
     let read = rows.columns(0..rows.row_count());
     match (extension(output).as_str(), &found.network) {
         ("geojson" | "gpkg", _) => {
-            let columns: Vec<_> = with_columns_read(&read, &ENDS, &columns);
+            let columns = with_columns_read(&read, &ENDS, columns);
             let of_line = |row: usize| {
                 let places = found.pairs[row].map(|end| std::array::from_fn(|axis| end[axis] + frame.origin[axis]));
                 let mut properties = row_properties(&columns, row);
@@ -166,12 +160,14 @@ fn write(output: &Path, found: &SightsResults, scene: &Scene, rows: &TextRows) -
             write_places(output, &[], &lines, &frame.crs).map(|_| ())
         }
         ("graphml", Some(network)) => {
-            columns
-                .retain(|(name, _)| !ENDS.contains(name) && !name.starts_with("block") && !["a", "b"].contains(name));
+            columns.retain(|ResultColumn { name, .. }| {
+                let name = &name[..];
+                !ENDS.contains(&name) && !name.starts_with("block") && !["a", "b"].contains(&name)
+            });
             write_network(output, found, network, &columns, scene)
         }
         (_, Some(_)) => write_table(output, &columns),
-        (_, None) => write_table(output, &with_columns_read(&read, &ENDS, &columns)),
+        (_, None) => write_table(output, &with_columns_read(&read, &ENDS, columns)),
     }
 }
 
@@ -180,21 +176,17 @@ fn write_network(
     output: &Path,
     found: &SightsResults,
     network: &SightNetwork,
-    edges: &[(&str, TableCells<'_>)],
+    edges: &[ResultColumn],
     scene: &Scene,
 ) -> belvedere::Result<()> {
-    let places: Vec<[f64; 3]> = network.places.iter().map(|&place| scene.frame().file_from_local(place)).collect();
-    let axes: [Vec<f64>; 3] = std::array::from_fn(|axis| places.iter().map(|place| place[axis]).collect());
-    let names: Vec<&str> = network.names.iter().map(String::as_str).collect();
-    let whole = |values: &[usize]| values.iter().map(|&value| Some(value as u64)).collect::<Vec<_>>();
-    let (links, groups) = (whole(&network.link_counts), whole(&network.groups));
-    let mut nodes = vec![("name", TableCells::Words(&names))];
-    nodes.extend(["x", "y", "z"].into_iter().zip(&axes).map(|(name, values)| (name, TableCells::Real(values, 3))));
-    nodes.extend([("links", TableCells::Whole(&links)), ("group", TableCells::Whole(&groups))]);
+    let mut nodes = vec![ResultColumn::words("name", &network.names)];
+    nodes.extend(ResultColumn::coordinates(scene.frame(), &network.places));
+    nodes.push(ResultColumn::whole("links", network.link_counts.iter().copied()));
+    nodes.push(ResultColumn::whole("group", network.groups.iter().copied()));
     let is_edge = |answer: Answer| [Answer::Visible, Answer::Unproven].contains(&answer);
     let ends: Vec<Option<[usize; 2]>> =
         network.pairs.iter().zip(&found.answers).map(|(&pair, &answer)| is_edge(answer).then_some(pair)).collect();
-    write_graphml(output, places.len(), &nodes, &ends, edges)
+    write_graphml(output, network.places.len(), &nodes, &ends, edges)
 }
 
 /// Returns the length of the first line that no pulse came near to, metres, if that makes its answer unproven.
@@ -228,17 +220,14 @@ fn write_profile(output: &Path, profile: &SightProfile, scene: &Scene, unproven:
         });
         return write_png(output, &picture);
     }
-    let blocked: Vec<Option<u64>> = profile.blocked.iter().map(|&blocked| Some(u64::from(blocked))).collect();
     let in_words = |piece: &[f64; 2]| piece.map(|v| format!("{v:.2}")).join("..");
-    let blocks: Vec<String> =
-        solid.iter().map(|pieces| pieces.iter().map(in_words).collect::<Vec<_>>().join(" ")).collect();
-    let blocks: Vec<&str> = blocks.iter().map(String::as_str).collect();
+    let blocks = solid.iter().map(|pieces| pieces.iter().map(in_words).collect::<Vec<_>>().join(" "));
     let columns = [
-        ("distance_m", TableCells::Real(&profile.distances, 3)),
-        ("ground", TableCells::Real(&ground, 3)),
-        ("line", TableCells::Real(&line, 3)),
-        ("blocked", TableCells::Whole(&blocked)),
-        ("blocks", TableCells::Words(&blocks)),
+        ResultColumn::real("distance_m", profile.distances.iter().copied(), 3),
+        ResultColumn::real("ground", ground, 3),
+        ResultColumn::real("line", line, 3),
+        ResultColumn::whole("blocked", profile.blocked.iter().map(|&blocked| usize::from(blocked))),
+        ResultColumn::words("blocks", blocks),
     ];
     write_table(output, &columns)
 }

@@ -14,9 +14,8 @@ use belvedere::apps::ask::{
     Ask, Candidates, GridCells, Places, PlannedStation, Scene, Standing, SunPlace, Suns, SurveyPlanQuestion,
     SurveyPlanResults,
 };
-use belvedere::io::{RowsAre, Spot, TableCells, write_places, write_table};
-use belvedere::report::rounded;
-use serde_json::{Map, Value};
+use belvedere::apps::result_columns::ResultColumn;
+use belvedere::io::{RowsAre, Spot, row_properties, write_places, write_table};
 use std::path::Path;
 
 pub(crate) fn run(arguments: &SurveyPlanArguments, global: &Global) -> Result<Summary> {
@@ -88,52 +87,39 @@ fn question(arguments: &SurveyPlanArguments) -> SurveyPlanQuestion {
 /// A row or a point for each candidate that can be used.
 fn write(output: &Path, found: &SurveyPlanResults, scene: &Scene) -> Result<()> {
     let (stations, frame) = (found.stations(), scene.frame());
+    let mut columns = gains(found, &stations);
     if ["geojson", "gpkg"].contains(&&*extension(output)) {
-        let spot = |station: &PlannedStation| {
+        let spot = |(row, station): (usize, &PlannedStation)| {
             let place = std::array::from_fn(|i| station.eye[i] + frame.origin[i]);
-            Spot { place, properties: properties(station, found) }
+            let mut properties = row_properties(&columns, row);
+            properties.retain(|name, value| name == "station" || !value.is_null());
+            Spot { place, properties }
         };
-        let spots: Vec<Spot> = stations.iter().map(spot).collect();
+        let spots: Vec<Spot> = stations.iter().enumerate().map(spot).collect();
         write_places(output, &spots, &[], &frame.crs)?;
         return Ok(());
     }
-    let places: Vec<[f64; 3]> = stations.iter().map(|station| frame.file_from_local(station.eye)).collect();
-    let axis = |axis: usize| places.iter().map(|place| place[axis]).collect::<Vec<f64>>();
-    let [x, y, z] = [0, 1, 2].map(axis);
-    let whole = |value: &dyn Fn(&PlannedStation) -> Option<usize>| -> Vec<Option<u64>> {
-        stations.iter().map(|station| value(station).map(|value| value as u64)).collect()
-    };
-    let real = |value: &dyn Fn(&PlannedStation) -> Option<f64>| -> Vec<f64> {
-        stations.iter().map(|station| value(station).unwrap_or(f64::NAN)).collect()
-    };
-    let cells = [
-        ("station", TableCells::Whole(&whole(&|station| station.order))),
-        ("x", TableCells::Real(&x, 3)),
-        ("y", TableCells::Real(&y, 3)),
-        ("z", TableCells::Real(&z, 3)),
-        ("settles_alone", TableCells::Whole(&whole(&|station| Some(station.alone.settled)))),
-        ("settles_alone_percent", TableCells::Real(&real(&|station| Some(found.share(station.alone))), 2)),
-        ("expected_alone", TableCells::Real(&real(&|station| Some(station.alone.expected)), 1)),
-        ("proves_alone_m", TableCells::Real(&real(&|station| Some(station.alone.proven)), 1)),
-        ("settled", TableCells::Whole(&whole(&|station| Some(station.together?.settled)))),
-        ("expected", TableCells::Real(&real(&|station| Some(station.together?.expected)), 1)),
-        ("settled_percent", TableCells::Real(&real(&|station| Some(found.share(station.together?))), 2)),
-    ];
-    Ok(write_table(output, &cells)?)
+    let places: Vec<[f64; 3]> = stations.iter().map(|station| station.eye).collect();
+    columns.splice(1..1, ResultColumn::coordinates(frame, &places));
+    Ok(write_table(output, &columns)?)
 }
 
-fn properties(station: &PlannedStation, found: &SurveyPlanResults) -> Map<String, Value> {
-    let mut properties = Map::new();
-    let mut add = |name: &str, value: Value| properties.insert(name.to_owned(), value);
-    add("station", station.order.into());
-    add("settles_alone", station.alone.settled.into());
-    add("settles_alone_percent", found.share(station.alone).into());
-    add("expected_alone", rounded(station.alone.expected, 1).into());
-    add("proves_alone_m", rounded(station.alone.proven, 1).into());
-    if let Some(together) = station.together {
-        add("settled", together.settled.into());
-        add("expected", rounded(together.expected, 1).into());
-        add("settled_percent", found.share(together).into());
-    }
-    properties
+/// Gains of stations; none together with others where a station was not chosen.
+fn gains(found: &SurveyPlanResults, stations: &[PlannedStation]) -> Vec<ResultColumn> {
+    let whole = |name: &str, value: &dyn Fn(&PlannedStation) -> Option<usize>| {
+        ResultColumn::whole(name, stations.iter().map(value))
+    };
+    let real = |name: &str, value: &dyn Fn(&PlannedStation) -> Option<f64>, decimals| {
+        ResultColumn::real(name, stations.iter().map(|station| value(station).unwrap_or(f64::NAN)), decimals)
+    };
+    vec![
+        whole("station", &|station| station.order),
+        whole("settles_alone", &|station| Some(station.alone.settled)),
+        real("settles_alone_percent", &|station| Some(found.share(station.alone)), 2),
+        real("expected_alone", &|station| Some(station.alone.expected), 1),
+        real("proves_alone_m", &|station| Some(station.alone.proven), 1),
+        whole("settled", &|station| Some(station.together?.settled)),
+        real("expected", &|station| Some(station.together?.expected), 1),
+        real("settled_percent", &|station| Some(found.share(station.together?)), 2),
+    ]
 }

@@ -8,12 +8,10 @@ use crate::run::CommandContext;
 use anyhow::{Result, bail};
 use belvedere::Frame;
 use belvedere::apps::ask::{GivenWindow, GivenWindows, SharedObject};
+use belvedere::apps::result_columns::ResultColumn;
 use belvedere::apps::targets::Window;
 use belvedere::io::{TextRows, is_mesh, read_table};
 use std::path::Path;
-
-/// Name, values and decimals.
-pub(crate) type WindowColumn = (&'static str, Vec<f64>, usize);
 
 /// Choice of the faces of a mesh that are windows, and their division.
 #[derive(Default)]
@@ -28,7 +26,7 @@ pub(crate) struct FaceChoice<'a> {
 pub(crate) struct WindowFile {
     pub(crate) given: GivenWindows,
     /// Columns of the table of windows.
-    columns: Vec<WindowColumn>,
+    columns: Vec<ResultColumn>,
     /// The rows of a table.
     pub(crate) rows: TextRows,
 }
@@ -73,18 +71,20 @@ impl WindowFile {
     }
 
     /// Returns the position and properties of each window; the azimuth of grid north is `grid_north`, radians.
-    pub(crate) fn columns(&self, windows: &[Window], frame: &Frame, grid_north: f64) -> Vec<WindowColumn> {
+    pub(crate) fn columns(&self, windows: &[Window], frame: &Frame, grid_north: f64) -> Vec<ResultColumn> {
         if matches!(self.given, GivenWindows::Each(_)) {
             return self.columns.clone();
         }
         let centers: Vec<[f64; 3]> = windows.iter().map(|window| window.center).collect();
-        let column = |of: &dyn Fn(&Window) -> f64| -> Vec<f64> { windows.iter().map(of).collect() };
-        let mut columns = vec![("face", column(&|window| window.face.map_or(f64::NAN, f64::from)), 0)];
-        columns.extend(coordinates(frame, &centers));
+        let column = |name: &str, of: &dyn Fn(&Window) -> f64, decimals| {
+            ResultColumn::real(name, windows.iter().map(of), decimals)
+        };
+        let mut columns = vec![column("face", &|window| window.face.map_or(f64::NAN, f64::from), 0)];
+        columns.extend(ResultColumn::coordinates(frame, &centers));
         columns.extend([
-            ("azimuth", column(&|window| (window.azimuth + grid_north).to_degrees().rem_euclid(360.0)), 2),
-            ("tilt", column(&|window| window.tilt.to_degrees()), 2),
-            ("area_m2", column(&|window| window.area.unwrap_or(f64::NAN)), 4),
+            column("azimuth", &|window| (window.azimuth + grid_north).to_degrees().rem_euclid(360.0), 2),
+            column("tilt", &|window| window.tilt.to_degrees(), 2),
+            column("area_m2", &|window| window.area.unwrap_or(f64::NAN), 4),
         ]);
         columns
     }
@@ -109,21 +109,9 @@ fn table(path: &Path, frame: &Frame) -> Result<WindowFile> {
         GivenWindow { place, azimuth_deg: azimuth[row], tilt_deg: tilt[row], size }
     };
     let given = GivenWindows::Each((0..table.row_count()).map(window).collect());
-    let columns = vec![
-        ("x", x.to_vec(), 3),
-        ("y", y.to_vec(), 3),
-        ("z", z.to_vec(), 3),
-        ("azimuth", azimuth.to_vec(), 2),
-        ("tilt", tilt, 2),
-    ];
-    Ok(WindowFile { given, columns, rows: table.into_text() })
-}
-
-/// Coordinates of the file.
-pub(crate) fn coordinates(frame: &Frame, places: &[[f64; 3]]) -> Vec<WindowColumn> {
-    let of_file: Vec<[f64; 3]> = places.iter().map(|&place| frame.file_from_local(place)).collect();
-    let axis = |i: usize| of_file.iter().map(|place| place[i]).collect();
-    vec![("x", axis(0), 3), ("y", axis(1), 3), ("z", axis(2), 3)]
+    let columns = [("x", x, 3), ("y", y, 3), ("z", z, 3), ("azimuth", azimuth, 2), ("tilt", &tilt[..], 2)]
+        .map(|(name, values, decimals)| ResultColumn::real(name, values.iter().copied(), decimals));
+    Ok(WindowFile { given, columns: columns.to_vec(), rows: table.into_text() })
 }
 
 /// Refuses windows that are the faces of a mesh, which are too many to list.

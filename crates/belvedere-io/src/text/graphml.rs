@@ -5,11 +5,9 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::files::output::{Output, WriteSeek};
-use crate::text::table::{TableCells, row_properties};
+use crate::text::table::row_properties;
+use belvedere_data::result_columns::{ResultColumn, ResultValues};
 use belvedere_data::{Error, Result};
-
-/// Columns of properties.
-type Columns<'a> = [(&'a str, TableCells<'a>)];
 
 /// Writes an undirected graph: a node for each of `node_count` rows of `nodes`, and an edge for each row of `ends` that
 /// is not `None`, with its row of `edges` as properties. Empty cells are left out.
@@ -22,9 +20,9 @@ type Columns<'a> = [(&'a str, TableCells<'a>)];
 pub fn write_graphml<'a>(
     output: impl Into<Output<'a>>,
     node_count: usize,
-    nodes: &Columns<'_>,
+    nodes: &[ResultColumn],
     ends: &[Option<[usize; 2]>],
-    edges: &Columns<'_>,
+    edges: &[ResultColumn],
 ) -> Result<()> {
     output.into().write(|path, output| {
         let mut writer = Writer { path, output };
@@ -32,11 +30,11 @@ pub fn write_graphml<'a>(
             "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<graphml xmlns=\"http://graphml.graphdrawing.org/xmlns\">",
         )?;
         for (of, columns) in [("node", nodes), ("edge", edges)] {
-            for (number, (name, cells)) in columns.iter().enumerate() {
-                let kind = match cells {
-                    TableCells::Real(..) => "double",
-                    TableCells::Whole(_) => "long",
-                    TableCells::Clock(_) | TableCells::Words(_) | TableCells::Given(..) => "string",
+            for (number, ResultColumn { name, values }) in columns.iter().enumerate() {
+                let kind = match values {
+                    ResultValues::Real(..) => "double",
+                    ResultValues::Whole(_) => "long",
+                    ResultValues::Clock(_) | ResultValues::Words(_) => "string",
                 };
                 let name = escaped(name);
                 writer.line(&format!(
@@ -68,10 +66,10 @@ impl Writer<'_> {
     }
 
     /// An element with the cells of a row as its data.
-    fn element(&mut self, opening: &str, name: &str, columns: &Columns<'_>, row: usize) -> Result<()> {
+    fn element(&mut self, opening: &str, name: &str, columns: &[ResultColumn], row: usize) -> Result<()> {
         let properties = row_properties(columns, row);
-        let data = columns.iter().enumerate().filter_map(|(number, (column, _))| {
-            let text = match properties.get(*column)? {
+        let data = columns.iter().enumerate().filter_map(|(number, column)| {
+            let text = match properties.get(&column.name)? {
                 Value::Null => return None,
                 Value::String(text) => escaped(text),
                 other => other.to_string(),
@@ -100,10 +98,8 @@ mod tests {
     fn names_are_escaped_and_empty_cells_left_out() {
         let mut bytes = std::io::Cursor::new(Vec::new());
         let names = ["a & \"b\"", "<c>\u{1}", ""];
-        let heights = [1.5, f64::NAN, 3.0];
-        let nodes = [("name", TableCells::Words(&names)), ("z", TableCells::Real(&heights, 2))];
-        let lengths = [10.0, 20.0];
-        let edges = [("length_m", TableCells::Real(&lengths, 1))];
+        let nodes = [ResultColumn::words("name", names), ResultColumn::real("z", [1.5, f64::NAN, 3.0], 2)];
+        let edges = [ResultColumn::real("length_m", [10.0, 20.0], 1)];
         let ends = [None, Some([0, 2])];
         write_graphml(Output::writer("net.graphml", &mut bytes), 3, &nodes, &ends, &edges).unwrap();
         let text = String::from_utf8(bytes.into_inner()).unwrap();

@@ -12,6 +12,7 @@ use crate::files::source::{Input, Source, extension};
 use crate::points::columns::{Column, ExtraColumn, check_lengths, to_column};
 use crate::text::text_rows::TextRows;
 use belvedere_data::report::{clock_time, rounded};
+use belvedere_data::result_columns::{ResultColumn, ResultValues};
 use belvedere_data::{Error, Result};
 
 /// Rows printed by one task.
@@ -141,68 +142,46 @@ pub fn read_table<'a>(source: impl Into<Source<'a>>) -> Result<Table> {
     Ok(table)
 }
 
-/// The cells of one column to be written.
-#[derive(Clone, Copy, Debug)]
-pub enum TableCells<'a> {
-    /// Numbers with so many decimals; empty where not finite.
-    Real(&'a [f64], usize),
-    /// Hours of the day as HH:MM; empty where NaN.
-    Clock(&'a [f64]),
-    /// Whole numbers; empty where there is none.
-    Whole(&'a [Option<u64>]),
-    /// Words, quoted where they hold a separator.
-    Words(&'a [&'a str]),
-    /// Words as they were given; where one is empty, the number with so many decimals.
-    Given(&'a [&'a str], &'a [f64], usize),
+fn length(values: &ResultValues) -> usize {
+    match values {
+        ResultValues::Real(values, _) | ResultValues::Clock(values) => values.len(),
+        ResultValues::Whole(values) => values.len(),
+        ResultValues::Words(values) => values.len(),
+    }
 }
 
-impl TableCells<'_> {
-    fn len(&self) -> usize {
-        match self {
-            Self::Real(values, _) | Self::Clock(values) => values.len(),
-            Self::Whole(values) => values.len(),
-            Self::Words(values) | Self::Given(values, ..) => values.len(),
+/// The cell of a row as JSON; null where it is empty.
+fn json_value(values: &ResultValues, row: usize) -> Value {
+    match values {
+        ResultValues::Real(values, decimals) => {
+            let decimals = i32::try_from(*decimals).unwrap_or(i32::MAX);
+            values.get(row).map_or(Value::Null, |value| rounded(*value, decimals).into())
         }
-    }
-
-    /// The cell of a row as JSON; null where it is empty.
-    fn value(&self, row: usize) -> Value {
-        match self {
-            Self::Real(values, decimals) => {
-                let decimals = i32::try_from(*decimals).unwrap_or(i32::MAX);
-                values.get(row).map_or(Value::Null, |value| rounded(*value, decimals).into())
-            }
-            Self::Clock(values) => {
-                values.get(row).filter(|hours| hours.is_finite()).map(|hours| clock_time(*hours)).into()
-            }
-            Self::Whole(values) => values.get(row).copied().flatten().into(),
-            Self::Given(words, values, decimals) if words.get(row).is_none_or(|word| word.is_empty()) => {
-                Self::Real(values, *decimals).value(row)
-            }
-            Self::Words(words) | Self::Given(words, ..) => words.get(row).copied().into(),
+        ResultValues::Clock(values) => {
+            values.get(row).filter(|hours| hours.is_finite()).map(|hours| clock_time(*hours)).into()
         }
+        ResultValues::Whole(values) => values.get(row).copied().flatten().into(),
+        ResultValues::Words(words) => words.get(row).cloned().into(),
     }
+}
 
-    fn print(&self, row: usize, separator: char, text: &mut Vec<u8>) -> std::io::Result<()> {
-        match self {
-            Self::Real(values, decimals) => match values.get(row) {
-                Some(value) if value.is_finite() => write!(text, "{value:.decimals$}"),
-                _ => Ok(()),
-            },
-            Self::Clock(values) => match values.get(row) {
-                Some(hours) if hours.is_finite() => write!(text, "{}", clock_time(*hours)),
-                _ => Ok(()),
-            },
-            Self::Whole(values) => match values.get(row) {
-                Some(Some(value)) => write!(text, "{value}"),
-                _ => Ok(()),
-            },
-            Self::Given(words, values, decimals) if words.get(row).is_none_or(|word| word.is_empty()) => {
-                Self::Real(values, *decimals).print(row, separator, text)
-            }
-            Self::Words(words) | Self::Given(words, ..) => {
-                text.write_all(quoted(words.get(row).copied().unwrap_or_default(), separator).as_bytes())
-            }
+/// Prints the cell of a row: nothing where it has no value.
+fn print(values: &ResultValues, row: usize, separator: char, text: &mut Vec<u8>) -> std::io::Result<()> {
+    match values {
+        ResultValues::Real(values, decimals) => match values.get(row) {
+            Some(value) if value.is_finite() => write!(text, "{value:.decimals$}"),
+            _ => Ok(()),
+        },
+        ResultValues::Clock(values) => match values.get(row) {
+            Some(hours) if hours.is_finite() => write!(text, "{}", clock_time(*hours)),
+            _ => Ok(()),
+        },
+        ResultValues::Whole(values) => match values.get(row) {
+            Some(Some(value)) => write!(text, "{value}"),
+            _ => Ok(()),
+        },
+        ResultValues::Words(words) => {
+            text.write_all(quoted(words.get(row).map_or("", String::as_str), separator).as_bytes())
         }
     }
 }
@@ -219,30 +198,31 @@ fn quoted(word: &str, separator: char) -> Cow<'_, str> {
     if is_plain { Cow::Borrowed(word) } else { Cow::Owned(format!("\"{}\"", word.replace('"', "\"\""))) }
 }
 
-/// Writes `columns`, each a name and its cells, as a table with a header row, cells parted by commas.
+/// Writes `columns` as a table with a header row, cells parted by commas. Numbers that are not finite are empty cells.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`] unless all columns are equally long, [`Error::Io`].
-pub fn write_table<'a>(output: impl Into<Output<'a>>, columns: &[(&str, TableCells<'_>)]) -> Result<()> {
-    let expected = columns.first().map_or(0, |(_, cells)| cells.len());
-    if let Some((_, cells)) = columns.iter().find(|(_, cells)| cells.len() != expected) {
-        return Err(Error::LengthMismatch { what: "cells of a column", expected, found: cells.len() });
+pub fn write_table<'a>(output: impl Into<Output<'a>>, columns: &[ResultColumn]) -> Result<()> {
+    let mut lengths = columns.iter().map(|column| length(&column.values));
+    let expected = lengths.next().unwrap_or(0);
+    if let Some(found) = lengths.find(|length| *length != expected) {
+        return Err(Error::LengthMismatch { what: "cells of a column", expected, found });
     }
     let print = |start: usize| {
         let mut text = Vec::new();
         for row in start..expected.min(start + ROWS_PER_TASK) {
-            for (i, (_, cells)) in columns.iter().enumerate() {
+            for (i, column) in columns.iter().enumerate() {
                 if i > 0 {
                     text.push(b',');
                 }
-                cells.print(row, ',', &mut text)?;
+                print(&column.values, row, ',', &mut text)?;
             }
             text.push(b'\n');
         }
         Ok(text)
     };
     output.into().write(|path, output| {
-        let names: Vec<Cow<'_, str>> = columns.iter().map(|(name, _)| quoted(name, ',')).collect();
+        let names: Vec<Cow<'_, str>> = columns.iter().map(|column| quoted(&column.name, ',')).collect();
         writeln!(output, "{}", names.join(",")).map_err(Error::io(path))?;
         let starts: Vec<usize> = (0..expected).step_by(ROWS_PER_TASK).collect();
         for block in starts.chunks(TASKS_PER_BLOCK) {
@@ -257,32 +237,39 @@ pub fn write_table<'a>(output: impl Into<Output<'a>>, columns: &[(&str, TableCel
 
 /// Properties of the GeoJSON feature of a row.
 #[must_use]
-pub fn row_properties(columns: &[(&str, TableCells<'_>)], row: usize) -> Map<String, Value> {
-    columns.iter().map(|(name, cells)| ((*name).to_owned(), cells.value(row))).collect()
+pub fn row_properties(columns: &[ResultColumn], row: usize) -> Map<String, Value> {
+    columns.iter().map(|column| (column.name.clone(), json_value(&column.values, row))).collect()
 }
 
 /// Combines the columns of a table of `results` with rows that were `read` from a table ([`TextRows::columns`]).
 /// Results that are among the `given` names are written as they were read, with their number only where nothing was.
 /// The other columns read follow behind them, unless a result has their name.
 #[must_use]
-pub fn with_columns_read<'a>(
-    read: &'a [(&'a str, Vec<&'a str>)],
-    given: &[&str],
-    results: &[(&'a str, TableCells<'a>)],
-) -> Vec<(&'a str, TableCells<'a>)> {
-    let is_among = |names: &[&str], name: &str| names.iter().any(|own| own.eq_ignore_ascii_case(name));
-    let (given, others): (Vec<_>, Vec<_>) = results.iter().partition(|(name, _)| is_among(given, name));
-    let result_names: Vec<&str> = results.iter().map(|(name, _)| *name).collect();
-    let as_read = |(name, cells): (&'a str, TableCells<'a>)| {
-        let texts = read.iter().find(|(own, _)| own.eq_ignore_ascii_case(name)).map(|(_, texts)| texts.as_slice());
-        match (texts, cells) {
-            (Some(texts), TableCells::Real(values, decimals)) => (name, TableCells::Given(texts, values, decimals)),
-            _ => (name, cells),
-        }
+pub fn with_columns_read(read: &[(&str, Vec<&str>)], given: &[&str], results: Vec<ResultColumn>) -> Vec<ResultColumn> {
+    let is_result = |name: &str| results.iter().any(|own| own.name.eq_ignore_ascii_case(name));
+    let carried: Vec<_> = read.iter().filter(|(name, _)| !is_result(name)).collect();
+    let is_given = |column: &ResultColumn| given.iter().any(|name| name.eq_ignore_ascii_case(&column.name));
+    let (given, others): (Vec<_>, Vec<_>) = results.into_iter().partition(is_given);
+    let as_read = |ResultColumn { name, values }: ResultColumn| {
+        let texts = read.iter().find(|(own, _)| own.eq_ignore_ascii_case(&name)).map(|(_, texts)| texts);
+        let values = match (texts, values) {
+            (Some(texts), ResultValues::Real(values, decimals)) => ResultValues::Words(
+                texts.iter().enumerate().map(|(row, text)| given_text(text, values.get(row), decimals)).collect(),
+            ),
+            (_, values) => values,
+        };
+        ResultColumn { name, values }
     };
-    let carried = read.iter().filter(|(name, _)| !is_among(&result_names, name));
-    let carried = carried.map(|(name, texts)| (*name, TableCells::Words(texts.as_slice())));
+    let carried = carried.into_iter().map(|(name, texts)| ResultColumn::words(*name, texts.iter().copied()));
     given.into_iter().map(as_read).chain(carried).chain(others).collect()
+}
+
+/// A cell as it was read; where it is empty, the number with so many decimals.
+fn given_text(text: &str, value: Option<&f64>, decimals: usize) -> String {
+    match value.filter(|value| text.is_empty() && value.is_finite()) {
+        Some(value) => format!("{value:.decimals$}"),
+        None => text.to_owned(),
+    }
 }
 
 /// Writes rows as they were given, with `results` behind them, as a table: cells parted by commas (.csv) or blanks

@@ -8,10 +8,11 @@ use std::time::{Duration, SystemTime};
 
 use belvedere_data::crs::Crs;
 use belvedere_data::raster::Raster;
+use belvedere_data::result_columns::ResultColumn;
 use belvedere_data::{Error, Mesh, PointCloud};
 use belvedere_io::{
-    Georeference, MasbcppFolder, Output, TableCells, atomic, write_cloud, write_masbcpp, write_mesh, write_npy_f32_2d,
-    write_table, write_tif_f32,
+    Georeference, MasbcppFolder, Output, atomic, write_cloud, write_masbcpp, write_mesh, write_npy_f32_2d, write_table,
+    write_tif_f32,
 };
 
 fn names_in(folder: &Path) -> Vec<String> {
@@ -53,7 +54,7 @@ fn writers_get_the_bytes_of_files() {
     };
     written("a.tif", |output| write_tif_f32(output, &raster, Some(&place), Some(-9999.0), None));
     written("r.npy", |output| write_npy_f32_2d(output, &raster));
-    let table = written("t.csv", |output| write_table(output, &[("x", TableCells::Real(&[1.25, f64::NAN], 2))]));
+    let table = written("t.csv", |output| write_table(output, &[ResultColumn::real("x", [1.25, f64::NAN], 2)]));
     assert_eq!(table, b"x\n1.25\n\n");
 }
 
@@ -119,7 +120,7 @@ fn files_that_killed_runs_left_are_removed_and_those_of_others_are_not() {
         write(name, 25);
         expected.push(name.to_owned());
     }
-    write_table(path.as_path(), &[("x", TableCells::Real(&[1.0], 1))]).unwrap();
+    write_table(path.as_path(), &[ResultColumn::real("x", [1.0], 1)]).unwrap();
     expected.push("result.csv".to_owned());
     expected.sort();
     assert_eq!(names_in(folder.path()), expected);

@@ -1,7 +1,8 @@
 //! Areas such as parcels with what was found of their cells, as tables and maps.
 
+use crate::apps::result_columns::ResultColumn;
 use crate::apps::targets::AreaMeans;
-use crate::io::{FeatureShape, MapFeature, PolygonArea, TableCells, write_areas, write_table};
+use crate::io::{FeatureShape, MapFeature, PolygonArea, write_areas, write_table};
 use crate::report::rounded;
 use crate::{Frame, Result};
 use serde_json::Value;
@@ -60,16 +61,11 @@ fn write_rows(path: &Path, areas: &[PolygonArea], means: &[AreaMeans]) -> Result
         Some(Value::String(text)) => text.clone(),
         Some(other) => other.to_string(),
     };
-    let texts: Vec<Vec<String>> =
-        names.iter().map(|name| areas.iter().map(|area| text(area, name)).collect()).collect();
-    let words: Vec<Vec<&str>> = texts.iter().map(|column| column.iter().map(String::as_str).collect()).collect();
-    let cells: Vec<Option<u64>> = means.iter().map(|means| u64::try_from(means.cells).ok()).collect();
-    let numbers: Vec<Vec<f64>> =
-        (0..results.len()).map(|number| means.iter().map(|means| means.results[number].value).collect()).collect();
-    let mut columns: Vec<(&str, TableCells<'_>)> =
-        names.iter().zip(&words).map(|(name, column)| (name.as_str(), TableCells::Words(column))).collect();
-    columns.push(("cells", TableCells::Whole(&cells)));
-    let of_result = results.iter().zip(&numbers);
-    columns.extend(of_result.map(|(result, values)| (&result.name[..], TableCells::Real(values, result.decimals))));
+    let words = |name: &&String| ResultColumn::words(*name, areas.iter().map(|area| text(area, name)));
+    let mut columns: Vec<ResultColumn> = names.iter().map(words).collect();
+    columns.push(ResultColumn::whole("cells", means.iter().map(|means| means.cells)));
+    columns.extend(results.iter().enumerate().map(|(number, result)| {
+        ResultColumn::real(&result.name, means.iter().map(|means| means.results[number].value), result.decimals)
+    }));
     write_table(path, &columns)
 }

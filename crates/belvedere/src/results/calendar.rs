@@ -1,9 +1,10 @@
 //! Sun calendars as tables and as appointments.
 
 use crate::apps::ask::SunCalendarResults;
+use crate::apps::result_columns::ResultColumn;
 use crate::apps::sun::Date;
 use crate::apps::sun_calendar::{SunObstacle, SunStretch};
-use crate::io::{TableCells, atomic, write_table};
+use crate::io::{atomic, write_table};
 use crate::{Error, Result};
 use std::io::Write as _;
 use std::path::Path;
@@ -33,36 +34,28 @@ fn name_of(place: usize, found: &SunCalendarResults, names: &[String]) -> String
 
 fn write_rows(path: &Path, found: &SunCalendarResults, names: &[String]) -> Result<()> {
     let rows: Vec<(usize, Date, &SunStretch)> = found.stretches().collect();
-    let stretches = || rows.iter().map(|(.., stretch)| *stretch);
-    let numbers: Vec<Option<u64>> = rows.iter().map(|(place, ..)| u64::try_from(place + 1).ok()).collect();
-    let names: Vec<String> = rows.iter().map(|(place, ..)| name_of(*place, found, names)).collect();
-    let dates: Vec<String> = rows.iter().map(|(_, date, _)| date.to_string()).collect();
-    let hours =
-        |of: &dyn Fn(&SunStretch) -> f32| -> Vec<f64> { stretches().map(|stretch| of(stretch).into()).collect() };
-    let (starts, ends) = (hours(&|stretch| stretch.start), hours(&|stretch| stretch.end));
-    let (lasts, unproven) = (hours(&SunStretch::hours), hours(&|stretch| stretch.unproven));
-    let states: Vec<&str> = stretches().map(|stretch| stretch.obstacle.name()).collect();
-    let objects: Vec<&str> = stretches().map(|stretch| found.mesh_name(stretch.obstacle).unwrap_or_default()).collect();
-    let [names, dates] = [&names[..], &dates].map(refer);
+    let real = |name: &str, of: &dyn Fn(&SunStretch) -> f32| {
+        ResultColumn::real(name, rows.iter().map(|(.., stretch)| f64::from(of(stretch))), 3)
+    };
+    let clock = |name: &str, of: &dyn Fn(&SunStretch) -> f32| {
+        ResultColumn::clock(name, rows.iter().map(|(.., stretch)| f64::from(of(stretch))))
+    };
+    let obstacles = || rows.iter().map(|(.., stretch)| stretch.obstacle);
     let place = if found.windows.is_empty() { "place" } else { "window" };
     write_table(
         path,
         &[
-            (place, TableCells::Whole(&numbers)),
-            ("name", TableCells::Words(&names)),
-            ("date", TableCells::Words(&dates)),
-            ("from", TableCells::Clock(&starts)),
-            ("to", TableCells::Clock(&ends)),
-            ("hours", TableCells::Real(&lasts, 3)),
-            ("state", TableCells::Words(&states)),
-            ("object", TableCells::Words(&objects)),
-            ("unproven_hours", TableCells::Real(&unproven, 3)),
+            ResultColumn::whole(place, rows.iter().map(|(place, ..)| place + 1)),
+            ResultColumn::words("name", rows.iter().map(|(place, ..)| name_of(*place, found, names))),
+            ResultColumn::words("date", rows.iter().map(|(_, date, _)| date.to_string())),
+            clock("from", &|stretch| stretch.start),
+            clock("to", &|stretch| stretch.end),
+            real("hours", &SunStretch::hours),
+            ResultColumn::words("state", obstacles().map(SunObstacle::name)),
+            ResultColumn::words("object", obstacles().map(|obstacle| found.mesh_name(obstacle).unwrap_or_default())),
+            real("unproven_hours", &|stretch| stretch.unproven),
         ],
     )
-}
-
-fn refer(texts: &[String]) -> Vec<&str> {
-    texts.iter().map(String::as_str).collect()
 }
 
 fn write_appointments(path: &Path, found: &SunCalendarResults, names: &[String]) -> Result<()> {

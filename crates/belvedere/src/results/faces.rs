@@ -1,7 +1,8 @@
 //! Measures of the faces of a mesh as files.
 
+use crate::apps::result_columns::ResultColumn;
 use crate::apps::targets::{FaceMeans, Measure, object_areas};
-use crate::io::{TableCells, write_mesh_values};
+use crate::io::write_mesh_values;
 use crate::query::{SeenArea, SurfacePieces, seen_in_all, seen_objects};
 use crate::{Frame, Mesh, Result};
 use std::path::Path;
@@ -26,22 +27,22 @@ pub struct FaceRows<'a> {
     pub objects: Vec<&'a str>,
     /// Number of the first rows that are objects.
     pub object_count: usize,
-    /// Name, values and digits after the point of each column.
-    pub columns: Vec<(&'a str, Vec<f64>, usize)>,
+    /// Its figures.
+    pub columns: Vec<ResultColumn>,
 }
 
 impl<'a> FaceRows<'a> {
     /// Means of measures of the pieces of a mesh, by area.
     #[must_use]
-    pub fn of_measures(mesh: &'a Mesh, surface: &SurfacePieces, measures: &'a [Measure]) -> Self {
+    pub fn of_measures(mesh: &'a Mesh, surface: &SurfacePieces, measures: &[Measure]) -> Self {
         let areas = surface.face_areas();
         let of_objects = object_areas(mesh, surface);
         let object_count = of_objects.len();
         let objects = objects_of_rows(mesh, object_count, areas.len());
-        let mut columns: Vec<(&str, Vec<f64>, usize)> = vec![("area_m2", [of_objects, areas].concat(), 4)];
+        let mut columns = vec![ResultColumn::real("area_m2", of_objects.into_iter().chain(areas), 4)];
         for measure in measures {
-            let means = FaceMeans::new(mesh, surface, &measure.values);
-            columns.push((&measure.name, [means.objects, means.faces].concat(), measure.decimals));
+            let FaceMeans { objects, faces, .. } = FaceMeans::new(mesh, surface, &measure.values);
+            columns.push(ResultColumn::real(&measure.name, objects.into_iter().chain(faces), measure.decimals));
         }
         Self { objects, object_count, columns }
     }
@@ -56,7 +57,7 @@ impl<'a> FaceRows<'a> {
         let object_count = seen.len();
         let objects = objects_of_rows(mesh, object_count, faces.len());
         seen.extend_from_slice(faces);
-        let column = |name, value: &dyn Fn(&SeenArea) -> f64| (name, seen.iter().map(value).collect(), 4);
+        let column = |name: &str, value: &dyn Fn(&SeenArea) -> f64| ResultColumn::real(name, seen.iter().map(value), 4);
         let columns = vec![
             column("area_m2", &|seen| seen.area),
             column("visible_m2", &|seen| seen.visible),
@@ -72,11 +73,9 @@ impl<'a> FaceRows<'a> {
     /// # Errors
     /// Those of [`crate::io::write_table`].
     pub fn write(&self, path: &Path) -> Result<()> {
-        let faces = (0_u64..).take(self.objects.len() - self.object_count).map(Some);
-        let numbers: Vec<Option<u64>> = std::iter::repeat_n(None, self.object_count).chain(faces).collect();
-        let mut cells = vec![("object", TableCells::Words(&self.objects)), ("face", TableCells::Whole(&numbers))];
-        cells.extend(self.columns.iter().map(|(name, values, decimals)| (*name, TableCells::Real(values, *decimals))));
-        crate::io::write_table(path, &cells)
+        let numbers = (0..self.objects.len()).map(|row| row.checked_sub(self.object_count));
+        let rows = [ResultColumn::words("object", self.objects.iter().copied()), ResultColumn::whole("face", numbers)];
+        crate::io::write_table(path, &[&rows, &self.columns[..]].concat())
     }
 }
 

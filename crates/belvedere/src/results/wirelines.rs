@@ -1,9 +1,10 @@
 //! Wirelines of towers as pictures and as a table.
 
 use crate::apps::ask::TowerWirelines;
+use crate::apps::result_columns::ResultColumn;
 use crate::apps::wireline::{FRAME_COLUMNS, TowerOutline, Wireline, WirelineFrame};
 use crate::figures::{DrawnTower, WirelinePlane, wireline_picture, write_png};
-use crate::io::{TableCells, atomic, write_table};
+use crate::io::{atomic, write_table};
 use crate::{Frame, Result};
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
@@ -118,39 +119,33 @@ fn drawn(tower: &TowerOutline, frame: &WirelineFrame, found: &TowerWirelines) ->
 
 /// A row for each tower within the distance that counts, from each place.
 fn write_rows(path: &Path, found: &TowerWirelines) -> Result<()> {
-    let of_view = |(place, view): (u64, &Option<Wireline>)| {
+    let of_view = |(place, view): (usize, &Option<Wireline>)| {
         let mut towers: Vec<TowerOutline> = view.iter().flat_map(|view| view.towers.iter().cloned()).collect();
         towers.sort_by_key(|tower| tower.number);
         towers.into_iter().map(move |tower| (place, tower))
     };
-    let rows: Vec<(u64, TowerOutline)> = (1..).zip(&found.views).flat_map(of_view).collect();
-    let places: Vec<Option<u64>> = rows.iter().map(|(place, _)| Some(*place)).collect();
-    let names: Vec<&str> = rows.iter().map(|(_, tower)| found.names[tower.number].as_str()).collect();
-    let real = |of: &dyn Fn(&TowerOutline) -> f64| -> Vec<f64> { rows.iter().map(|(_, tower)| of(tower)).collect() };
+    let rows: Vec<(usize, TowerOutline)> = (1..).zip(&found.views).flat_map(of_view).collect();
+    let real = |name: &str, of: &dyn Fn(&TowerOutline) -> f64, decimals| {
+        ResultColumn::real(name, rows.iter().map(|(_, tower)| of(tower)), decimals)
+    };
     let optional = |of: Option<f64>| of.unwrap_or(f64::NAN);
     // what rounds to a whole turn is north
     let rounded = |degrees: f64| if degrees >= 359.995 { 0.0 } else { degrees };
-    let azimuths = real(&|tower| rounded((tower.azimuth + found.north.of_grid).rem_euclid(TAU).to_degrees()));
-    let distances = real(&|tower| tower.distance);
-    let feet = real(&|tower| tower.elevations[0].to_degrees());
-    let hubs = real(&|tower| optional(tower.hub).to_degrees());
-    let tips = real(&|tower| tower.elevations[1].to_degrees());
-    let metres = real(&|tower| tower.visible_metres);
-    let shares = real(&|tower| optional(tower.rotor.as_ref().map(|rotor| rotor.visible_share)));
-    let unproven: Vec<Option<u64>> = rows.iter().map(|(_, tower)| tower.is_unproven.map(u64::from)).collect();
+    let azimuth = |tower: &TowerOutline| rounded((tower.azimuth + found.north.of_grid).rem_euclid(TAU).to_degrees());
+    let share = |tower: &TowerOutline| optional(tower.rotor.as_ref().map(|rotor| rotor.visible_share));
     write_table(
         path,
         &[
-            ("place", TableCells::Whole(&places)),
-            ("tower", TableCells::Words(&names)),
-            ("azimuth_deg", TableCells::Real(&azimuths, 2)),
-            ("distance_m", TableCells::Real(&distances, 1)),
-            ("foot_deg", TableCells::Real(&feet, 3)),
-            ("hub_deg", TableCells::Real(&hubs, 3)),
-            ("tip_deg", TableCells::Real(&tips, 3)),
-            ("visible_m", TableCells::Real(&metres, 1)),
-            ("disc_visible_share", TableCells::Real(&shares, 3)),
-            ("unproven", TableCells::Whole(&unproven)),
+            ResultColumn::whole("place", rows.iter().map(|(place, _)| *place)),
+            ResultColumn::words("tower", rows.iter().map(|(_, tower)| &found.names[tower.number])),
+            real("azimuth_deg", &azimuth, 2),
+            real("distance_m", &|tower| tower.distance, 1),
+            real("foot_deg", &|tower| tower.elevations[0].to_degrees(), 3),
+            real("hub_deg", &|tower| optional(tower.hub).to_degrees(), 3),
+            real("tip_deg", &|tower| tower.elevations[1].to_degrees(), 3),
+            real("visible_m", &|tower| tower.visible_metres, 1),
+            real("disc_visible_share", &share, 3),
+            ResultColumn::whole("unproven", rows.iter().map(|(_, tower)| tower.is_unproven.map(usize::from))),
         ],
     )
 }

@@ -150,7 +150,7 @@ impl ReportParams {
         self.check_rules()?;
         if self.windows.is_empty() && self.areas.is_empty() {
             let (value, expected) = ("missing".to_owned(), "windows or areas that keep their sun");
-            return Err(Error::InvalidParameter { parameter: Parameter::Targets, value, expected });
+            return Err(Error::invalid(Parameter::Targets, value, expected));
         }
         GivenWindows::Each(self.windows.clone()).check()
     }
@@ -233,11 +233,8 @@ pub fn sunlight_report(
 ) -> Result<SunlightReport> {
     params.check()?;
     if let Some(study) = params.study.filter(|_| planned.is_none() || params.areas.is_empty()) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::Study,
-            value: study.name().to_owned(),
-            expected: "given with areas and a plan: it counts the shade that the plan adds to them",
-        });
+        let expected = "given with areas and a plan: it counts the shade that the plan adds to them";
+        return Err(Error::invalid(Parameter::Study, study.name().to_owned(), expected));
     }
     let mut remarks = Vec::new();
     let box_of_maps = maps::extent(present, planned, params);

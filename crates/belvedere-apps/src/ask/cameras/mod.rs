@@ -1,31 +1,36 @@
 //! Cameras: which of many possible ones to put up, with a proven bound on the best choice.
 
+mod candidates;
 mod lens;
-mod report;
-mod standing;
+mod site;
 mod targets;
 
+pub use candidates::{Candidates, GivenCamera};
 pub use lens::CameraLens;
-pub(super) use report::CamerasReport;
-pub use standing::{Candidates, GivenCamera};
+pub(super) use site::CameraSite;
 pub use targets::{CameraTargets, PrivatePlaces};
 
+use super::answers::{Answers, Ask};
+use super::cells::GridCells;
+use super::context::Context;
 use super::how_sure::remark_from_ground;
-use super::sections::LinesSection;
-use super::{Answers, Ask, Context, GridCells, North, Places, Scene};
+use super::north::North;
+use super::observers::skip_unfit;
+use super::places::Places;
+use super::scene::Scene;
+use super::sections::{CamerasReport, ChoiceSection, LinesSection};
+use super::standing::Reach;
 use crate::cameras::{
-    CameraPose, CoverageParams, CoverageReport, CoverageTable, FREE_FRESNEL_SHARE, FresnelZone, Goal, Mount, Placement,
-    PlacementParams, counted_weights, coverage, leave_out_private, place_cameras,
+    CAMERA_HEIGHT, CameraPose, CoverageParams, CoverageReport, CoverageTable, FREE_FRESNEL_SHARE, FresnelZone, Goal,
+    Mount, Placement, PlacementParams, ROOF_CAMERA_HEIGHT, counted_weights, coverage, leave_out_private, place_cameras,
 };
 use crate::landmark::observer_cell_for;
 use crate::targets::Targets;
-use belvedere_core::ground::Ground;
-use belvedere_core::query::{Certainty, EarthParams, MedialScene, RadioWave, UnprovenAs};
+use belvedere_core::query::{Certainty, EarthParams, RadioWave, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
-use report::ChoiceSection;
+use candidates::given_eyes;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 /// Selection of cameras from many possible ones that covers much of some places.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -125,14 +130,6 @@ pub struct CamerasResults {
     pub grid_north: f64,
 }
 
-/// Ground and obstacles of cameras.
-pub(super) struct CameraSite<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) blockers: &'a Arc<MedialScene>,
-    pub(super) ground: &'a Ground,
-    pub(super) grid_north: f64,
-}
-
 impl CamerasResults {
     /// Returns the number of cameras that cover a target; `None` for one that does not count.
     #[must_use]
@@ -197,6 +194,52 @@ impl CamerasQuestion {
         GridCells { cell: Some(cell), height: Some(self.targets.height), ground: self.targets.ground, ..given }
     }
 
+    /// The cameras that stay; one that cannot look is NaN, so that others keep their numbers.
+    fn existing_poses(
+        &self,
+        site: &CameraSite<'_>,
+        report: &mut CamerasReport,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Vec<CameraPose>> {
+        if self.existing.is_empty() {
+            return Ok(Vec::new());
+        }
+        let eyes = given_eyes(&self.existing, self.camera_height.unwrap_or(CAMERA_HEIGHT), site.ground);
+        let (reach, looking) = (Reach::Cloud, (site.blockers, Some(site.ground)));
+        let eyes = skip_unfit(eyes, ("existing camera", reach), looking, (site.scene, context), control)?;
+        report.existing_camera_places = Some(eyes.report);
+        let mounting = self.lens.mounting()?;
+        let pose = |(given, eye): (&GivenCamera, [f64; 3])| mounting.existing_at(&given.mount(eye, site.grid_north));
+        self.existing.iter().zip(eyes.eyes).map(pose).collect()
+    }
+
+    /// The cameras to choose from.
+    fn candidate_poses(
+        &self,
+        site: &CameraSite<'_>,
+        report: &mut CamerasReport,
+        context: &mut Context,
+        control: &Control<'_>,
+    ) -> Result<Vec<CameraPose>> {
+        let usual = if matches!(self.candidates, Candidates::Roofs(_)) { ROOF_CAMERA_HEIGHT } else { CAMERA_HEIGHT };
+        let height = self.camera_height.unwrap_or(usual);
+        let (eyes, fitting) = self.candidates.eyes((height, self.targets.ground), site, context, control)?;
+        report.candidate_places = fitting;
+        let mounts: Vec<Mount> = match &self.candidates {
+            Candidates::Given(given) => {
+                given.iter().zip(eyes).map(|(given, eye)| given.mount(eye, site.grid_north)).collect()
+            }
+            _ => eyes.into_iter().map(|eye| Mount { eye, ..Mount::default() }).collect(),
+        };
+        let mounting = self.lens.mounting()?;
+        let mut poses = Vec::new();
+        for mount in mounts.iter().filter(|mount| mount.eye[0].is_finite()) {
+            poses.extend(mounting.poses_at(mount)?);
+        }
+        Ok(poses)
+    }
+
     /// The cameras that stay, then those to choose from, which must not see private places.
     fn poses(
         &self,
@@ -236,21 +279,13 @@ impl Ask for CamerasQuestion {
         self.earth.validate()?;
         self.coverage_params()?;
         if self.per_target == 0 {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::RequiredCameras,
-                value: "0".to_owned(),
-                expected: "1 or more",
-            });
+            return Err(Error::invalid(Parameter::RequiredCameras, "0", "1 or more"));
         }
         self.lens.mounting()?.poses_at(&Mount::default())?;
         if let CameraGoal::CoveragePercent(percent) = self.goal
             && !(percent > 0.0 && percent <= 100.0)
         {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Coverage,
-                value: format!("{percent} %"),
-                expected: "above 0 to 100 %",
-            });
+            return Err(Error::invalid(Parameter::Coverage, format!("{percent} %"), "above 0 to 100 %"));
         }
         self.targets.check()
     }
@@ -283,7 +318,7 @@ impl Ask for CamerasQuestion {
             private_places: private.as_ref().map(Targets::target_count),
             ..CamerasReport::default()
         };
-        context.ground(scene, &known);
+        context.ground(scene.frame(), &known);
         context.report.lines_of_sight = Some(LinesSection::of(&blockers, None));
         let (existing, candidates) = self.poses(private.as_ref(), &site, &mut report, context, control)?;
         let poses: Vec<CameraPose> = existing.iter().chain(&candidates).copied().collect();

@@ -1,10 +1,10 @@
 //! Targets of cameras, and places that must stay private.
 
-use super::super::Reach;
-use super::CameraSite;
-use crate::ask::observers::Standing;
-use crate::ask::places::leave_out_outside;
-use crate::ask::{Context, GridCells, Places};
+use super::site::CameraSite;
+use crate::ask::cells::GridCells;
+use crate::ask::context::Context;
+use crate::ask::places::{Places, leave_out_outside};
+use crate::ask::standing::{Reach, Standing};
 use crate::cameras::{CAMERA_TARGET_HEIGHT, WeightedArea, keep_within};
 use crate::targets::{Targets, set_on_ground};
 use belvedere_core::ground::GroundPoints;
@@ -64,11 +64,7 @@ impl CameraTargets {
     pub(super) fn check(&self) -> Result<()> {
         let weights = self.weights.iter().copied().chain(self.areas.iter().map(|area| area.weight));
         match weights.into_iter().find(|weight| !(*weight >= 0.0 && weight.is_finite())) {
-            Some(weight) => Err(Error::InvalidParameter {
-                parameter: Parameter::TargetWeight,
-                value: weight.to_string(),
-                expected: "a number, 0 or more",
-            }),
+            Some(weight) => Err(Error::invalid(Parameter::TargetWeight, weight, "a number, 0 or more")),
             None => Ok(()),
         }
     }

@@ -1,8 +1,10 @@
 //! The sun of each hour of a year at each target, a bit for each.
 
 use super::SunHoursQuestion;
-use crate::ask::places::test_edge;
-use crate::ask::{Answers, Context, Places, Scene};
+use crate::ask::answers::Answers;
+use crate::ask::context::Context;
+use crate::ask::places::{Places, test_edge};
+use crate::ask::scene::Scene;
 use crate::irradiance::CLEAR_SKY_YEAR;
 use crate::sun::{Date, Site, SunDay, SunSchedule, SunStep, Zone, sun_position_with};
 use crate::targets::Targets;
@@ -94,11 +96,11 @@ impl SunHoursQuestion {
         let days = self.days_by_hour(year, &site, &zone)?;
         let schedule = SunSchedule::new(&days, self.binning())?;
         if schedule.directions.len().saturating_mul(targets.len()) > MAX_BITS {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Cell,
-                value: format!("{} cells with {} suns each", targets.len(), schedule.directions.len()),
-                expected: "fewer for the hours of a year: choose larger cells, or a smaller cloud",
-            });
+            return Err(Error::invalid(
+                Parameter::Cell,
+                format!("{} cells with {} suns each", targets.len(), schedule.directions.len()),
+                "fewer for the hours of a year: choose larger cells, or a smaller cloud",
+            ));
         }
         test_edge(scene, &targets, &schedule.directions, &mut context, control)?;
         let blockers = scene.blockers(UnprovenAs::Visible, control)?;

@@ -1,6 +1,6 @@
 //! Observers and their limits.
 
-use crate::ask::observers::Standing;
+use crate::ask::standing::Standing;
 use crate::viewshed::SightLimits;
 use belvedere_data::Result;
 use serde::{Deserialize, Serialize};

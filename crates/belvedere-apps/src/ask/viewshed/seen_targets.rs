@@ -1,8 +1,12 @@
 //! Results of observers for each kind of targets, in numbers and words.
 
-use super::ViewshedQuestion;
-use crate::ask::places::cells_of;
-use crate::ask::{Context, Remark, Scene, remark_on_outside};
+use super::question::ViewshedQuestion;
+use crate::ask::cells::cells_of;
+use crate::ask::context::Context;
+use crate::ask::remark::Remark;
+use crate::ask::scene::Scene;
+use crate::ask::sections::SeenSection;
+use crate::ask::viewer::remark_on_outside;
 use crate::targets::{CellParams, Measure, Targets};
 use crate::viewshed::{
     Masks, Observer, Viewshed as Seen, ViewshedParams, far_viewshed, min_visible_heights, seen_probabilities,
@@ -14,7 +18,6 @@ use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::report::{percent, rounded};
 use belvedere_data::{ElevationGrid, Result};
-use serde::Serialize;
 
 /// Lines of sight whose ends are looked at, where an eye sees nothing.
 const SAMPLE: usize = 200;
@@ -25,26 +28,6 @@ pub struct FarSeen {
     pub seen: Seen,
     /// The terrain within reach.
     pub terrain: ElevationGrid,
-}
-
-/// Number of visible targets, for reports.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SeenSection {
-    targets: usize,
-    visible: usize,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    unproven: Option<usize>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    unproven_percent: Option<f64>,
-    blocked: usize,
-    /// Number of blocked targets that lie inside an obstacle themselves; `None` if not tested.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    inside_obstacle: Option<usize>,
-    outside_view: usize,
-    outside_cloud: usize,
-    visible_percent: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    visible_m2: Option<f64>,
 }
 
 /// Description of the counted targets.

@@ -1,8 +1,12 @@
 //! Observers of a total viewshed.
 
-use super::{StandingObserver, ViewLimits, ViewshedQuestion};
-use crate::ask::observers::Standing;
-use crate::ask::{Context, GridCells, Places, Scene};
+use super::limits::{StandingObserver, ViewLimits};
+use super::question::ViewshedQuestion;
+use crate::ask::cells::GridCells;
+use crate::ask::context::Context;
+use crate::ask::places::Places;
+use crate::ask::scene::Scene;
+use crate::ask::standing::Standing;
 use crate::eyes::fault_of;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
@@ -52,11 +56,11 @@ impl ViewshedQuestion {
             |place| StandingObserver { standing: Standing { place, height: None }, limits: ViewLimits::default() };
         let found: Vec<StandingObserver> = (1..=tries).filter_map(place).take(count).map(standing).collect();
         if found.len() < count {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::ObserverCount,
-                value: format!("{count}, of which {} found open ground", found.len()),
-                expected: "fewer, or of a cloud with more open ground",
-            });
+            return Err(Error::invalid(
+                Parameter::ObserverCount,
+                format!("{count}, of which {} found open ground", found.len()),
+                "fewer, or of a cloud with more open ground",
+            ));
         }
         Ok(found)
     }

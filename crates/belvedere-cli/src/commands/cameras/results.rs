@@ -3,9 +3,10 @@
 use crate::outputs::formats::extension;
 use anyhow::Result;
 use belvedere::apps::ask::{CamerasResults, ChosenCamera, Scene};
+use belvedere::apps::result_columns::ResultColumn;
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, write_png};
 use belvedere::ground::{Ground, highest_points};
-use belvedere::io::{PolygonArea, Spot, TableCells, outlines, write_areas, write_places, write_table, write_tif_u16};
+use belvedere::io::{PolygonArea, Spot, outlines, write_areas, write_places, write_table, write_tif_u16};
 use belvedere::raster::Raster;
 use belvedere::report::rounded;
 use belvedere::results::{ResultKind, georeference};
@@ -34,15 +35,13 @@ impl CameraOutput<'_> {
     /// Coverage after each camera.
     pub(super) fn write_curve(&self, output: &Path) -> Result<()> {
         let new: Vec<&ChosenCamera> = self.found.cameras.iter().filter(|camera| camera.is_new).collect();
-        let numbers: Vec<Option<u64>> = (0..=new.len() as u64).map(Some).collect();
-        let added: Vec<f64> = std::iter::once(f64::NAN).chain(new.iter().map(|camera| camera.added_percent)).collect();
-        let coverage: Vec<f64> = self.found.placed.curve.iter().map(|share| 100.0 * share).collect();
-        let cells = [
-            ("new_cameras", TableCells::Whole(&numbers)),
-            ("added_percent", TableCells::Real(&added, 4)),
-            ("coverage_percent", TableCells::Real(&coverage, 4)),
+        let added = std::iter::once(f64::NAN).chain(new.iter().map(|camera| camera.added_percent));
+        let columns = [
+            ResultColumn::whole("new_cameras", 0..=new.len()),
+            ResultColumn::real("added_percent", added, 4),
+            ResultColumn::real("coverage_percent", self.found.placed.curve.iter().map(|share| 100.0 * share), 4),
         ];
-        Ok(write_table(output, &cells)?)
+        Ok(write_table(output, &columns)?)
     }
 
     /// A point for each camera, with the properties that `--existing` reads.
@@ -159,24 +158,14 @@ impl CameraOutput<'_> {
         for (number, camera) in (1..).zip(&self.found.cameras) {
             camera.covered.iter().for_each(|&target| cameras[target].push(i32::to_string(&number)));
         }
-        let places: Vec<[f64; 3]> =
-            rows.iter().map(|&row| targets.frame.to_file_coordinates(targets.positions[row])).collect();
-        let axis = |axis: usize| places.iter().map(|place| place[axis]).collect::<Vec<f64>>();
-        let [x, y, z] = [0, 1, 2].map(axis);
-        let weights: Vec<f64> = rows.iter().map(|&row| targets.weight(row)).collect();
-        let numbers: Vec<Option<u64>> = rows.iter().map(|&row| Some(row as u64 + 1)).collect();
-        let counts: Vec<Option<u64>> = rows.iter().map(|&row| Some(u64::from(placed.counts[row]))).collect();
-        let lists: Vec<String> = rows.iter().map(|&row| cameras[row].join(" ")).collect();
-        let lists: Vec<&str> = lists.iter().map(String::as_str).collect();
-        let cells = [
-            ("target", TableCells::Whole(&numbers)),
-            ("x", TableCells::Real(&x, 3)),
-            ("y", TableCells::Real(&y, 3)),
-            ("z", TableCells::Real(&z, 3)),
-            ("weight", TableCells::Real(&weights, 4)),
-            ("cameras", TableCells::Whole(&counts)),
-            ("covered_by", TableCells::Words(&lists)),
-        ];
-        Ok(write_table(output, &cells)?)
+        let places: Vec<[f64; 3]> = rows.iter().map(|&row| targets.positions[row].map(f64::from)).collect();
+        let mut columns = vec![ResultColumn::whole("target", rows.iter().map(|row| row + 1))];
+        columns.extend(ResultColumn::coordinates(&targets.frame, &places));
+        columns.extend([
+            ResultColumn::real("weight", rows.iter().map(|&row| targets.weight(row)), 4),
+            ResultColumn::whole("cameras", rows.iter().map(|&row| placed.counts[row] as usize)),
+            ResultColumn::words("covered_by", rows.iter().map(|&row| cameras[row].join(" "))),
+        ]);
+        Ok(write_table(output, &columns)?)
     }
 }

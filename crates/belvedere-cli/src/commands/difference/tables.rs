@@ -5,7 +5,8 @@ use crate::outputs::formats::extension;
 use crate::run::CommandContext;
 use anyhow::{Result, bail};
 use belvedere::apps::difference::{Difference, DifferenceReport, difference};
-use belvedere::io::{Table, TableCells, TextRows, read_table, write_table};
+use belvedere::apps::result_columns::ResultColumn;
+use belvedere::io::{Table, TextRows, read_table, write_table};
 use belvedere::vector::to_f32;
 use serde_json::{Map, Value, json};
 use std::collections::HashMap;
@@ -192,15 +193,13 @@ fn summarise(changed: &[Compared], rows: usize, [only_before, only_after]: [usiz
 fn write(output: &Path, before: &Rows, pairs: &[[usize; 2]], changed: &[Compared]) -> belvedere::Result<()> {
     let texts = before.text.columns(pairs.iter().map(|pair| pair[0]));
     let carried = texts.iter().filter(|(name, _)| changed.iter().all(|column| column.name != *name));
-    let mut columns: Vec<(String, TableCells<'_>)> =
-        carried.map(|(name, cells)| ((*name).to_owned(), TableCells::Words(cells))).collect();
-    let changes: Vec<Vec<f64>> =
-        changed.iter().map(|column| column.change.values.iter().map(|&change| f64::from(change)).collect()).collect();
-    for (Compared { name, ends: [before, after], .. }, change) in changed.iter().zip(&changes) {
-        for (end, values) in [("before", before), ("after", after), ("change", change)] {
-            columns.push((format!("{name}_{end}"), TableCells::Real(values, DECIMALS)));
-        }
+    let mut columns: Vec<ResultColumn> =
+        carried.map(|(name, cells)| ResultColumn::words(*name, cells.iter().copied())).collect();
+    for Compared { name, ends: [before, after], change } in changed {
+        let column =
+            |end: &str, values: &[f64]| ResultColumn::real(format!("{name}_{end}"), values.iter().copied(), DECIMALS);
+        let change: Vec<f64> = change.values.iter().map(|&change| f64::from(change)).collect();
+        columns.extend([column("before", before), column("after", after), column("change", &change)]);
     }
-    let columns: Vec<(&str, TableCells<'_>)> = columns.iter().map(|(name, cells)| (name.as_str(), *cells)).collect();
     write_table(output, &columns)
 }

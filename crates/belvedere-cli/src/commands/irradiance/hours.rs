@@ -1,12 +1,11 @@
 //! The hours of the planes of roofs as files.
 
-use crate::outputs::result_columns::write_columns;
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::apps::ask::RoofsResults;
 use belvedere::apps::irradiance::sky_loss_percent;
 use belvedere::apps::result_columns::ResultColumn;
-use belvedere::io::atomic;
+use belvedere::io::{atomic, write_table};
 use std::path::Path;
 
 /// Column of an hour that the time series of SAM hold.
@@ -20,7 +19,7 @@ pub(super) fn write(folder: &Path, roofs: &RoofsResults, run: &CommandContext) -
         for number in 1..=roofs.planes.len() {
             control.check()?;
             let (hours, columns) = roofs.hours(number - 1)?;
-            write_columns(&folder.join(format!("plane_{number}.csv")), None, &columns)?;
+            write_table(folder.join(format!("plane_{number}.csv")).as_path(), &columns)?;
             let losses = columns.into_iter().filter(|column| column.name == FOR_SAM).map(|column| ResultColumn {
                 name: format!(
                     "beam shading loss of plane {number} in percent (sky diffuse {:.2} percent)",
@@ -29,7 +28,7 @@ pub(super) fn write(folder: &Path, roofs: &RoofsResults, run: &CommandContext) -
                 ..column
             });
             let losses: Vec<ResultColumn> = losses.collect();
-            write_columns(&folder.join(format!("plane_{number}_beam_loss.csv")), None, &losses)?;
+            write_table(folder.join(format!("plane_{number}_beam_loss.csv")).as_path(), &losses)?;
             control.advance(1);
         }
         Ok(())

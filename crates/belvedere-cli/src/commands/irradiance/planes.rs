@@ -3,20 +3,18 @@
 use super::hours;
 use crate::arguments::{IrradianceArguments, PvArguments};
 use crate::outputs::formats::{check_output, check_parent, extension};
-use crate::outputs::result_columns::write_columns;
 use crate::outputs::text::write_lines;
 use crate::run::CommandContext;
-use crate::summary::{Summary, rounded};
+use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::Frame;
 use belvedere::apps::ask::{IrradianceResults, Remark, RoofsResults, Scene};
 use belvedere::apps::horizon::{HorizonParams, horizons};
 use belvedere::apps::irradiance::{building_columns, horizon_places, roof_columns};
-use belvedere::apps::result_columns::{ResultColumn, ResultValues};
+use belvedere::apps::result_columns::ResultColumn;
 use belvedere::apps::sun::Site;
-use belvedere::io::{PolygonArea, atomic, outlines, write_areas};
+use belvedere::io::{PolygonArea, atomic, outlines, row_properties, write_areas, write_table};
 use belvedere::query::SkylinePoint;
-use serde_json::Value;
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 
@@ -55,7 +53,7 @@ pub(super) fn write(
     run.summary.add_paths("planes_written", &arguments.planes);
     let PvArguments { buildings, hourly, .. } = &arguments.photovoltaics;
     if let Some(output) = buildings {
-        run.stage("writing", 0, |_| write_columns(output, None, &building_columns(roofs.as_rows())))?;
+        run.stage("writing", 0, |_| write_table(output, &building_columns(roofs.as_rows())))?;
         run.summary.add("buildings_written", output.display().to_string());
     }
     if let Some(folder) = hourly {
@@ -73,26 +71,16 @@ pub(super) fn write(
 }
 
 fn write_rows(output: &Path, roofs: &RoofsResults, frame: &Frame, site: &Site) -> Result<()> {
-    let numbers: Vec<Option<u64>> = (1..).take(roofs.planes.len()).map(Some).collect();
-    write_columns(output, Some(("plane", &numbers)), &roof_columns(roofs.as_rows(), frame, site))
-}
-
-/// The value of a column in a row, as a property of an area.
-fn property(column: &ResultColumn, row: usize) -> Value {
-    match &column.values {
-        ResultValues::Clock(hours) => hours.get(row).copied().into(),
-        ResultValues::Real(values, decimals) => {
-            let digits = i32::try_from(*decimals).unwrap_or(2);
-            rounded(values.get(row).copied().unwrap_or(f64::NAN), digits)
-        }
-        ResultValues::Whole(values) => values.get(row).copied().flatten().into(),
-        ResultValues::Words(words) => words.get(row).cloned().into(),
-    }
+    let mut columns = vec![ResultColumn::whole("plane", 1..=roofs.planes.len())];
+    columns.extend(roof_columns(roofs.as_rows(), frame, site));
+    Ok(write_table(output, &columns)?)
 }
 
 /// Writes two areas for each plane: its extent, and the cells that panels would lie on, which say so in `kind`.
 fn write_outlines(output: &Path, roofs: &RoofsResults, frame: &Frame, site: &Site) -> Result<()> {
-    let columns = roof_columns(roofs.as_rows(), frame, site);
+    let mut columns = roof_columns(roofs.as_rows(), frame, site);
+    // an area has its place in its corners
+    columns.retain(|column| !["x", "y", "z", "cells"].contains(&&column.name[..]));
     let mut areas = Vec::with_capacity(2 * roofs.planes.len());
     let kinds = roofs.planes.iter().enumerate().flat_map(|(number, plane)| {
         [("roof", &plane.extent), ("panels", &plane.cells)].map(|(kind, cells)| (number, kind, cells))
@@ -101,10 +89,7 @@ fn write_outlines(output: &Path, roofs: &RoofsResults, frame: &Frame, site: &Sit
         let mut area = PolygonArea::default();
         area.properties.insert("kind".to_owned(), kind.into());
         area.properties.insert("plane".to_owned(), (number + 1).into());
-        // an area has its place in its corners
-        for column in columns.iter().filter(|column| !["x", "y", "z", "cells"].contains(&&column.name[..])) {
-            area.properties.insert(column.name.clone(), property(column, number));
-        }
+        area.properties.extend(row_properties(&columns, number));
         let corner = |corner: &[usize; 2]| {
             let place = cells.place(corner.map(|v| v as f64));
             [place[0] + frame.origin[0], place[1] + frame.origin[1]]

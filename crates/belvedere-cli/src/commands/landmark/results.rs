@@ -3,10 +3,11 @@
 use anyhow::Result;
 use belvedere::PointCloud;
 use belvedere::apps::landmark::{LandmarkMeasure, LandmarkView, measures};
+use belvedere::apps::result_columns::ResultColumn;
 use belvedere::apps::targets::Measure;
 use belvedere::figures::{MapLegend, MapMark, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{Ground, highest_points};
-use belvedere::io::{MetadataTag, TableCells, TextRows, atomic, with_columns_read, write_table};
+use belvedere::io::{MetadataTag, TextRows, atomic, with_columns_read, write_table};
 use belvedere::results::{ResultRaster, georeference};
 use belvedere::vector::to_f32;
 use std::path::Path;
@@ -24,17 +25,14 @@ pub(super) fn write_rows(
     cloud: &PointCloud,
 ) -> Result<()> {
     let rows: Vec<usize> = (0..places.len()).filter(|&row| places[row][..2].iter().all(|v| v.is_finite())).collect();
-    let mut columns: Vec<(&'static str, Vec<f64>, usize)> = Vec::new();
-    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-        columns.push((name, rows.iter().map(|&row| cloud.frame.file_from_local(places[row])[axis]).collect(), 3));
-    }
-    for measure in measures(views) {
-        columns.push((measure.name, rows.iter().map(|&row| measure.of(&views[row])).collect(), measure.decimals));
-    }
-    let named: Vec<(&'static str, TableCells<'_>)> =
-        columns.iter().map(|(name, values, decimals)| (*name, TableCells::Real(values, *decimals))).collect();
+    let kept: Vec<[f64; 3]> = rows.iter().map(|&row| places[row]).collect();
+    let of_measure = |measure: &LandmarkMeasure| {
+        ResultColumn::real(measure.name, rows.iter().map(|&row| measure.of(&views[row])), measure.decimals)
+    };
+    let columns =
+        ResultColumn::coordinates(&cloud.frame, &kept).into_iter().chain(measures(views).iter().map(of_measure));
     let read = given.columns(rows.iter().copied());
-    Ok(write_table(output, &with_columns_read(&read, &["x", "y", "z"], &named))?)
+    Ok(write_table(output, &with_columns_read(&read, &["x", "y", "z"], columns.collect()))?)
 }
 
 /// The share seen as a raster.

@@ -1,20 +1,18 @@
 //! Views from windows as files.
 
-use crate::inputs::windows::WindowColumn;
 use crate::outputs::formats::extension;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::sections::GroundSection;
 use belvedere::apps::ask::{self, Scene, WindowViewsResults};
+use belvedere::apps::result_columns::ResultColumn;
 use belvedere::apps::targets::{Measure, Targets};
 use belvedere::apps::window_views::{SeenKind, named_columns};
 use belvedere::figures::{MapLegend, MapPicture, map_picture, ramp, write_png};
 use belvedere::ground::{GroundPoints, highest_points};
-use belvedere::io::{Spot, TableCells, TextRows, WriteReport, with_columns_read, write_places, write_table};
-use belvedere::report::rounded;
+use belvedere::io::{Spot, TextRows, WriteReport, row_properties, with_columns_read, write_places, write_table};
 use belvedere::results::{TakenFrom, georeference, write_measures};
-use serde_json::{Map, Value};
 use std::path::Path;
 
 /// Radius of a window on a map, as a share of its longer side.
@@ -29,7 +27,7 @@ pub(super) struct WindowOutput<'a> {
     pub(super) found: &'a WindowViewsResults,
     pub(super) measures: &'a [Measure],
     /// Position and properties of each window.
-    pub(super) columns: Vec<WindowColumn>,
+    pub(super) columns: Vec<ResultColumn>,
     /// Building of each window; empty where that is not known.
     pub(super) names: Vec<String>,
     /// The rows of a table of windows.
@@ -50,44 +48,30 @@ impl WindowOutput<'_> {
         }
     }
 
-    fn write_table(&self, output: &Path) -> belvedere::Result<()> {
-        let of_measure = |measure: &Measure| measure.values.iter().map(|&v| f64::from(v)).collect();
-        let values: Vec<Vec<f64>> = self.measures.iter().map(of_measure).collect();
-        let numbers: Vec<Option<u64>> = (1..).take(self.found.views.len()).map(Some).collect();
-        let names: Vec<&str> = self.found.names.iter().map(String::as_str).collect();
-        let mut cells = vec![("window", TableCells::Whole(&numbers))];
+    /// Columns of the windows, with `names` where these are known.
+    fn columns(&self, names: &[String]) -> Vec<ResultColumn> {
+        let mut columns = vec![ResultColumn::whole("window", 1..=self.found.windows.len())];
         if !names.is_empty() {
-            cells.push(("name", TableCells::Words(&names)));
+            columns.push(ResultColumn::words("name", names));
         }
-        cells.extend(self.columns.iter().map(|(name, values, d)| (*name, TableCells::Real(values, *d))));
-        let measured = self.measures.iter().zip(&values);
-        cells.extend(measured.map(|(m, values)| (m.name.as_str(), TableCells::Real(values, m.decimals))));
+        columns.extend(self.columns.iter().cloned());
+        columns.extend(self.measures.iter().map(Measure::to_column));
+        columns
+    }
+
+    fn write_table(&self, output: &Path) -> belvedere::Result<()> {
         let read = self.rows.columns(0..self.rows.row_count());
-        write_table(output, &with_columns_read(&read, &["x", "y", "z", "azimuth", "tilt"], &cells))
+        let columns = self.columns(&self.found.names);
+        write_table(output, &with_columns_read(&read, &["x", "y", "z", "azimuth", "tilt"], columns))
     }
 
     fn write_points(&self, output: &Path) -> belvedere::Result<()> {
         let frame = self.scene.frame();
+        let mut columns = self.columns(&self.names);
+        columns.retain(|column| !["x", "y", "z", "face", "area_m2"].contains(&&column.name[..]));
         let spot = |(row, window): (usize, &belvedere::apps::targets::Window)| {
-            let mut properties: Map<String, Value> = Map::new();
-            properties.insert("window".to_owned(), (row + 1).into());
-            if let Some(name) = self.names.get(row) {
-                properties.insert("name".to_owned(), name.as_str().into());
-            }
-            let columns = self.columns.iter().filter(|(name, ..)| ["azimuth", "tilt"].contains(name));
-            let columns = columns.map(|(name, values, decimals)| (*name, values[row], *decimals));
-            let measures = self.measures.iter().map(|m| (m.name.as_str(), f64::from(m.values[row]), m.decimals));
-            for (name, value, decimals) in columns.chain(measures) {
-                // a window without a view has none of them
-                let value = if value.is_finite() {
-                    rounded(value, i32::try_from(decimals).unwrap_or(3)).into()
-                } else {
-                    Value::Null
-                };
-                properties.insert(name.to_owned(), value);
-            }
             let place: [f64; 3] = std::array::from_fn(|axis| window.center[axis] + frame.origin[axis]);
-            Spot { place, properties }
+            Spot { place, properties: row_properties(&columns, row) }
         };
         let spots: Vec<Spot> = self.found.windows.iter().enumerate().map(spot).collect();
         write_places(output, &spots, &[], &frame.crs).map(|_| ())
@@ -96,12 +80,12 @@ impl WindowOutput<'_> {
     /// A row for each building.
     pub(super) fn write_buildings(&self, output: &Path) -> Result<()> {
         let found = self.found.by_name(&self.names);
-        let names: Vec<&str> = found.iter().map(|named| named.name.as_str()).collect();
-        let counts: Vec<Option<u64>> = found.iter().map(|named| Some(named.windows as u64)).collect();
-        let columns = named_columns(&found);
-        let mut cells = vec![("name", TableCells::Words(&names)), ("windows", TableCells::Whole(&counts))];
-        cells.extend(columns.iter().map(|(name, values)| (*name, TableCells::Real(values, 3))));
-        Ok(write_table(output, &cells)?)
+        let mut columns = vec![
+            ResultColumn::words("name", found.iter().map(|named| &named.name)),
+            ResultColumn::whole("windows", found.iter().map(|named| named.windows)),
+        ];
+        columns.extend(named_columns(&found));
+        Ok(write_table(output, &columns)?)
     }
 
     /// The share of one kind as dots on a map.

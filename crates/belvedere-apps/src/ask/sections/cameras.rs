@@ -8,28 +8,28 @@ use serde::Serialize;
 /// Report of a selection of cameras.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct CamerasReport {
-    pub(super) targets: usize,
+    pub(in crate::ask) targets: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) private_places: Option<usize>,
+    pub(in crate::ask) private_places: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) existing_camera_places: Option<EyesReport>,
-    pub(super) candidate_places: EyesReport,
-    pub(super) cameras_to_choose_from: ChoiceSection,
-    pub(super) pictures: PicturesSection,
-    pub(super) coverage: CoverageSection,
+    pub(in crate::ask) existing_camera_places: Option<EyesReport>,
+    pub(in crate::ask) candidate_places: EyesReport,
+    pub(in crate::ask) cameras_to_choose_from: ChoiceSection,
+    pub(in crate::ask) pictures: PicturesSection,
+    pub(in crate::ask) coverage: CoverageSection,
 }
 
 /// Cameras that could be chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub(super) struct ChoiceSection {
-    pub(super) count: usize,
-    pub(super) see_private_places: usize,
-    pub(super) existing: usize,
+pub(in crate::ask) struct ChoiceSection {
+    pub(in crate::ask) count: usize,
+    pub(in crate::ask) see_private_places: usize,
+    pub(in crate::ask) existing: usize,
 }
 
 /// Targets in the pictures of cameras.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub(super) struct PicturesSection {
+pub(in crate::ask) struct PicturesSection {
     pixels_per_m: f64,
     #[serde(flatten)]
     lines: CoverageReport,
@@ -38,7 +38,7 @@ pub(super) struct PicturesSection {
 
 /// Coverage of the selected cameras.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub(super) struct CoverageSection {
+pub(in crate::ask) struct CoverageSection {
     new_cameras: usize,
     coverage_percent: f64,
     best_possible_percent: f64,
@@ -54,13 +54,13 @@ pub(super) struct CoverageSection {
 }
 
 impl PicturesSection {
-    pub(super) fn fill(&mut self, density: f64, lines: CoverageReport, covered_pairs: usize) {
+    pub(in crate::ask) fn fill(&mut self, density: f64, lines: CoverageReport, covered_pairs: usize) {
         *self = Self { pixels_per_m: rounded(density, 3), lines, covered_pairs };
     }
 }
 
 impl CoverageSection {
-    pub(super) fn fill(&mut self, placed: &Placement, weights: &[f64], per_target: u32) {
+    pub(in crate::ask) fn fill(&mut self, placed: &Placement, weights: &[f64], per_target: u32) {
         let in_percent = |share: f64| rounded(100.0 * share, 3);
         let counting: Vec<u32> =
             weights.iter().zip(&placed.counts).filter(|(weight, _)| **weight > 0.0).map(|(_, count)| *count).collect();
@@ -81,7 +81,7 @@ impl CoverageSection {
     }
 
     /// The answer in words.
-    pub(super) fn headlines(&self, existing: usize, weights: &[f64], certain: Option<f64>) -> Vec<String> {
+    pub(in crate::ask) fn headlines(&self, existing: usize, weights: &[f64], certain: Option<f64>) -> Vec<String> {
         let counting = weights.iter().filter(|weight| **weight > 0.0).count();
         let and_existing = if existing > 0 { format!(" and {existing} existing ones") } else { String::new() };
         let certainty =

@@ -1,8 +1,11 @@
 //! Casters of shadows: what stands between each target and the sun.
 
-use super::super::window_views::kinds_of_balls;
-use super::super::{Context, NamedSun, Places, Scene};
-use super::Light;
+use super::context::Context;
+use super::places::Places;
+use super::scene::Scene;
+use super::seen_kinds::kinds_of_balls;
+use super::sun::NamedSun;
+use super::sun_and_sky::Light;
 use crate::shadow::HALF_LIGHT;
 use crate::sun_calendar::{SunObstacle, sun_obstacle};
 use crate::targets::Measure;
@@ -47,16 +50,17 @@ fn number_of(obstacle: SunObstacle) -> u8 {
 }
 
 /// Refuses faces of a mesh, over which numbers would be averaged, and more meshes than there are numbers.
-pub(super) fn check(places: &Places, scene: &Scene) -> Result<()> {
-    let refused = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
+pub(super) fn check_casters(places: &Places, scene: &Scene) -> Result<()> {
     if matches!(places, Places::Mesh(..)) {
         let value = "faces of a mesh".to_owned();
-        return refused(Parameter::Targets, value, "cells or points, where casters are wanted");
+        return Err(Error::invalid(Parameter::Targets, value, "cells or points, where casters are wanted"));
     }
     match scene.model().added().map_or(0, |added| added.names().len()) {
-        count if count > usize::from(u8::MAX - FIRST_MESH) => {
-            refused(Parameter::AddedMesh, format!("{count} of them"), "at most 247, where casters are wanted")
-        }
+        count if count > usize::from(u8::MAX - FIRST_MESH) => Err(Error::invalid(
+            Parameter::AddedMesh,
+            format!("{count} of them"),
+            "at most 247, where casters are wanted",
+        )),
         _ => Ok(()),
     }
 }

@@ -1,9 +1,11 @@
 //! Positions of cameras.
 
-use super::{CameraSite, CamerasQuestion, CamerasReport};
-use crate::ask::observers::{Reach, skip_unfit};
-use crate::ask::{Context, GridCells};
-use crate::cameras::{CAMERA_HEIGHT, CameraPose, Mount, ROOF_CAMERA_HEIGHT, ground_places, roof_places};
+use super::site::CameraSite;
+use crate::ask::cells::GridCells;
+use crate::ask::context::Context;
+use crate::ask::observers::skip_unfit;
+use crate::ask::standing::Reach;
+use crate::cameras::{Mount, ground_places, roof_places};
 use crate::eyes::{EyesReport, skip_unfit_eyes};
 use crate::targets::set_on_ground;
 use belvedere_core::ground::{Ground, GroundPoints};
@@ -57,7 +59,7 @@ pub struct GivenCamera {
 }
 
 impl GivenCamera {
-    fn mount(&self, eye: [f64; 3], grid_north: f64) -> Mount {
+    pub(super) fn mount(&self, eye: [f64; 3], grid_north: f64) -> Mount {
         let in_grid = |azimuth: f64| azimuth.to_radians() - grid_north;
         Mount {
             eye,
@@ -68,54 +70,6 @@ impl GivenCamera {
             azimuth: self.azimuth_deg.map(|range| range.map(in_grid)),
             elevation: self.elevation_deg.map(|range| range.map(f64::to_radians)),
         }
-    }
-}
-
-impl CamerasQuestion {
-    /// The cameras that stay; one that cannot look is NaN, so that others keep their numbers.
-    pub(super) fn existing_poses(
-        &self,
-        site: &CameraSite<'_>,
-        report: &mut CamerasReport,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Vec<CameraPose>> {
-        if self.existing.is_empty() {
-            return Ok(Vec::new());
-        }
-        let eyes = given_eyes(&self.existing, self.camera_height.unwrap_or(CAMERA_HEIGHT), site.ground);
-        let (reach, looking) = (Reach::Cloud, (site.blockers, Some(site.ground)));
-        let eyes = skip_unfit(eyes, ("existing camera", reach), looking, (site.scene, context), control)?;
-        report.existing_camera_places = Some(eyes.report);
-        let mounting = self.lens.mounting()?;
-        let pose = |(given, eye): (&GivenCamera, [f64; 3])| mounting.existing_at(&given.mount(eye, site.grid_north));
-        self.existing.iter().zip(eyes.eyes).map(pose).collect()
-    }
-
-    /// The cameras to choose from.
-    pub(super) fn candidate_poses(
-        &self,
-        site: &CameraSite<'_>,
-        report: &mut CamerasReport,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Vec<CameraPose>> {
-        let usual = if matches!(self.candidates, Candidates::Roofs(_)) { ROOF_CAMERA_HEIGHT } else { CAMERA_HEIGHT };
-        let height = self.camera_height.unwrap_or(usual);
-        let (eyes, fitting) = self.candidates.eyes((height, self.targets.ground), site, context, control)?;
-        report.candidate_places = fitting;
-        let mounts: Vec<Mount> = match &self.candidates {
-            Candidates::Given(given) => {
-                given.iter().zip(eyes).map(|(given, eye)| given.mount(eye, site.grid_north)).collect()
-            }
-            _ => eyes.into_iter().map(|eye| Mount { eye, ..Mount::default() }).collect(),
-        };
-        let mounting = self.lens.mounting()?;
-        let mut poses = Vec::new();
-        for mount in mounts.iter().filter(|mount| mount.eye[0].is_finite()) {
-            poses.extend(mounting.poses_at(mount)?);
-        }
-        Ok(poses)
     }
 }
 
@@ -155,7 +109,7 @@ impl Candidates {
 }
 
 /// Places as they are given, those without a height on the ground.
-fn given_eyes(given: &[GivenCamera], usual: f64, ground: &Ground) -> Vec<[f64; 3]> {
+pub(super) fn given_eyes(given: &[GivenCamera], usual: f64, ground: &Ground) -> Vec<[f64; 3]> {
     let mut eyes: Vec<[f64; 3]> = given.iter().map(|one| one.place).collect();
     let heights = given.iter().map(|one| one.height.unwrap_or(usual));
     set_on_ground(eyes.iter_mut().zip(heights), ground);
