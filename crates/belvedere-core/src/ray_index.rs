@@ -14,6 +14,7 @@ pub(crate) use open_node::{OpenNode, PartSides};
 pub(crate) use walk::Visit;
 
 use crate::instructions::Instructions;
+use belvedere_data::cast::to_row;
 use belvedere_data::model::TreeParts;
 use belvedere_data::vector::{dot, length, sub, to_f32, unit};
 use belvedere_data::{Error, Parameter, Result};
@@ -364,8 +365,7 @@ impl RayIndex {
             NodePart::Node(below) => below > number && (below as usize) < nodes,
             NodePart::Rows { first, count: rows } => first as usize + rows as usize <= count,
         };
-        #[expect(clippy::cast_possible_truncation, reason = "nodes are numbered with 32 bits")]
-        let numbers = 0..nodes as u32;
+        let numbers = 0..to_row(nodes);
         let mut seen = vec![false; count];
         self.tree.primitive_indices.len() == count
             && self
@@ -457,9 +457,8 @@ mod tests {
     use belvedere_data::vector::piece_in_box;
     use std::collections::BTreeSet;
 
-    #[expect(clippy::cast_possible_truncation, reason = "boxes are f32")]
     fn boxes(count: u64) -> Vec<[[f32; 3]; 2]> {
-        let random = |i: u64, k: u64| uniform(8, 16 * i + k) as f32;
+        let random = |i: u64, k: u64| to_f32(uniform(8, 16 * i + k));
         (0..count)
             .map(|i| {
                 let low: [f32; 3] = std::array::from_fn(|k| [80.0, 50.0, 20.0][k] * random(i, k as u64));

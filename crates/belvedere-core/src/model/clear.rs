@@ -9,6 +9,7 @@ use crate::neighbors::NeighborIndex;
 use crate::planes::BuildingOutlines;
 use crate::query::{BlockingTriangles, FreedSpace};
 use belvedere_data::balls::LIMIT_TOUCH;
+use belvedere_data::cast::to_i64;
 use belvedere_data::control::Control;
 use belvedere_data::polygon::{PolygonIndex, simple_rings};
 use belvedere_data::{Bounds, Error, ExtinctionVoxels, Parameter, PointCloud, Result, SurfacePatches};
@@ -224,8 +225,7 @@ impl ClearedArea {
         let mut squares: BTreeMap<[i64; 2], Vec<Rings>> = BTreeMap::new();
         for rings in polygons {
             let corner = rings.iter().flatten().next().copied().unwrap_or_default();
-            #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
-            let square = corner.map(|v| (v / AREA_SIDE).floor() as i64);
+            let square = corner.map(|v| to_i64((v / AREA_SIDE).floor()));
             squares.entry(square).or_default().push(rings);
         }
         let area = |mut polygons: Vec<Rings>| match polygons.pop() {

@@ -4,6 +4,7 @@ use super::{Answer, MedialScene, Viewer};
 use crate::blocking::Profile;
 use crate::depth::DepthBounds;
 use crate::ray_index::Ray;
+use belvedere_data::cast::to_index;
 use belvedere_data::control::Control;
 use belvedere_data::view::{Projection, View};
 use belvedere_data::{Error, Parameter, Result};
@@ -221,12 +222,7 @@ impl<'a> CertifiedMap<'a> {
             }
             _ => depth,
         };
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "not negative: rounds down, saturates"
-        )]
-        let (column, row) = (x as usize, y as usize);
+        let (column, row) = (to_index(x), to_index(y));
         let bracket = bounds.bounds.get(column, row)?.map(f64::from);
         (depth.abs() < FARTHEST_SETTLED).then_some((depth - self.scene.params().bias, bracket))
     }

@@ -4,6 +4,7 @@ use super::triangles::LineEnds;
 use super::{Answer, EarthParams, LineOfSight, MedialScene};
 use crate::blocking::Ball;
 use crate::triangle_tree::Corners;
+use belvedere_data::cast::to_index;
 use belvedere_data::control::Control;
 use belvedere_data::vector::{dot, length, sub, unit};
 use belvedere_data::{Error, Parameter, Result};
@@ -167,8 +168,7 @@ impl Link {
     /// Boxes around pieces of the zone, by `share` of its radius: lowest and highest corner.
     fn boxes(&self, share: f64) -> impl Iterator<Item = [[f64; 3]; 2]> + '_ {
         let count = (self.length / PIECE).ceil().clamp(1.0, MAX_PIECES);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of pieces")]
-        let pieces = 0..count as u64;
+        let pieces = 0..to_index(count) as u64;
         pieces.map(move |piece| {
             let [from, to] = [piece as f64, (piece + 1) as f64].map(|i| self.length * i / count);
             let widest = self.radius((self.length / 2.0).clamp(from, to)) * share;
@@ -324,9 +324,8 @@ mod tests {
         for i in 0..40 {
             let random = |k: u64| uniform(7, 16 * i + k);
             let along = 5.0 + 85.0 * random(0);
-            #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
             let center: [f32; 3] =
-                std::array::from_fn(|k| (ends[0][k] + along * axis[k] + 8.0 * (random(1 + k as u64) - 0.5)) as f32);
+                std::array::from_fn(|k| to_f32(ends[0][k] + along * axis[k] + 8.0 * (random(1 + k as u64) - 0.5)));
             let radius = to_f32(0.2 + 3.0 * random(5));
             let found = scene(&[(center, radius)]).fresnel_clearance(ends, wave, &EarthParams::flat(), 9.0);
             // random points of the ball: none leaves less, and the best leaves hardly more. About 100 000 lie 3 cm

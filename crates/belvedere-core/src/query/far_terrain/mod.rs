@@ -10,6 +10,7 @@ use super::coverage::CEILING;
 use super::far_line::FarLine;
 use crate::triangle_tree::Corners;
 use belvedere_data::ElevationGrid;
+use belvedere_data::cast::to_index;
 use belvedere_data::horizon::HorizonProfile;
 use belvedere_data::vector::piece_in_box;
 use rayon::prelude::*;
@@ -77,8 +78,7 @@ impl FarTerrain {
         let (grid, [box_low, box_high]) = (relief.grid(), relief.within());
         let [west, north] = grid.north_west();
         let patches = |from: f64, to: f64, cell: f64, nodes: usize| {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturated casts in the grid")]
-            let [from, to] = [from, to].map(|end| (end / cell).floor().max(-1.0) as i64 + 1).map(|end| end as usize);
+            let [from, to] = [from, to].map(|end| to_index((end / cell).floor() + 1.0));
             from.saturating_sub(1)..to.min(nodes - 1)
         };
         let columns = patches(low[0] - west, high[0] - west, grid.cell()[0], grid.heights().width());
