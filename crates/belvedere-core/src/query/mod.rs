@@ -27,11 +27,11 @@ mod far_sights;
 mod far_terrain;
 mod free_range;
 mod freed_space;
-mod fresnel;
 mod lazy;
 mod many_targets;
 pub mod medial_scene;
 pub mod mesh;
+mod obstacles_near;
 mod parallel_lines;
 pub mod points;
 pub mod proof;
@@ -57,9 +57,9 @@ pub use earth::{Curvature, EarthParams};
 pub use far_terrain::{FarTerrain, VisibleTerrain};
 pub use free_range::SurfaceBefore;
 pub use freed_space::FreedSpace;
-pub use fresnel::RadioWave;
 pub use medial_scene::MedialScene;
 pub use mesh::{BackFaces, MeshTargetParams, SeenArea, facing, seen_faces, seen_in_all, seen_objects};
+pub use obstacles_near::Obstacle;
 pub use parallel_lines::{BlockedLines, ParallelLines};
 pub use points::{
     Answer, AnswerCounts, MAX_RANDOM_PAIRS, MAX_RANDOM_TARGETS, UnprovenAs, query_points, random_targets,

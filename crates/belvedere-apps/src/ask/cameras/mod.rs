@@ -18,9 +18,10 @@ use crate::cameras::{
     PlacementParams, counted_weights, coverage, leave_out_private, place_cameras,
 };
 use crate::landmark::observer_cell_for;
+use crate::radio_link::RadioWave;
 use crate::targets::Targets;
 use belvedere_core::ground::Ground;
-use belvedere_core::query::{Certainty, EarthParams, MedialScene, RadioWave, UnprovenAs};
+use belvedere_core::query::{Certainty, EarthParams, MedialScene, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
 use report::ChoiceSection;
