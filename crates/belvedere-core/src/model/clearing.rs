@@ -1,6 +1,6 @@
 //! Effect of clearing an area at a place: removes a point, cuts a ball, or closes the ground.
 
-use super::ClearedArea;
+use super::cleared_area::{ClearedArea, GROUND};
 use crate::ground::{Ground, GroundParams, GroundPoints, MapGrid, ground_points};
 use belvedere_data::cast::to_index;
 use belvedere_data::control::Control;
@@ -9,8 +9,6 @@ use belvedere_data::raster::Raster;
 use belvedere_data::vector::{sub, to_f32, unit};
 use belvedere_data::{PointCloud, Result};
 
-/// ASPRS class of ground.
-const GROUND: u8 = 2;
 /// Height above the ground up to which a point or a ball belongs to it, metres: that up to which points are taken for
 /// ground where none are classed.
 const ABOVE_GROUND: f64 = 0.3;

@@ -16,6 +16,7 @@
 pub mod backend;
 mod ball_tree;
 mod beams;
+mod blocker;
 pub mod certified;
 mod clear_height;
 mod confidence;
@@ -43,12 +44,14 @@ pub mod target_tree;
 mod triangles;
 mod vertical_line;
 mod vertical_plane;
+mod view_line;
 pub mod visibility;
 pub mod visibility_matrix;
 
 pub use crate::blocking::{Ball, BlockRule, Profile};
 pub use backend::{Backend, DEPTH_MAP_TOLERANCE, Drawable, LineAnswer, PreparedBackend, Settled, Viewers};
 pub use ball_tree::BallTree;
+pub use blocker::Blocker;
 pub use certified::{CertifiedReport, Scope};
 pub use confidence::{Certainty, Evidence, ScoreKey};
 pub use coverage::Coverage;
@@ -65,7 +68,7 @@ pub use points::{
     Answer, AnswerCounts, MAX_RANDOM_PAIRS, MAX_RANDOM_TARGETS, UnprovenAs, query_points, random_targets,
 };
 pub use proof::{Beside, Proof, ProofParams, nearness_of};
-pub use segments::{Blocker, Crossing, Enclosure, LineOfSight, Obstruction, merged_crossings, random_pairs};
+pub use segments::{Crossing, Enclosure, LineOfSight, Obstruction, merged_crossings, random_pairs};
 pub use skyline::SkylinePoint;
 pub use surface::{Sides, SurfacePiece, SurfacePieces};
 pub use triangles::BlockingTriangles;

@@ -1,7 +1,8 @@
 //! Free segments as columns of numbers, with as few digits as the required accuracy allows.
 
+use super::FreeSegments;
+use super::segment::{FreeSegment, SegmentsByAxis};
 use super::tree::{SegmentAxis, SegmentTree, node_count};
-use super::{FreeSegment, FreeSegments, SegmentsByAxis};
 use belvedere_data::Result;
 use belvedere_data::cast::to_row;
 use belvedere_data::control::Control;

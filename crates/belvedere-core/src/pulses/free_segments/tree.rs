@@ -1,6 +1,6 @@
 //! A tree over free segments of one main direction: its nodes store where their segments pass two planes.
 
-use super::FreeSegment;
+use super::segment::FreeSegment;
 use belvedere_data::cast::to_row;
 use belvedere_data::control::{Control, Stop};
 use std::ops::{ControlFlow, Range};

@@ -12,7 +12,6 @@ use crate::triangle_tree::Corners;
 use belvedere_data::ElevationGrid;
 use belvedere_data::cast::to_index;
 use belvedere_data::horizon::HorizonProfile;
-use belvedere_data::vector::piece_in_box;
 use rayon::prelude::*;
 pub(super) use relief::TerrainGuess;
 use relief::{LineStarts, TerrainHeights};
@@ -167,12 +166,4 @@ impl FarTerrain {
 fn on_map([x, y, z]: [f64; 3]) -> ([f64; 2], f64) {
     let across = x.hypot(y);
     if across > 0.0 { ([x / across, y / across], z / across) } else { ([0.0, 1.0], z * f64::INFINITY) }
-}
-
-/// Returns the piece of a line over a box in plan, from and to, metres from the start of the line. The box is given by
-/// its low and high corner; the line is `span` metres long along the unit vector `along`. `None` if the line passes
-/// beside it.
-pub(super) fn piece_over([low, high]: [[f64; 2]; 2], start: [f64; 3], along: [f64; 2], span: f64) -> Option<[f64; 2]> {
-    let sides = std::array::from_fn(|axis| [low[axis] - start[axis], high[axis] - start[axis]]);
-    piece_in_box(sides, along, [0.0, span]).filter(|[from, to]| from < to)
 }

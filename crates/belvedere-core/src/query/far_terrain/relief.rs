@@ -2,7 +2,7 @@
 
 use super::super::EarthParams;
 use super::super::far_line::FarLine;
-use super::piece_over;
+use crate::query::far_line::piece_over;
 use belvedere_data::ElevationGrid;
 use belvedere_data::cast::to_index;
 use std::ops::ControlFlow;
