@@ -16,6 +16,7 @@ pub mod isovist;
 pub mod landmark;
 pub mod profile;
 pub mod protected_view;
+pub mod radio_link;
 pub mod resampling;
 pub mod roof_planes;
 pub mod rows;

@@ -3,6 +3,7 @@
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 mod nearest_first;
+mod node_parts;
 mod open_node;
 mod search_tree;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
@@ -10,13 +11,17 @@ mod simd128;
 mod walk;
 
 pub(crate) use nearest_first::BoxReach;
+pub use node_parts::{NodePart, NodeParts, PARTS};
 pub(crate) use open_node::{OpenNode, PartSides};
+
 pub(crate) use walk::Visit;
 
 use crate::instructions::Instructions;
+use belvedere_data::cast::to_row;
 use belvedere_data::model::TreeParts;
 use belvedere_data::vector::{dot, length, sub, to_f32, unit};
 use belvedere_data::{Error, Parameter, Result};
+use node_parts::part_of;
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::node::CwBvhNode;
@@ -94,37 +99,8 @@ pub struct RayIndex {
     instructions: Instructions,
 }
 
-/// The parts of a node of a [`RayIndex`].
-pub struct NodeParts {
-    /// The parts.
-    pub parts: [NodePart; PARTS],
-    /// Middles of their boxes, local metres, by axis.
-    pub centers: [[f32; PARTS]; 3],
-    /// Half sizes of their boxes, metres, by axis.
-    pub half_sizes: [[f32; PARTS]; 3],
-}
-
-/// Maximum number of parts of a node of a [`RayIndex`].
-pub const PARTS: usize = 8;
-
 /// Words of a node: see [`RayIndex::node_words`].
 pub const NODE_WORDS: usize = 20;
-
-/// Part of a node of a [`RayIndex`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NodePart {
-    /// A place that is not taken.
-    Nothing,
-    /// Another node.
-    Node(u32),
-    /// Rows of the index.
-    Rows {
-        /// The lowest row.
-        first: u32,
-        /// Number of rows.
-        count: u32,
-    },
-}
 
 impl RayIndex {
     /// Indexes boxes given by their lowest and highest corner, local metres. The rows of the index are numbered in the
@@ -282,7 +258,7 @@ impl RayIndex {
     #[inline]
     pub fn parts(&self, node: u32) -> Option<NodeParts> {
         let node = self.tree.nodes.get(node as usize)?;
-        let parts = std::array::from_fn(|child| open_node::part_of(node, child));
+        let parts = std::array::from_fn(|child| part_of(node, child));
         let steps = node.compute_extent().to_array();
         let origin = node.p.to_array();
         let sides = [
@@ -364,8 +340,7 @@ impl RayIndex {
             NodePart::Node(below) => below > number && (below as usize) < nodes,
             NodePart::Rows { first, count: rows } => first as usize + rows as usize <= count,
         };
-        #[expect(clippy::cast_possible_truncation, reason = "nodes are numbered with 32 bits")]
-        let numbers = 0..nodes as u32;
+        let numbers = 0..to_row(nodes);
         let mut seen = vec![false; count];
         self.tree.primitive_indices.len() == count
             && self
@@ -457,9 +432,8 @@ mod tests {
     use belvedere_data::vector::piece_in_box;
     use std::collections::BTreeSet;
 
-    #[expect(clippy::cast_possible_truncation, reason = "boxes are f32")]
     fn boxes(count: u64) -> Vec<[[f32; 3]; 2]> {
-        let random = |i: u64, k: u64| uniform(8, 16 * i + k) as f32;
+        let random = |i: u64, k: u64| to_f32(uniform(8, 16 * i + k));
         (0..count)
             .map(|i| {
                 let low: [f32; 3] = std::array::from_fn(|k| [80.0, 50.0, 20.0][k] * random(i, k as u64));

@@ -4,6 +4,7 @@
 //! different flights, differ by decimetres. Pulses of the lower line then end below the surface of the higher one, and
 //! balls block lines of sight that pulses saw.
 
+use belvedere_data::cast::{to_cell, to_u32};
 use belvedere_data::control::Control;
 use belvedere_data::vector::to_f32;
 use belvedere_data::{PointCloud, Result};
@@ -148,16 +149,14 @@ fn points_of_cells(cloud: &PointCloud, lines: &[u16], params: &StripParams) -> V
     let Some(bounds) = cloud.bounds() else { return Vec::new() };
     let (low, high) = bounds.on_map();
     let cells = (0..2).map(|i| ((high[i] - low[i]) / params.cell).ceil().max(1.0)).product::<f64>();
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "one cell of so many, and saturating")]
-    let every = (cells / params.max_cells.max(1) as f64).ceil().max(1.0) as u32;
+    let every = to_u32((cells / params.max_cells.max(1) as f64).ceil().max(1.0));
     let (classes, counts) = (cloud.attributes.classification.as_deref(), cloud.attributes.return_count.as_deref());
     let mut found = Vec::new();
     for (row, (p, &line)) in cloud.positions.iter().zip(lines).enumerate() {
         let class = classes.and_then(|classes| classes.get(row)).copied().unwrap_or_default();
         // plants, noise and water change from flight to flight
         let is_fixed = !matches!(class, 3..=5 | 7 | 9 | 18) && counts.is_none_or(|counts| counts.get(row) <= Some(&1));
-        #[expect(clippy::cast_possible_truncation, reason = "cells of a cloud, and saturating")]
-        let cell = [0, 1].map(|i| (f64::from(p[i]) / params.cell).floor() as i32);
+        let cell = [0, 1].map(|i| to_cell(f64::from(p[i]) / params.cell));
         if is_fixed && hash(cell).is_multiple_of(every) {
             found.push((cell, line, *p));
         }

@@ -8,6 +8,7 @@ mod up_axis;
 
 use belvedere_data::Bounds;
 use belvedere_data::Result;
+use belvedere_data::cast::to_cell;
 use belvedere_data::cloud::PointCloud;
 use belvedere_data::control::Control;
 use std::collections::BTreeMap;
@@ -153,8 +154,7 @@ fn cell_size_for(cloud: &PointCloud) -> f64 {
 }
 
 fn occupied_cell_count(cloud: &PointCloud, cell_size: f64) -> usize {
-    #[expect(clippy::cast_possible_truncation, reason = "saturates; clouds are not 2^31 cells wide")]
-    let cell = |v: f32| (f64::from(v) / cell_size).floor() as i32;
+    let cell = |v: f32| to_cell(f64::from(v) / cell_size);
     let mut cells: Vec<[i32; 2]> = cloud.positions.iter().map(|p| [cell(p[0]), cell(p[1])]).collect();
     cells.sort_unstable();
     cells.dedup();

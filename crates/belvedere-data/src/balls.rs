@@ -1,5 +1,6 @@
 //! Medial balls as columns of numbers.
 
+use crate::cast::to_row;
 use crate::{Error, Result};
 
 /// Value of [`MedialBalls::touch`] for a ball that is not bounded, or left out.
@@ -97,8 +98,7 @@ impl MedialBalls {
     pub fn push(&mut self, source: usize, center: [f32; 3], radius: f32, touch: u32) {
         self.centers.push(center);
         self.radii.push(radius);
-        #[expect(clippy::cast_possible_truncation, reason = "rows of a cloud are numbered with 32 bits everywhere")]
-        self.source.push(source as u32);
+        self.source.push(to_row(source));
         self.touch.push(touch);
         self.separation_angles.push(f32::NAN);
     }

@@ -12,6 +12,7 @@ mod registry;
 pub mod text;
 mod wkt;
 
+use crate::cast::to_u32;
 use crate::{Error, Parameter, Result};
 use std::path::Path;
 
@@ -363,9 +364,9 @@ fn unit_name(metres: f64) -> String {
 }
 
 /// EPSG code of the UTM zone (WGS 84) around a position in degrees; zone 31 north where it is no position at all.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 1..=60 just before")]
 fn utm_zone(longitude: f64, latitude: f64) -> u32 {
-    let zone = if longitude.is_finite() { ((longitude + 180.0) / 6.0).floor().clamp(0.0, 59.0) as u32 + 1 } else { 31 };
+    let zone =
+        if longitude.is_finite() { to_u32(((longitude + 180.0) / 6.0).floor().clamp(0.0, 59.0)) + 1 } else { 31 };
     if latitude < 0.0 { 32700 + zone } else { 32600 + zone }
 }
 

@@ -1,5 +1,6 @@
 //! Heights of terrain on a grid, such as those of an elevation raster around a cloud.
 
+use crate::cast::to_index;
 use crate::raster::Raster;
 use crate::{Error, Parameter, Result};
 
@@ -90,8 +91,7 @@ impl ElevationGrid {
         if !(0..2).all(|axis| (0.0..=last[axis] as f64).contains(&across[axis])) {
             return None;
         }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the grid")]
-        let [column, row] = [0, 1].map(|axis| (across[axis] as usize).min(last[axis] - 1));
+        let [column, row] = [0, 1].map(|axis| to_index(across[axis]).min(last[axis] - 1));
         let [u, v] = [across[0] - column as f64, across[1] - row as f64];
         let node = |right: usize, down: usize| self.heights.get(column + right, row + down).map_or(f64::NAN, f64::from);
         let upper = (1.0 - u) * node(0, 0) + u * node(1, 0);
@@ -136,8 +136,7 @@ impl ElevationGrid {
 /// The whole numbers from `from` to `to` below `count`, if there are any.
 fn nodes_between(from: f64, to: f64, count: usize) -> Option<std::ops::Range<usize>> {
     let (first, end) = (from.ceil().max(0.0), (to.floor() + 1.0).min(count as f64));
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole numbers up to the count")]
-    (first < end).then_some(first as usize..end as usize)
+    (first < end).then_some(to_index(first)..to_index(end))
 }
 
 #[cfg(test)]

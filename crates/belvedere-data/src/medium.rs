@@ -1,5 +1,6 @@
 //! Crowns as a medium: how much of the light plants take per metre, in voxels.
 
+use crate::cast::to_i32;
 use crate::{Error, Parameter, Result};
 use std::collections::HashSet;
 
@@ -39,9 +40,7 @@ impl ExtinctionVoxels {
         std::array::from_fn(|axis| {
             let base = (origin[axis] / VOXEL_SIDE).floor();
             let place = f64::from(position[axis]) / VOXEL_SIDE + (origin[axis] / VOXEL_SIDE - base);
-            #[expect(clippy::cast_possible_truncation, reason = "clamped")]
-            let number = (base + place.floor()).clamp(-2e9, 2e9) as i32;
-            number
+            to_i32((base + place.floor()).clamp(-2e9, 2e9))
         })
     }
 

@@ -1,5 +1,7 @@
 //! Numbers of reports as a reader wants them.
 
+use crate::cast::to_i64;
+
 /// `value` with `digits` decimals; a value that is not finite stays as it is. Zero has no sign.
 #[must_use]
 pub fn rounded(value: f64, digits: i32) -> f64 {
@@ -17,8 +19,7 @@ pub fn percent(part: usize, whole: usize) -> f64 {
 /// Hours of the day as HH:MM, rounded to the minute; hours before it and after it are those of the days beside it.
 #[must_use]
 pub fn clock_time(hours: f64) -> String {
-    #[expect(clippy::cast_possible_truncation, reason = "a few days of minutes")]
-    let minutes = (hours * 60.0).round() as i64;
+    let minutes = to_i64((hours * 60.0).round());
     format!("{:02}:{:02}", minutes.div_euclid(60).rem_euclid(24), minutes.rem_euclid(60))
 }
 

@@ -1,5 +1,6 @@
 //! Arithmetic on vectors of three numbers, f32 and f64 alike, in one fixed order so that results do not vary.
 
+pub use crate::cast::to_f32;
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
 
@@ -9,15 +10,6 @@ use std::ops::{Add, Mul, Sub};
 pub fn compare_places(a: &[f32; 3], b: &[f32; 3]) -> Ordering {
     // adding zero turns -0 into 0
     (0..3).map(|i| (a[i] + 0.0).total_cmp(&(b[i] + 0.0))).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
-}
-
-/// Rounds a number to the nearest in single precision: local positions, balls, measures and rasters are stored so, and
-/// bounds leave room for the rounding.
-#[must_use]
-#[inline]
-#[expect(clippy::cast_possible_truncation, reason = "rounding is meant")]
-pub fn to_f32(value: f64) -> f32 {
-    value as f32
 }
 
 /// `a − b`.

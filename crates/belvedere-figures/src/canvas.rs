@@ -1,5 +1,6 @@
 //! Points and balls as seen in a view.
 
+use belvedere_data::cast::{to_index, to_u8};
 use rayon::prelude::*;
 
 use crate::picture::Picture;
@@ -194,14 +195,12 @@ impl Canvas {
 }
 
 /// Pixels whose middle lies within `half` of `middle`, at most `count`.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the picture")]
 fn pixels(middle: f64, half: f64, count: usize) -> std::ops::Range<usize> {
-    let pixel = |v: f64| v.clamp(0.0, count as f64) as usize;
+    let pixel = |v: f64| to_index(v.clamp(0.0, count as f64));
     // half-open, so that a square of one pixel covers one pixel wherever it lies
     pixel((middle - half - 0.5).ceil())..pixel((middle + half - 0.5).ceil())
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte")]
 fn scaled(channel: u8, factor: f64) -> u8 {
-    (f64::from(channel) * factor).round().clamp(0.0, 255.0) as u8
+    to_u8((f64::from(channel) * factor).round().clamp(0.0, 255.0))
 }

@@ -3,6 +3,7 @@
 use crate::font::{HEIGHT, draw_text, fitted, text_width};
 use crate::picture::{INK, PAPER, Picture};
 use crate::round_step::round_step;
+use belvedere_data::cast::to_index;
 
 /// Size of the diagram, pixels, and of a dot of its text.
 const SIZE: [usize; 2] = [760, 460];
@@ -44,7 +45,7 @@ pub fn curves_picture(curves: &Curves<'_>) -> Picture {
     let highest = curves.curves.iter().flat_map(|(_, values)| values).copied().filter(|v| v.is_finite());
     let step = step_for(highest.fold(0.0, f64::max));
     let high = STEPS * step;
-    let row_of = |value: f64| pixel(bottom as f64 - (value / high).min(1.0) * (bottom - top) as f64);
+    let row_of = |value: f64| to_index(bottom as f64 - (value / high).min(1.0) * (bottom - top) as f64);
     let last = curves.positions.len().saturating_sub(1).max(1);
     let column_of = |index: usize| left + index * (right - left) / last;
     for tick in 0..=5_u8 {
@@ -96,11 +97,6 @@ const STEPS: f64 = 5.0;
 /// The least round step of which five reach `highest`.
 fn step_for(highest: f64) -> f64 {
     round_step((highest / STEPS).max(0.1))
-}
-
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture, `as` saturates")]
-fn pixel(v: f64) -> usize {
-    v.max(0.0) as usize
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use crate::font::{HEIGHT, draw_text, fitted, text_width};
 use crate::picture::{INK, PAPER, Picture};
+use belvedere_data::cast::to_index;
 
 /// Pixels of a day and of an hour, and of a dot of text.
 const DAY: usize = 3;
@@ -48,8 +49,7 @@ pub fn day_chart(
     }
     sheet.fill_rectangle([left, top], [width, height], NIGHT);
     let row = |hours: f64| {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
-        let row = (hours.clamp(0.0, 24.0) * HOUR as f64).round() as usize;
+        let row = to_index((hours.clamp(0.0, 24.0) * HOUR as f64).round());
         top + height - row
     };
     let fill = |sheet: &mut Picture, number: usize, hours: [f64; 2], color| {

@@ -1,5 +1,6 @@
 //! Depth maps as pictures with a legend.
 
+use belvedere_data::cast::{to_index, to_u8};
 use rayon::prelude::*;
 
 use crate::font::{HEIGHT, draw_text, fitted, text_width};
@@ -131,9 +132,8 @@ fn colored(depth: &Raster<f32>, colors: &DepthColors, share: impl Fn([usize; 2])
     map
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a byte")]
 fn scaled(color: [u8; 3], share: f64) -> [u8; 3] {
-    color.map(|channel| (f64::from(channel) * share.clamp(0.0, 1.0)).round() as u8)
+    color.map(|channel| to_u8((f64::from(channel) * share.clamp(0.0, 1.0)).round()))
 }
 
 /// Returns the unit normal of the surface that a pixel shows, and the unit vector towards the eye at the origin of
@@ -220,8 +220,7 @@ fn with_legend(map: &Picture, colors: &DepthColors, title: &str, legend: &str) -
     }
     for (value, label) in ticks.iter().zip(&labels) {
         let share = colors.share(*value);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of the bar's height")]
-        let row = (share.clamp(0.0, 1.0) * (bar_height.saturating_sub(1)) as f64).round() as usize;
+        let row = to_index((share.clamp(0.0, 1.0) * (bar_height.saturating_sub(1)) as f64).round());
         sheet.fill_rectangle([left + bar_width, bar_top + row], [3 * scale, scale], INK);
         let text_top = (bar_top + row + scale / 2).saturating_sub(7 * scale / 2);
         draw_text(&mut sheet, label_left, text_top, label, scale, INK);

@@ -5,6 +5,7 @@
 
 use crate::picture::Picture;
 use ab_glyph_rasterizer::{Point, Rasterizer, point};
+use belvedere_data::cast::{to_index, to_u8};
 use skrifa::instance::{LocationRef, Size};
 use skrifa::metrics::BoundingBox;
 use skrifa::outline::{DrawSettings, OutlinePen};
@@ -86,8 +87,7 @@ impl GlyphPixels {
         let low = [place[0] + bounds.x_min * pixels_per_unit, place[1] - bounds.y_max * pixels_per_unit];
         let high = [place[0] + bounds.x_max * pixels_per_unit, place[1] - bounds.y_min * pixels_per_unit];
         let corner = low.map(|v| v.floor() - 1.0);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, `as` saturates")]
-        let [width, height] = [0, 1].map(|i| (high[i].ceil() + 1.0 - corner[i]) as usize);
+        let [width, height] = [0, 1].map(|i| to_index(f64::from(high[i].ceil() + 1.0 - corner[i])));
         Self {
             cover: Rasterizer::new(width, height),
             corner,
@@ -135,9 +135,7 @@ impl OutlinePen for GlyphPixels {
 
 /// Width in pixels of `text` at `scale`.
 pub(crate) fn text_width(text: &str, scale: usize) -> usize {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, `as` saturates")]
-    let width = ScaledFont::new(scale).map_or(0.0, |font| font.set(text, 0.0).1).ceil() as usize;
-    width
+    to_index(f64::from(ScaledFont::new(scale).map_or(0.0, |font| font.set(text, 0.0).1).ceil()))
 }
 
 /// Draws `text` with the upper left corner of its line at (`x`, `y`); parts outside the picture are cut off.
@@ -151,13 +149,11 @@ pub(crate) fn draw_text(picture: &mut Picture, x: usize, y: usize, text: &str, s
             if column < 0.0 || row < 0.0 {
                 return;
             }
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, pixels")]
-            let place = [column as usize, row as usize];
+            let place = [to_index(f64::from(column)), to_index(f64::from(row))];
             let Some(paper) = picture.get(place[0], place[1]) else { return };
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between two bytes")]
             let mixed = |i: usize| {
                 let cover = cover.clamp(0.0, 1.0);
-                (f32::from(paper[i]) * (1.0 - cover) + f32::from(color[i]) * cover).round() as u8
+                to_u8(f64::from((f32::from(paper[i]) * (1.0 - cover) + f32::from(color[i]) * cover).round()))
             };
             picture.fill_rectangle(place, [1, 1], [0, 1, 2].map(mixed));
         });

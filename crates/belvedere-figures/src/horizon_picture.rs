@@ -2,6 +2,7 @@
 
 use crate::font::{HEIGHT, draw_text, fitted, text_width};
 use crate::picture::{INK, PAPER, Picture};
+use belvedere_data::cast::to_index;
 
 /// Size of the diagram, pixels, and of a dot of its text.
 const SIZE: [usize; 2] = [1100, 420];
@@ -37,9 +38,7 @@ pub fn horizon_picture(elevations_deg: &[f64], intervals_deg: Option<&[[f64; 2]]
     let (low, high) = ((lowest / 10.0).floor() * 10.0, ((highest / 10.0).ceil() * 10.0).min(90.0));
     let row_of = |elevation: f64| {
         let share = ((elevation - low) / (high - low)).clamp(0.0, 1.0);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
-        let row = (bottom as f64 - share * (bottom - top) as f64).round() as usize;
-        row
+        to_index((bottom as f64 - share * (bottom - top) as f64).round())
     };
     sheet.fill_rectangle([left, top], [right - left, bottom - top], SKY);
     let step = if high - low > 45.0 {

@@ -1,5 +1,6 @@
 //! Maps over a shaded relief, with coordinates, a legend, a scale bar and an arrow to the north.
 
+use belvedere_data::cast::{to_index, to_u8};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -127,8 +128,7 @@ pub fn map_image(map: &MapPicture<'_>, factor: usize) -> Result<Picture> {
                 }
                 None => base[channel],
             };
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte")]
-            let byte = value.clamp(0.0, 255.0) as u8;
+            let byte = to_u8(value.clamp(0.0, 255.0));
             *out = byte;
         }
     });
@@ -197,12 +197,7 @@ fn draw_label(picture: &mut Picture, [x, y]: [f64; 2], mark: &MapMark, radius: f
     let scale = text_scale(picture.width.max(picture.height));
     let (width, height) = (text_width(&mark.label, scale), HEIGHT * scale);
     let [middle, line] = [x + LABEL * radius * heading.sin(), y - LABEL * radius * heading.cos()];
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "`as` saturates, text is cut at the edge"
-    )]
-    let corner = [(middle - width as f64 / 2.0) as usize, (line - height as f64 / 2.0) as usize];
+    let corner = [to_index(middle - width as f64 / 2.0), to_index(line - height as f64 / 2.0)];
     let border = scale.div_ceil(2);
     for right in 0..3 {
         for down in 0..3 {
@@ -220,12 +215,7 @@ fn for_pixels_around(
     radius: f64,
     mut draw: impl FnMut(&mut Picture, [usize; 2], [f64; 2]),
 ) {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "`as` saturates, pixels are clamped at the edge"
-    )]
-    let pixels = |v: f64, max: usize| (v - radius).max(0.0) as usize..max.min((v + radius + 1.0).max(0.0) as usize);
+    let pixels = |v: f64, max: usize| to_index(v - radius)..max.min(to_index(v + radius + 1.0));
     for row in pixels(y, picture.height) {
         for column in pixels(x, picture.width) {
             let offset = [column as f64 + 0.5 - x, row as f64 + 0.5 - y];
@@ -243,8 +233,7 @@ fn framed(map: &Picture, what: &MapPicture<'_>, pixel: f64) -> Picture {
     let lines = legend_lines(what);
     let heading = if let MapLegend::Ramp(name, ..) = &what.legend { *name } else { "" };
     let (bar, bar_text) = scale_bar(map.width as f64 * pixel / 4.0);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a quarter of the map")]
-    let bar_px = (bar / pixel).round() as usize;
+    let bar_px = to_index((bar / pixel).round());
     let marks = if what.marks.is_empty() { "" } else { what.mark_name };
     let texts = lines.iter().map(|(_, text)| text.as_str()).chain([heading, marks]);
     let legend = texts.map(|text| text_width(text, scale)).max().unwrap_or(0) + swatch + 5 * scale;
@@ -340,8 +329,7 @@ impl Axes {
             (0..100).map(move |i| (first + f64::from(i)) * step).take_while(move |value| *value <= from + span)
         };
         let decimals = usize::try_from((0..6).find(|&n| step * 10f64.powi(n) >= 0.999).unwrap_or(6)).unwrap_or(0);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the map")]
-        let pixel = |share: f64, size: usize| (share * size as f64) as usize;
+        let pixel = |share: f64, size: usize| to_index(share * size as f64);
         let [west, north] = place.upper_left;
         let mut eastings: Vec<(usize, String)> = Vec::new();
         let mut free_from = 0;

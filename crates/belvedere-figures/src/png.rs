@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use crate::picture::Picture;
+use belvedere_data::cast::to_row;
 use belvedere_data::{Error, Parameter, Result};
 use belvedere_io::atomic;
 
@@ -66,10 +67,10 @@ pub(super) fn write_frames(path: &Path, frames: &[Picture], milliseconds: u16) -
                 let from = ((top + row) * frame.width + left) * 3;
                 part.rgb[row * width * 3..][..width * 3].copy_from_slice(&frame.rgb[from..from + width * 3]);
             }
-            let (x, y) = (pixels(left), pixels(top));
+            let (x, y) = (to_row(left), to_row(top));
             // the position is set back first, since a size is checked against the current position
             writer.set_frame_position(0, 0).map_err(failed(path))?;
-            writer.set_frame_dimension(pixels(width), pixels(height)).map_err(failed(path))?;
+            writer.set_frame_dimension(to_row(width), to_row(height)).map_err(failed(path))?;
             writer.set_frame_position(x, y).map_err(failed(path))?;
             writer.write_image_data(&part.rgb).map_err(failed(path))?;
         }
@@ -124,9 +125,4 @@ fn checked_size(picture: &Picture) -> Result<(u32, u32)> {
             expected: "at least one pixel and three bytes per pixel",
         }),
     }
-}
-
-/// A place or size within a picture whose sides were checked.
-fn pixels(count: usize) -> u32 {
-    u32::try_from(count).unwrap_or(u32::MAX)
 }

@@ -3,6 +3,7 @@
 use crate::font::{HEIGHT, draw_text, fitted, text_width};
 use crate::picture::{INK, PAPER, Picture};
 use crate::round_step::round_step;
+use belvedere_data::cast::to_index;
 
 /// Size of the diagram, pixels, and of a dot of its text.
 const SIZE: [usize; 2] = [1100, 420];
@@ -50,9 +51,11 @@ pub fn profile_picture(profile: &DistanceProfile<'_>) -> Picture {
     }
     let pad = ((high - low) * 0.08).max(1.0);
     let (low, high) = (low - pad, high + pad);
-    let column_of = |distance: f64| pixel(left as f64 + distance / span * (right - left) as f64);
+    let column_of = |distance: f64| to_index(left as f64 + distance / span * (right - left) as f64);
     let row_of = |height: f64| {
-        pixel((bottom as f64 - (height - low) / (high - low) * (bottom - top) as f64).clamp(top as f64, bottom as f64))
+        to_index(
+            (bottom as f64 - (height - low) / (high - low) * (bottom - top) as f64).clamp(top as f64, bottom as f64),
+        )
     };
     for (tick, text) in ticks(low, high) {
         let row = row_of(tick);
@@ -70,7 +73,7 @@ pub fn profile_picture(profile: &DistanceProfile<'_>) -> Picture {
         // the sample whose distance is nearest
         let share = (column - left) as f64 / (right - left) as f64;
         let last = profile.distances.len().saturating_sub(1);
-        let sample = pixel(share * last as f64 + 0.5).min(last);
+        let sample = to_index(share * last as f64 + 0.5).min(last);
         for piece in profile.solid.get(sample).into_iter().flatten() {
             let (from, to) = (row_of(piece[1]), row_of(piece[0]));
             sheet.fill_rectangle([column, from], [1, (to - from).max(1)], SOLID);
@@ -101,11 +104,6 @@ fn draw_legend(sheet: &mut Picture, [left, right]: [usize; 2], row: usize) {
     }
     let note = "metres; heights exaggerated";
     draw_text(sheet, right - text_width(note, SCALE), row, note, SCALE, INK);
-}
-
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture, `as` saturates")]
-fn pixel(v: f64) -> usize {
-    v.max(0.0) as usize
 }
 
 /// About six round numbers between two values, as written.

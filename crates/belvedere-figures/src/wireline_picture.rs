@@ -2,6 +2,7 @@
 
 use crate::font::{HEIGHT, draw_text, fitted, text_width, wrapped};
 use crate::picture::{INK, PAPER, Picture};
+use belvedere_data::cast::{to_index, to_u8};
 
 const SCALE: usize = 2;
 const LINE_HEIGHT: usize = (HEIGHT + 4) * SCALE;
@@ -105,16 +106,13 @@ struct Sheet {
 impl Sheet {
     fn row(&self, above: f64) -> usize {
         let row = (self.level - above).round().clamp(self.top as f64, self.bottom as f64);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
-        let row = row as usize;
-        row
+        to_index(row)
     }
 
     /// The pixel of a column; `None` outside of the plane.
     fn column(&self, aside: f64) -> Option<usize> {
         let column = (self.middle + aside).floor();
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
-        (column >= self.left as f64 && column < self.right as f64).then_some(column as usize)
+        (column >= self.left as f64 && column < self.right as f64).then_some(to_index(column))
     }
 
     fn fill(&mut self, column: usize, [low, high]: [f64; 2], width: usize, color: [u8; 3]) {
@@ -131,8 +129,7 @@ fn draw_plane(plane: &WirelinePlane) -> Picture {
     let left = MARGIN + text_width("-00°", SCALE) + 3 * SCALE;
     let highest = plane.towers.iter().map(|tower| tower.rows[1]).fold(plane.above, f64::max).min(MAX_ROWS);
     let lowest = plane.towers.iter().map(|tower| -tower.rows[0]).fold(plane.below, f64::max).min(MAX_ROWS);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 2800 rows")]
-    let [above, below] = [highest, lowest].map(|rows| rows.ceil() as usize);
+    let [above, below] = [highest, lowest].map(|rows| to_index(rows.ceil()));
     let bottom = top + above + below;
     let width = left + columns + MARGIN;
     let mut sheet = Sheet {
@@ -196,15 +193,12 @@ fn draw_terrain(sheet: &mut Sheet, column: usize, pieces: &[[[f64; 2]; 2]], whic
 fn mixed(from: [u8; 3], to: [u8; 3], share: f64) -> [u8; 3] {
     std::array::from_fn(|i| {
         let value = f64::from(from[i]) + share * (f64::from(to[i]) - f64::from(from[i]));
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between two bytes")]
-        let value = value.round() as u8;
-        value
+        to_u8(value.round())
     })
 }
 
 fn draw_tower(sheet: &mut Sheet, tower: &DrawnTower) {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a width within the picture")]
-    let width = (tower.disc_line.ceil() as usize).clamp(1, 64);
+    let width = to_index(tower.disc_line.ceil()).clamp(1, 64);
     let [seen, swept] = if tower.is_unproven { [SEEN_UNPROVEN, SWEPT_UNPROVEN] } else { [SEEN, SWEPT] };
     for (column, spans) in &tower.disc {
         let Some(column) = sheet.column(column - tower.disc_line / 2.0) else { continue };
@@ -243,8 +237,7 @@ fn placed_names<'a>(towers: &'a [DrawnTower], columns: usize) -> Vec<Name<'a>> {
         let label = fitted(&tower.label, columns, SCALE);
         let width = text_width(&label, SCALE);
         let left = (tower.column + columns as f64 / 2.0 - width as f64 / 2.0).max(0.0);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the plane")]
-        let left = (left as usize).min(columns.saturating_sub(width));
+        let left = to_index(left).min(columns.saturating_sub(width));
         let row = ends.iter().position(|end| *end <= left).unwrap_or(NAME_ROWS - 1);
         ends[row] = left + width + 4 * SCALE;
         Name { tower, label, left, row }
@@ -319,8 +312,7 @@ mod tests {
         let level = LINE_HEIGHT + 150;
         let left = picture.width - MARGIN - 201;
         let at = |column: usize, above: i64| {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a row of the picture")]
-            picture.get(left + column, (level as i64 - above) as usize).unwrap()
+            picture.get(left + column, usize::try_from(level as i64 - above).unwrap()).unwrap()
         };
         // sky, the far hill, obstacles, the near hill
         assert_eq!([at(10, 100), at(10, 30)], [SKY, SOLID]);

@@ -7,8 +7,8 @@ mod stages;
 use crate::device::{Device, DeviceKind};
 use belvedere_core::blocking::SHELL_SHARE;
 use belvedere_core::depth::{BoundsParams, ItemBuffer};
+use belvedere_data::cast::{to_f32, to_row};
 use belvedere_data::control::Control;
-use belvedere_data::vector::to_f32;
 use belvedere_data::view::{Projection, View};
 use belvedere_data::{Error, Result};
 use bytemuck::cast_slice;
@@ -267,7 +267,7 @@ impl Painter {
         let mut before = None;
         for first_row in (0..rows).step_by(row_count) {
             control.check()?;
-            let piece = [whole(first_row), u32::from(is_listing)];
+            let piece = [to_row(first_row), u32::from(is_listing)];
             self.device.queue.write_buffer(&buffers.piece, 0, cast_slice(&piece));
             let mut encoder = self.device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             bound.draw(&mut encoder, [columns, row_count.min(rows - first_row)]);
@@ -370,19 +370,14 @@ fn view_bytes(picture: &DevicePicture<'_>, [top, rows]: PixelRows, balls: &BallR
     let [width, _] = view.size_px;
     let tiles = tiles_before([width, rows]);
     let of_view = [scale, 1.0 / scale, near, far.min(ENDLESS)].map(to_f32);
-    let of_band = [balls.count, width, rows, top].map(whole);
+    let of_band = [balls.count, width, rows, top].map(to_row);
     let of_middle = [middle[0], middle[1] - top as f64].map(to_f32);
-    let of_balls = [whole(balls.first), u32::from(balls.is_last)];
+    let of_balls = [to_row(balls.first), u32::from(balls.is_last)];
     let words = (of_view.map(f32::to_bits).into_iter())
         .chain(of_band)
         .chain(of_middle.map(f32::to_bits))
         .chain(of_balls)
         .chain(of_bounds.map(f32::to_bits))
-        .chain(tiles.into_iter().take(LEVELS as usize).map(whole));
+        .chain(tiles.into_iter().take(LEVELS as usize).map(to_row));
     words.flat_map(u32::to_le_bytes).collect()
-}
-
-/// A count that is known to be small: all are bounded by the size of buffers.
-fn whole(count: usize) -> u32 {
-    u32::try_from(count).unwrap_or(u32::MAX)
 }

@@ -4,9 +4,10 @@
 use crate::device::{Device, DeviceKind};
 use belvedere_core::query::{Ball, BallTree, Viewers};
 use belvedere_core::ray_index::{NODE_WORDS, RayIndex};
+use belvedere_data::cast::{to_f32, to_row};
 use belvedere_data::control::Control;
 use belvedere_data::frame::FARTHEST;
-use belvedere_data::vector::{dot, to_f32};
+use belvedere_data::vector::dot;
 use belvedere_data::{Error, Result};
 use bytemuck::cast_slice;
 use std::borrow::Cow;
@@ -242,7 +243,7 @@ impl Liner {
                 let count = (piece / (GROUP * groups)).clamp(1, viewers.len() - first_viewer);
                 let of_piece = [target_count, first_viewer, word_count, 2 * first_group];
                 let scene: Vec<u8> = (loaded.scene.iter().copied())
-                    .chain(of_piece.into_iter().flat_map(|count| whole(count).to_le_bytes()))
+                    .chain(of_piece.into_iter().flat_map(|count| to_row(count).to_le_bytes()))
                     .chain([0; 4])
                     .collect();
                 self.device.queue.write_buffer(&uniform, 0, &scene);
@@ -251,7 +252,7 @@ impl Liner {
                     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
                     pass.set_pipeline(&self.pipeline);
                     pass.set_bind_group(0, &bindings, &[]);
-                    pass.dispatch_workgroups(whole(groups), whole(count), 1);
+                    pass.dispatch_workgroups(to_row(groups), to_row(count), 1);
                 }
                 let this = self.device.queue.submit([encoder.finish()]);
                 // two pieces are under way at a time, so that the device does not wait
@@ -335,9 +336,4 @@ fn finite_targets(targets: &[[f32; 3]]) -> Cow<'_, [[f32; 3]]> {
     }
     let finite = |target: &[f32; 3]| target.map(|v| if v.is_finite() { v } else { f32::MAX });
     Cow::Owned(targets.iter().map(finite).collect())
-}
-
-/// A count that is known to be small: targets and results are bounded by the size of buffers.
-fn whole(count: usize) -> u32 {
-    u32::try_from(count).unwrap_or(u32::MAX)
 }

@@ -13,12 +13,11 @@ use super::sight_network::SightNetwork;
 use super::standing::Standing;
 use super::viewer::remark_on_inside;
 use crate::profile::{SightProfile, sight_profile};
+use crate::radio_link::RadioWave;
 use crate::targets::{Measure, TARGET_LIFT};
 use crate::viewshed::OBSERVER_HEIGHT;
 use belvedere_core::ground::GroundPoints;
-use belvedere_core::query::{
-    Answer, Blocker, EarthParams, LineOfSight, MedialScene, Obstruction, RadioWave, UnprovenAs,
-};
+use belvedere_core::query::{Answer, Blocker, EarthParams, LineOfSight, MedialScene, Obstruction, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use belvedere_data::{Error, Parameter, PatchKind, Result};
@@ -246,7 +245,7 @@ impl Ask for LinesOfSightQuestion {
             .stage("testing lines of sight", pairs.len(), || blockers.lines_of_sight(&pairs, &self.earth, control))?;
         let fresnel = match self.wave()? {
             Some(wave) => Some(control.stage("testing Fresnel zones", pairs.len(), || {
-                blockers.fresnel_clearances(&pairs, &sights, wave, &self.earth, control)
+                wave.zone_clearances(&blockers, &pairs, &sights, &self.earth, control)
             })?),
             None => None,
         };

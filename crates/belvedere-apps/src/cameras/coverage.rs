@@ -3,9 +3,10 @@
 use super::camera::Camera;
 use super::candidates::CameraPose;
 use super::table::{CoverageTable, check_size};
+use crate::radio_link::RadioWave;
 use crate::targets::Targets;
 use crate::viewshed::{Observer, SightLimits, ViewshedParams, viewshed};
-use belvedere_core::query::{Answer, Certainty, EarthParams, MedialScene, RadioWave, UnprovenAs, Viewer};
+use belvedere_core::query::{Answer, Certainty, EarthParams, MedialScene, UnprovenAs, Viewer};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
@@ -263,7 +264,7 @@ impl TargetQuery<'_> {
     /// Returns true if an obstacle reaches into the Fresnel zone that must be free.
     fn is_zone_blocked(&self, eye: [f64; 3], target: [f64; 3]) -> bool {
         self.params.zone.is_some_and(|FresnelZone { wave, share }| {
-            !(self.scene.fresnel_clearance([eye, target], wave, &self.params.earth, share) >= share)
+            !(wave.zone_clearance(self.scene, [eye, target], &self.params.earth, share) >= share)
         })
     }
 

@@ -1,5 +1,6 @@
 //! Points that repeat another.
 
+use belvedere_data::cast::to_i64;
 use std::ops::ControlFlow;
 
 use rayon::prelude::*;
@@ -115,9 +116,8 @@ impl StayingPoints {
     }
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "a float to integer cast saturates, which is what far points need")]
 fn cell_of(position: [f64; 3], cell_size: f64) -> [i64; 3] {
-    position.map(|v| ((v / cell_size).floor() as i64).clamp(i64::MIN / 4, i64::MAX / 4))
+    position.map(|v| to_i64((v / cell_size).floor()).clamp(i64::MIN / 4, i64::MAX / 4))
 }
 
 /// Takes the sorted indices `gone` out of the sorted `kept`; returns how many they are.

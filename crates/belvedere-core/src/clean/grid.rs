@@ -1,5 +1,6 @@
 //! Points sorted by the cell of a uniform grid that each lies in.
 
+use belvedere_data::cast::to_i64;
 use std::ops::ControlFlow;
 
 use rayon::prelude::*;
@@ -71,10 +72,9 @@ pub(super) fn squared_distance(a: [f32; 3], b: [f32; 3]) -> f64 {
     (0..3).map(|i| (f64::from(a[i]) - f64::from(b[i])).powi(2)).sum()
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "a float to integer cast saturates, which is what far points need")]
 fn cell(coordinate: f64, cell_size: f64) -> i64 {
     // clear of the ends of i64, so that the next cell always exists
-    ((coordinate / cell_size).floor() as i64).clamp(i64::MIN / 4, i64::MAX / 4)
+    to_i64((coordinate / cell_size).floor()).clamp(i64::MIN / 4, i64::MAX / 4)
 }
 
 fn key(cell: [i64; 3]) -> u64 {

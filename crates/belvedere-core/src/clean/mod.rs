@@ -10,6 +10,7 @@ pub use outliers::{IsolatedPoints, IsolationRadius};
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
+use outliers::check_length;
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
@@ -184,13 +185,6 @@ fn keep(kept: &mut Vec<u32>, wanted: impl Fn(usize) -> bool + Sync) -> usize {
     let before = kept.len();
     *kept = kept.par_iter().copied().filter(|&i| wanted(i as usize)).collect();
     before - kept.len()
-}
-
-fn check_length(parameter: Parameter, metres: f64) -> Result<()> {
-    if metres > 0.0 && metres <= 1000.0 {
-        return Ok(());
-    }
-    Err(Error::InvalidParameter { parameter, value: metres.to_string(), expected: "above 0 and at most 1000 metres" })
 }
 
 #[cfg(test)]

@@ -4,7 +4,6 @@ use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
-use super::check_length;
 use super::duplicates::remove_sorted;
 use super::grid::{SortedGrid, squared_distance};
 use belvedere_data::control::{Control, Stop};
@@ -195,4 +194,11 @@ fn nearest_distance(grid: &SortedGrid, positions: &[[f32; 3]], index: u32, guess
         }
     }
     f64::INFINITY
+}
+/// Refuses a distance that is not above 0 and at most 1000 metres.
+pub(super) fn check_length(parameter: Parameter, metres: f64) -> Result<()> {
+    if metres > 0.0 && metres <= 1000.0 {
+        return Ok(());
+    }
+    Err(Error::InvalidParameter { parameter, value: metres.to_string(), expected: "above 0 and at most 1000 metres" })
 }

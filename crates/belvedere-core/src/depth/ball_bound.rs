@@ -1,6 +1,7 @@
 //! Radius with which a ball is drawn, so that it bounds the depth of every point of a pixel.
 
 use crate::blocking::BlockRule;
+use belvedere_data::cast::to_f32;
 
 /// Rounding of f32 as a share of the coordinates it works on: 32 units of 2⁻²³. Positions in the view, directions of
 /// pixels and products of both err by fewer than 16 of them together.
@@ -42,16 +43,15 @@ impl BallBound {
     /// The radius to draw a ball with, `None` where it does not count. `size` is at least the largest of its
     /// coordinates, metres; `fronts` the least and the most depth of its front; nothing smaller than `min_cover` covers
     /// a pixel at its distance.
-    #[expect(clippy::cast_possible_truncation, reason = "rounded outward on purpose")]
     pub(super) fn radius(&self, radius: f32, size: f64, [min, max]: [f64; 2], min_cover: f64) -> Option<f32> {
         let radius = f64::from(radius);
         let margin = margin(size, radius);
         match self.side {
-            BoundSide::Lower => (max + margin > self.start[0]).then(|| ((radius + margin) as f32).next_up()),
+            BoundSide::Lower => (max + margin > self.start[0]).then(|| to_f32(radius + margin).next_up()),
             BoundSide::Upper => {
                 // twice, since giving way halves what is left of one
                 let drawn = radius - 2.0 * margin;
-                (drawn > min_cover && min - margin > self.start[1]).then(|| (drawn as f32).next_down())
+                (drawn > min_cover && min - margin > self.start[1]).then(|| to_f32(drawn).next_down())
             }
         }
     }
@@ -65,9 +65,8 @@ impl BallBound {
     /// A depth behind which every target lies farther than the shell from a ball drawn with `radius` around `center`
     /// deep, so that it counts with all of its radius.
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "a length")]
     pub(super) fn behind(&self, center: f32, radius: f32, margin: f32) -> f32 {
-        center + radius + self.rule.shell as f32 + 4.0 * margin
+        center + radius + to_f32(self.rule.shell) + 4.0 * margin
     }
 }
 

@@ -172,7 +172,6 @@ impl<S: CentralSurface> SplatSurface for Central<S> {
     type Splat = CentralSplat;
     type PixelTile = Box<Directions>;
 
-    #[expect(clippy::cast_possible_truncation, reason = "view coordinates relative to the eye")]
     fn place(&self, center: [f32; 3], radius: f32, ball: u32) -> Option<CentralSplat> {
         let center = self.view.frame.view_from_local(center);
         let distance = center.map(|v| v * v).iter().sum::<f64>().sqrt();
@@ -183,7 +182,7 @@ impl<S: CentralSurface> SplatSurface for Central<S> {
         let size = center.iter().map(|v| v.abs()).sum();
         let margin = margin(size, whole);
         let whole = self.surface.radius_at_eye(whole, distance, margin);
-        let radius = whole as f32;
+        let radius = to_f32(whole);
         let silhouette = ((distance - whole) * (distance + whole)).max(0.0).sqrt();
         let radius = self.surface.radius(radius, size, [distance - whole, silhouette], distance * self.min_pixel)?;
         let extent = outline(&self.view, center, whole).or_else(|| self.surface.at_eye(distance, whole, margin))?;
@@ -193,12 +192,12 @@ impl<S: CentralSurface> SplatSurface for Central<S> {
         }
         let min = if self.is_in_range() { distance - f64::from(radius) } else { center[2] - f64::from(radius) };
         let [near, far] = self.limits;
-        let near = ((min - margin) as f32).max(near);
-        let beyond = |[min, max]: [f64; 2]| [min as f32 - S::BEYOND_PX, max as f32 + S::BEYOND_PX];
+        let near = to_f32(min - margin).max(near);
+        let beyond = |[min, max]: [f64; 2]| [to_f32(min) - S::BEYOND_PX, to_f32(max) + S::BEYOND_PX];
         (near <= far).then_some(CentralSplat {
-            center: center.map(|v| v as f32),
+            center: center.map(to_f32),
             radius,
-            margin: margin as f32,
+            margin: to_f32(margin),
             near,
             extent: extent.map(beyond),
             ball,
@@ -217,7 +216,6 @@ impl<S: CentralSurface> SplatSurface for Central<S> {
         splat.extent
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "components of unit vectors")]
     fn tile(&self, left: usize, top: usize) -> Box<Directions> {
         let middle = self.view.middle();
         let off = |middle: f64, from: usize| (from as f64 - middle).max(middle - (from + TILE) as f64).max(0.0);
@@ -236,11 +234,11 @@ impl<S: CentralSurface> SplatSurface for Central<S> {
                 let direction = self.view.direction(place);
                 let at = row * TILE + column;
                 for (axis, component) in direction.into_iter().enumerate() {
-                    tile.directions[axis][at] = component as f32;
+                    tile.directions[axis][at] = to_f32(component);
                 }
                 if !self.is_in_range() {
-                    tile.depth_per_range[at] = direction[2] as f32;
-                    tile.min_depth_per_range = tile.min_depth_per_range.min(direction[2] as f32);
+                    tile.depth_per_range[at] = to_f32(direction[2]);
+                    tile.min_depth_per_range = tile.min_depth_per_range.min(to_f32(direction[2]));
                 }
             }
         }
@@ -284,9 +282,8 @@ impl<S: CentralSurface> SplatSurface for Central<S> {
 
 impl<S: CentralSurface> Central<S> {
     /// Depth of one ball at the centre of one pixel, as computed by [`SplatSurface::depths`].
-    #[expect(clippy::cast_possible_truncation, reason = "components of a unit vector")]
     pub(super) fn depth_at(&self, splat: &CentralSplat, pixel: [usize; 2]) -> f32 {
-        let direction = self.view.direction(pixel.map(|at| at as f64 + 0.5)).map(|component| component as f32);
+        let direction = self.view.direction(pixel.map(|at| at as f64 + 0.5)).map(to_f32);
         let pixel = PixelRay {
             passing: passing(splat.center, direction),
             distance: splat.center.map(|v| v * v).iter().sum::<f32>().sqrt(),

@@ -1,6 +1,7 @@
 //! Flags consistent ground points: small groups metres below or above the ground around are removed.
 
 use belvedere_data::Result;
+use belvedere_data::cast::{to_cell, to_row};
 use belvedere_data::control::Control;
 use rayon::prelude::*;
 
@@ -107,17 +108,15 @@ fn cell_of(points: &[[f32; 3]]) -> f32 {
 
 /// Row and column of a point in cells of a side, metres.
 fn place(point: &[f32; 3], cell: f32) -> [i32; 2] {
-    #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
-    let at = |v: f32| (v / cell).floor() as i32;
+    let at = |v: f32| to_cell(f64::from(v / cell));
     [at(point[1]), at(point[0])]
 }
 
 /// The points in the order of their cells, and of their heights in each.
 pub(super) fn placed(points: &[[f32; 3]], cell: f32) -> Vec<Placed> {
-    #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
     let one = |(number, point): (usize, &[f32; 3])| {
         let [row, column] = place(point, cell);
-        Placed { row, column, height: point[2], number: number as u32 }
+        Placed { row, column, height: point[2], number: to_row(number) }
     };
     let mut placed: Vec<Placed> = points.par_iter().enumerate().map(one).collect();
     placed.par_sort_unstable_by(|a, b| {
@@ -272,15 +271,15 @@ fn is_off(level: &Level, around: &[(Level, f32)], cell: f32) -> bool {
 }
 
 #[cfg(test)]
-#[expect(clippy::cast_possible_truncation, reason = "test places in f32")]
 mod tests {
     use super::*;
+    use belvedere_data::cast::{to_f32, to_index};
     use belvedere_data::random::uniform;
 
     /// Ground of `density` points a square metre on a square of 60 m, at the height of `ground`.
     fn ground(density: f64, ground: impl Fn(f32, f32) -> f32) -> Vec<[f32; 3]> {
-        let random = |seed: u64, i: u64| 60.0 * uniform(seed, i) as f32;
-        let count = (3600.0 * density) as u64;
+        let random = |seed: u64, i: u64| 60.0 * to_f32(uniform(seed, i));
+        let count = to_index(3600.0 * density) as u64;
         (0..count).map(|i| (random(1, i), random(2, i))).map(|(x, y)| [x, y, ground(x, y)]).collect()
     }
 
@@ -295,8 +294,8 @@ mod tests {
 
     /// A group of `count` points within `size` metres of (30, 30), at a height.
     fn group(count: u64, size: f32, height: f32) -> Vec<[f32; 3]> {
-        let at = |seed: u64, i: u64| 30.0 + size * (uniform(seed, i) as f32 - 0.5);
-        (0..count).map(|i| [at(5, i), at(6, i), height + 0.2 * uniform(7, i) as f32]).collect()
+        let at = |seed: u64, i: u64| 30.0 + size * (to_f32(uniform(seed, i)) - 0.5);
+        (0..count).map(|i| [at(5, i), at(6, i), height + 0.2 * to_f32(uniform(7, i))]).collect()
     }
 
     #[test]
@@ -306,7 +305,7 @@ mod tests {
         let (of_hill, none) = (21.0, [0, 0]);
         for density in [0.5, 2.0, 8.0] {
             for count in [1, 3, 10, 30] {
-                for height in [-50.0, -4.0 - 2.0 / density as f32, 6.0, 30.0] {
+                for height in [-50.0, -4.0 - 2.0 / to_f32(density), 6.0, 30.0] {
                     let added = group(count, 2.0, height);
                     let what = format!("{count} at {height}, {density} points a square metre");
                     assert_eq!(doubted(ground(density, level), &added), [0, added.len()], "{what}");

@@ -2,6 +2,7 @@
 
 use super::{Ground, GroundParams, GroundReport, MapGrid, cells_near_returns, tested_points, triangulate};
 use crate::neighbors::NeighborIndex;
+use belvedere_data::cast::{to_index, to_row, to_u32};
 use belvedere_data::control::Control;
 use belvedere_data::{PointCloud, Result};
 use rayon::prelude::*;
@@ -46,8 +47,7 @@ impl GroundBySquares {
             || found.shift(cloud, &points, control),
         );
         let (triangles, nearest) = (triangles?, nearest?);
-        #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
-        let corners = |corners: &[usize; 3]| corners.map(|row| row as u32);
+        let corners = |corners: &[usize; 3]| corners.map(to_row);
         let triangles: Vec<[u32; 3]> = triangles.as_chunks::<3>().0.iter().map(corners).collect();
         control.check()?;
         let squares = Squares::over(&points);
@@ -123,14 +123,11 @@ impl Squares {
     }
 
     fn at(&self, place: f64, axis: usize) -> u32 {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "fewer squares than points")]
-        let square = ((place - self.low[axis]) / self.side).clamp(0.0, self.last[axis]) as u32;
-        square
+        to_u32(((place - self.low[axis]) / self.side).clamp(0.0, self.last[axis]))
     }
 
     fn number(&self, [column, row]: [u32; 2]) -> u32 {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "fewer squares than points")]
-        let columns = self.last[0] as u32 + 1;
+        let columns = to_u32(self.last[0]) + 1;
         row * columns + column
     }
 
@@ -144,8 +141,7 @@ impl Squares {
     }
 
     fn count(&self) -> usize {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "fewer squares than points")]
-        let [columns, rows] = self.last.map(|last| last as usize + 1);
+        let [columns, rows] = self.last.map(|last| to_index(last) + 1);
         columns * rows
     }
 }
@@ -185,12 +181,12 @@ impl<T: Copy + Send> BySquare<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use belvedere_data::cast::to_f32;
     use belvedere_data::random::uniform;
 
     /// Ground with a hole and a block on it, a cleared place, and a point far away.
-    #[expect(clippy::cast_possible_truncation, reason = "test places in f32")]
     fn cloud() -> PointCloud {
-        let place = |i: u64| [0, 1].map(|axis| (120.0 * uniform(7, 2 * i + axis)) as f32);
+        let place = |i: u64| [0, 1].map(|axis| to_f32(120.0 * uniform(7, 2 * i + axis)));
         let places = (0..20_000).map(place).filter(|[x, y]| (x - 80.0).hypot(y - 80.0) > 15.0);
         let is_block = |[x, y]: [f32; 2]| (20.0..40.0).contains(&x) && (30.0..50.0).contains(&y);
         let point = |[x, y]: [f32; 2]| [x, y, if is_block([x, y]) { 9.0 } else { 0.05 * x + (0.3 * y).sin() }];

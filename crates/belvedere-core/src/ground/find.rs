@@ -3,6 +3,7 @@
 use super::morphology::opened;
 use super::{Ground, MapGrid, WITHHELD};
 use belvedere_data::Bounds;
+use belvedere_data::cast::{to_f32, to_index, to_row};
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::compare_places;
@@ -120,8 +121,7 @@ pub fn find_ground(cloud: &PointCloud, params: &FinderParams, control: &Control<
     let mut found: Vec<u32> = Vec::new();
     for (rows, positions) in rows.chunks(CHUNK).zip(positions.chunks(CHUNK)) {
         control.check()?;
-        #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
-        found.extend(rows.iter().zip(positions).filter(near).map(|(&row, _)| row as u32));
+        found.extend(rows.iter().zip(positions).filter(near).map(|(&row, _)| to_row(row)));
     }
     if found.is_empty() {
         return Err(Error::NoPoints { what: "no ground was detected; classify it first".to_owned() });
@@ -179,8 +179,7 @@ fn standing_cells(
     for radius in windows(params) {
         control.check()?;
         let lower = opened(&surface, radius);
-        #[expect(clippy::cast_possible_truncation, reason = "metres")]
-        let threshold = (params.slope * radius as f64 * params.cell) as f32;
+        let threshold = to_f32(params.slope * radius as f64 * params.cell);
         for ((standing, &before), &after) in standing.iter_mut().zip(surface.values()).zip(lower.values()) {
             *standing |= before - after > threshold;
         }
@@ -191,8 +190,7 @@ fn standing_cells(
 
 /// Radii in cells: each up to 18, as in the source, then a fifth more each.
 fn windows(params: &FinderParams) -> Vec<usize> {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 10 000")]
-    let last = (params.window / params.cell).ceil() as usize;
+    let last = to_index((params.window / params.cell).ceil());
     let mut radii = vec![];
     let mut radius = 1;
     while radius < last {

@@ -1,6 +1,7 @@
 //! Ground found block by block, so that a part of a survey gives the same ground as the whole.
 
 use super::find::{FinderParams, find_ground};
+use belvedere_data::cast::to_i64;
 use belvedere_data::control::Control;
 use belvedere_data::{Attributes, Error, PointCloud, Result};
 use rayon::prelude::*;
@@ -44,9 +45,7 @@ fn place(p: &[f32; 3], cloud: &PointCloud, axis: usize) -> f64 {
 
 /// Number of the block of a coordinate.
 fn number(v: f64) -> i64 {
-    #[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
-    let number = (v / BLOCK).floor() as i64;
-    number
+    to_i64((v / BLOCK).floor())
 }
 
 /// Rows of the ground of a block.

@@ -1,5 +1,6 @@
 //! Grids of square cells on the map.
 
+use belvedere_data::cast::to_index;
 use belvedere_data::{Error, Parameter, Result};
 
 /// Maximum number of cells of a grid: a few bytes each still fit into the memory of a usual machine.
@@ -62,8 +63,7 @@ impl MapGrid {
                 "large enough for at most 100 million cells",
             );
         }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole numbers up to 1e8")]
-        let (width, height) = (columns as usize, rows as usize);
+        let (width, height) = (to_index(columns), to_index(rows));
         Ok(Self { corner: [west * cell - origin[0], north * cell - origin[1]], cell, width, height })
     }
 
@@ -113,9 +113,8 @@ impl MapGrid {
         if column > self.width as f64 - ON_EDGE || row < ON_EDGE {
             return None;
         }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the grid")]
         // rows count from the north: a row holds the edge at its end
-        Some([column as usize, (row.ceil() - 1.0) as usize])
+        Some([to_index(column), to_index(row.ceil() - 1.0)])
     }
 }
 

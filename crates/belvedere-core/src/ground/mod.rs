@@ -14,6 +14,7 @@ mod triangulate;
 
 pub(crate) use triangulate::sides;
 
+use belvedere_data::cast::{to_f32, to_index};
 pub use by_squares::GroundBySquares;
 pub use find::{FinderParams, find_ground};
 pub(crate) use in_blocks::{GROUND_REACH, ground_in_blocks};
@@ -314,8 +315,7 @@ impl Ground {
         control: &Control<'_>,
     ) -> Result<Self> {
         let mut gaps = Raster::filled(grid.width, grid.height, f32::INFINITY);
-        #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
-        let reach = reach.min(1e6) as f32;
+        let reach = to_f32(reach.min(1e6));
         let width = grid.width.max(1);
         heights
             .values_mut()
@@ -326,8 +326,7 @@ impl Ground {
                 control.check()?;
                 for (column, (height, gap)) in heights.iter_mut().zip(gaps).enumerate() {
                     let [x, y] = grid.center(column, row);
-                    #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-                    let near = nearest.nearest_within([x as f32, y as f32, 0.0], f32::INFINITY);
+                    let near = nearest.nearest_within([to_f32(x), to_f32(y), 0.0], f32::INFINITY);
                     let Some(near) = near else { continue };
                     *gap = near.distance_squared.sqrt();
                     if *gap > reach {
@@ -348,8 +347,7 @@ impl Ground {
     pub fn heights_around(&self, [x, y]: [f64; 2], radius: f64) -> Option<[f64; 2]> {
         let middle = self.grid.cell_position([x, y])?;
         let reach = radius / self.grid.cell;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates at the grid")]
-        let span = |at: f64, count: usize| ((at - reach).max(0.0) as usize)..((at + reach).ceil() as usize).min(count);
+        let span = |at: f64, count: usize| to_index(at - reach)..to_index((at + reach).ceil()).min(count);
         let mut heights: Vec<f32> = Vec::new();
         for row in span(middle[1], self.grid.height) {
             for column in span(middle[0], self.grid.width) {
@@ -370,12 +368,7 @@ impl Ground {
     pub fn height_at(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let [column, row] = self.grid.cell_position([x, y])?;
         let (u, v) = (column - 0.5, row - 0.5);
-        let floor = |value: f64, count: usize| {
-            let last = count.saturating_sub(2);
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the grid")]
-            let cell = value.max(0.0) as usize;
-            cell.min(last)
-        };
+        let floor = |value: f64, count: usize| to_index(value).min(count.saturating_sub(2));
         let (c, r) = (floor(u, self.grid.width), floor(v, self.grid.height));
         let (s, t) = ((u - c as f64).clamp(0.0, 1.0), (v - r as f64).clamp(0.0, 1.0));
         let (mut sum, mut weights) = (0.0, 0.0);

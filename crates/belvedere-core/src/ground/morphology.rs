@@ -83,13 +83,13 @@ fn line(values: &mut [f32], radius: usize, extreme: Extreme) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use belvedere_data::cast::to_f32;
     use belvedere_data::random::uniform;
 
     #[test]
     fn windows_are_those_of_every_cell_tried() {
         let (width, height) = (23, 17);
-        #[expect(clippy::cast_possible_truncation, reason = "test heights")]
-        let values: Vec<f32> = (0..width * height).map(|i| uniform(5, i as u64) as f32).collect();
+        let values: Vec<f32> = (0..width * height).map(|i| to_f32(uniform(5, i as u64))).collect();
         let raster = Raster::from_values(width, height, values).unwrap();
         for radius in [0, 1, 3, 30] {
             let min = window(&raster, radius, Extreme::Min);

@@ -1,6 +1,7 @@
 //! Flags the cells of a grid that lie near a return of the survey. In a hole of the survey nothing is known.
 
 use super::MapGrid;
+use belvedere_data::cast::to_index;
 use rayon::prelude::*;
 
 /// Default greatest distance on the map from the middle of a cell to the nearest return, metres. Occlusion beside
@@ -41,9 +42,8 @@ pub fn cells_near_returns(returns: impl Iterator<Item = [f64; 2]> + Clone, grid:
 fn mark([x, y]: [f64; 2], grid: &MapGrid, distance: f64, near: &mut [bool]) {
     let (east, south) = ((x - grid.corner[0]) / grid.cell, (grid.corner[1] - y) / grid.cell);
     let reach = distance / grid.cell;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the grid")]
     let cells = |middle: f64, count: usize| {
-        let end = |value: f64| value.clamp(0.0, count as f64) as usize;
+        let end = |value: f64| to_index(value.clamp(0.0, count as f64));
         // a cell more on either side than rounding can need
         end((middle - reach - 1.5).floor())..end((middle + reach + 1.5).ceil())
     };
@@ -70,8 +70,7 @@ struct Squares {
 
 impl Squares {
     fn new(returns: impl Iterator<Item = [f64; 2]>, grid: &MapGrid, side: f64) -> Self {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "fewer than cells of the grid")]
-        let across = |count: usize| (count as f64 * grid.cell / side).ceil() as usize + 2 * AROUND;
+        let across = |count: usize| to_index((count as f64 * grid.cell / side).ceil()) + 2 * AROUND;
         let beside = AROUND as f64 * side;
         let corner = [grid.corner[0] - beside, grid.corner[1] + beside];
         let squares = MapGrid { corner, cell: side, width: across(grid.width), height: across(grid.height) };

@@ -326,10 +326,10 @@ fn strips_apart(
 }
 
 #[cfg(test)]
-#[expect(clippy::cast_possible_truncation, reason = "test places in f32")]
 mod tests {
     use super::*;
     use belvedere_data::Attributes;
+    use belvedere_data::cast::{to_f32, to_index, to_row};
     use belvedere_data::random::uniform;
 
     /// Class of ground in LAS files.
@@ -340,10 +340,10 @@ mod tests {
 
     /// Two strips of ground over a square of 60 m, which overlap wholly, at the height of `ground`.
     fn strips(density: f64, ground: impl Fn(f32, f32) -> f32) -> Vec<Return> {
-        let count = (3600.0 * density) as u64;
+        let count = to_index(3600.0 * density) as u64;
         let one = |i: u64| {
-            let [x, y] = [1, 2].map(|seed| 60.0 * uniform(seed, i) as f32);
-            ([x, y, ground(x, y) + 0.06 * (uniform(3, i) as f32 - 0.5)], GROUND, 1 + (i % 2) as u16)
+            let [x, y] = [1, 2].map(|seed| 60.0 * to_f32(uniform(seed, i)));
+            ([x, y, ground(x, y) + 0.06 * (to_f32(uniform(3, i)) - 0.5)], GROUND, 1 + (i % 2) as u16)
         };
         (0..count).map(one).collect()
     }
@@ -363,7 +363,7 @@ mod tests {
         };
         let cloud = PointCloud { positions, attributes, ..PointCloud::default() };
         let is_ground = |row: &u32| returns[*row as usize].1 == GROUND;
-        let rows: Vec<u32> = (0..returns.len() as u32).filter(is_ground).collect();
+        let rows: Vec<u32> = (0..to_row(returns.len())).filter(is_ground).collect();
         let points: Vec<[f32; 3]> = rows.iter().map(|&row| returns[row as usize].0).collect();
         shift_of(&cloud, &rows, &points, &Control::none()).unwrap()
     }

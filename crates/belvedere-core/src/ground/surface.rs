@@ -2,6 +2,7 @@
 
 use super::{Ground, MAX_GAP_FROM_RETURNS, cells_near_returns, highest_points};
 use crate::neighbors::{Neighbor, NeighborIndex};
+use belvedere_data::cast::to_f32;
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Parameter, Result};
@@ -102,8 +103,7 @@ pub fn top_surface(
             control.check()?;
             for (column, height) in heights.iter_mut().enumerate() {
                 let middle = grid.center(column, row);
-                #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-                let query = [middle[0] as f32, middle[1] as f32, 0.0];
+                let query = [to_f32(middle[0]), to_f32(middle[1]), 0.0];
                 index.k_nearest(query, params.neighbors, found);
                 found.retain(|near| near.distance_squared <= params.farthest * params.farthest);
                 if found.first().is_none_or(|nearest| f64::from(nearest.distance_squared).sqrt() > reach) {
@@ -164,8 +164,7 @@ fn at_middle(around: &[Around], near: f64, params: &SurfaceParams) -> Option<f32
     }
     let (height, roughness) = plane(layer)?;
     let (highest, lowest) = (layer.first()?.height, layer.last()?.height);
-    #[expect(clippy::cast_possible_truncation, reason = "local heights are f32")]
-    (roughness <= params.roughness).then(|| height.clamp(lowest, highest) as f32)
+    (roughness <= params.roughness).then(|| to_f32(height.clamp(lowest, highest)))
 }
 
 /// Fits a plane to a layer by weighted least squares, with larger weights for nearer points. Returns its height at the

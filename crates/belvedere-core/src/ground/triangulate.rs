@@ -1,6 +1,7 @@
 //! Heights between scattered points: linear in each triangle of their Delaunay triangulation.
 
 use super::MapGrid;
+use belvedere_data::cast::to_index;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Parameter, Result};
@@ -92,8 +93,7 @@ fn fill(heights: &mut [f32], width: usize, grid: &MapGrid, [a, b, c]: [[f64; 3];
 /// Cells whose middles lie between two positions, in cells.
 fn cells(from: f64, to: f64, count: usize) -> std::ops::Range<usize> {
     let last = count as f64;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the grid")]
-    let cell = |v: f64| v.clamp(0.0, last) as usize;
+    let cell = |v: f64| to_index(v.clamp(0.0, last));
     cell((from - 0.5).ceil())..cell((to - 0.5).floor() + 1.0)
 }
 

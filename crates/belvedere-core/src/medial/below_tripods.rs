@@ -2,6 +2,7 @@
 
 use crate::neighbors::NeighborIndex;
 use crate::pulses::FreeSegments;
+use belvedere_data::cast::{to_i64, to_index};
 use belvedere_data::vector::sub;
 use std::collections::BTreeMap;
 use std::f32::consts::TAU;
@@ -55,8 +56,7 @@ fn tripods(free_segments: &FreeSegments) -> Vec<[f32; 3]> {
         (0..free_segments.len()).step_by(SAMPLE).filter_map(|number| free_segments.segment(number))
     {
         let end: [f32; 3] = std::array::from_fn(|axis| start[axis] + direction[axis] * length);
-        #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
-        let step = end.map(|v| (v / STEP_M).round() as i64);
+        let step = end.map(|v| to_i64(f64::from((v / STEP_M).round())));
         let (count, least) = found.entry(step).or_insert((0, end));
         *count += 1;
         *least = if end < *least { end } else { *least };
@@ -118,8 +118,7 @@ fn nearest_around(
         let is_below = height < -MIN_HEIGHT && range < -height * MAX_HEIGHTS;
         let is_own = || (0..3).all(|axis| (start[axis] + direction[axis] * length - tripod[axis]).abs() < MIN_APART);
         if is_below && is_own() {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "one of few sectors")]
-            let sector = (y.atan2(x).rem_euclid(TAU) / TAU * SECTORS as f32) as usize;
+            let sector = to_index(f64::from(y.atan2(x).rem_euclid(TAU) / TAU * SECTORS as f32));
             let own = &mut lowest[sector.min(SECTORS - 1)];
             if own.is_none_or(|known| (range, start) < known) {
                 *own = Some((range, start));

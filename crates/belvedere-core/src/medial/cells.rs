@@ -1,5 +1,6 @@
 //! Values on a horizontal grid of which few cells are occupied.
 
+use belvedere_data::cast::to_cell;
 use rayon::prelude::*;
 
 /// Side of a cell, metres: two to three times the spacing of usual airborne scans, so that few cells among roofs and
@@ -10,10 +11,8 @@ const SIDE_M: f64 = 1.0;
 pub(super) type Cell = (i32, i32);
 
 /// The cell that a local position lies in.
-#[expect(clippy::cast_possible_truncation, reason = "a float to integer cast saturates, which is what far points need")]
 pub(super) fn cell(position: [f32; 3]) -> Cell {
-    // clear of the ends of i32, so that a range of cells never overflows
-    let number = |v: f32| ((f64::from(v) / SIDE_M).floor() as i32).clamp(i32::MIN / 4, i32::MAX / 4);
+    let number = |v: f32| to_cell(f64::from(v) / SIDE_M);
     (number(position[1]), number(position[0]))
 }
 

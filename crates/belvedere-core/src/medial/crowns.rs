@@ -253,7 +253,6 @@ pub(super) fn measure_spacing(
     let is_wanted = |&row: &usize| survey.kinds[row] == Kind::Vegetation && survey.is_later(row);
     let rows: Vec<usize> = (0..survey.positions().len()).filter(is_wanted).collect();
     let count = params.later_neighbors.clamp(1, MAX_NEIGHBORS);
-    #[expect(clippy::cast_precision_loss, reason = "at most 64")]
     let share = (4.0 / 3.0 * PI / count as f32).cbrt();
     let spacing = |&row: &usize| {
         let mut found = Vec::with_capacity(count + 2);

@@ -233,6 +233,7 @@ fn ring((row, column): Cell, distance: i32) -> impl Iterator<Item = Cell> {
 mod tests {
     use super::*;
     use crate::medial::survey::tests::with_survey;
+    use belvedere_data::cast::{to_f32, to_i32};
     use belvedere_data::random::uniform;
 
     const RADIUS: f32 = 4.0;
@@ -318,15 +319,16 @@ mod tests {
     }
 
     #[test]
-    #[expect(clippy::cast_possible_truncation, reason = "places within a few metres")]
     fn touching_is_where_the_ball_reaches_the_middle() {
         for number in 0..2000 {
-            let random = |k: u64| uniform(k, number) as f32 * 2.0 - 1.0;
+            let random = |k: u64| to_f32(uniform(k, number)) * 2.0 - 1.0;
             let normal = [random(1), random(2), random(3)];
             let length = normal.iter().map(|v| v * v).sum::<f32>().sqrt();
             let normal = normal.map(|v| v / length);
-            let (point, cell) =
-                ([random(4), random(5), random(6)], ((random(7) * 9.0) as i32, (random(8) * 9.0) as i32));
+            let (point, cell) = (
+                [random(4), random(5), random(6)],
+                (to_i32(f64::from(random(7) * 9.0)), to_i32(f64::from(random(8) * 9.0))),
+            );
             let found = touching(point, normal, cell);
             let is_over = |radius: f32| {
                 let off = [(cell.1, 0), (cell.0, 1)]

@@ -2,6 +2,7 @@
 
 use crate::neighbors::NeighborIndex;
 use belvedere_data::balls::{MedialBalls, NO_TOUCH};
+use belvedere_data::cast::to_i32;
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Error, Parameter, Result, random};
 use rayon::prelude::*;
@@ -186,9 +187,8 @@ pub fn simplify(positions: &[[f32; 3]], feature_sizes: &[f32], params: &Simplify
         });
     }
     let low = positions.iter().fold([f32::INFINITY; 3], |low, p| std::array::from_fn(|i| low[i].min(p[i])));
-    #[expect(clippy::cast_possible_truncation, reason = "saturates; cells farther than 2^31 sides do not occur")]
     let cell_of = |p: [f32; 3]| -> [i32; 3] {
-        let mut cell = std::array::from_fn(|i| ((p[i] - low[i]) / params.cell_size) as i32);
+        let mut cell = std::array::from_fn(|i| to_i32(f64::from((p[i] - low[i]) / params.cell_size)));
         if params.cells == Cells::Columns {
             cell[2] = 0;
         }

@@ -1,5 +1,6 @@
 //! Points sorted into columns of small voxels, for searches above, below and beside a place.
 
+use belvedere_data::cast::{to_cell, to_f32, to_i32, to_i64};
 use std::ops::Range;
 
 /// Cells fill blocks of this side, metres, without a remainder, so that surfaces can end at blocks.
@@ -52,8 +53,7 @@ impl Layers {
     ) -> Option<Self> {
         let half = (BLOCK / 2.0 / min_side).floor().max(1.0);
         let side = BLOCK / 2.0 / half;
-        #[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
-        let cells_of_half_block = half as i64;
+        let cells_of_half_block = to_i64(f64::from(half));
         let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
         for p in positions {
             for axis in 0..2 {
@@ -64,18 +64,15 @@ impl Layers {
         let steps = [f64::from(BLOCK) / 2.0, f64::from(BLOCK) / 2.0, f64::from(STEP)];
         // an origin on a corner stays on it
         let corners: [f64; 3] = std::array::from_fn(|axis| (origin[axis] / steps[axis] + ROUNDING).floor());
-        #[expect(clippy::cast_possible_truncation, reason = "at most half a block")]
-        let shift: [f32; 3] = std::array::from_fn(|axis| (origin[axis] - corners[axis] * steps[axis]).max(0.0) as f32);
-        #[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
-        let corner = [0, 1].map(|axis| (corners[axis] as i64).saturating_mul(cells_of_half_block));
+        let shift: [f32; 3] = std::array::from_fn(|axis| to_f32((origin[axis] - corners[axis] * steps[axis]).max(0.0)));
+        let corner = [0, 1].map(|axis| to_i64(corners[axis]).saturating_mul(cells_of_half_block));
         let first_cell = [0, 1].map(|axis| cell_from_corner(low[axis] + shift[axis], side));
         low = [0, 1].map(|axis| first_cell[axis] as f32 * side - shift[axis]);
         let [width, height] = [0, 1].map(|axis| ((high[axis] - low[axis]) / side).floor() + 2.0);
         if !(width > 0.0 && height > 0.0 && width * height < MAX_CELLS) {
             return None;
         }
-        #[expect(clippy::cast_possible_truncation, reason = "checked to be small")]
-        let size = [width as i32, height as i32];
+        let size = [to_i32(f64::from(width)), to_i32(f64::from(height))];
         let (first, level, cell, solid_voxels) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut layers = Self {
             side,
@@ -204,7 +201,6 @@ impl Layers {
         self.column(cell).filter(move |&other| self.solid[other] && (self.level[other] - own).abs() <= SAME_HEIGHT)
     }
 
-    #[expect(clippy::cast_possible_wrap, reason = "fewer cells than 2³¹")]
     fn cell_of(&self, voxel: usize) -> Cell {
         let number = self.cell[voxel] as i32;
         [number % self.size[0], number / self.size[0]]
@@ -229,9 +225,8 @@ impl Layers {
     }
 
     /// Number upward of the voxel of height `z`.
-    #[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
     fn level_of(&self, z: f32) -> i32 {
-        ((z + self.shift[2]) / STEP).floor() as i32
+        to_cell(f64::from((z + self.shift[2]) / STEP))
     }
 
     fn number(&self, cell: Cell) -> Option<usize> {
@@ -242,9 +237,8 @@ impl Layers {
 }
 
 /// Number of a cell of this side from a corner on.
-#[expect(clippy::cast_possible_truncation, reason = "casts of floats saturate")]
 fn cell_from_corner(coordinate: f32, side: f32) -> i32 {
-    (coordinate / side).floor() as i32
+    to_cell(f64::from(coordinate / side))
 }
 
 /// A cell and the eight about it.
@@ -264,8 +258,7 @@ mod tests {
             let random = |k: u64| uniform(7, 3 * i + k);
             // 128ths of a metre, which no frame rounds, and of which none lies on the side of a cell
             let steps = [2560.0 * random(0), 2560.0 * random(1), 320.0 * random(2)].map(|v| v.floor() + 0.5);
-            #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-            std::array::from_fn(|axis| (corner[axis] + steps[axis] / 64.0 - origin[axis]) as f32)
+            std::array::from_fn(|axis| to_f32(corner[axis] + steps[axis] / 64.0 - origin[axis]))
         };
         (0..2000).map(place).collect()
     }
@@ -281,8 +274,7 @@ mod tests {
                     let voxel = layers.voxel_of(*p).unwrap();
                     let above = f64::from(layers.bottom(voxel)) + origin[2];
                     // heights of f32 a few metres from zero
-                    #[expect(clippy::cast_possible_truncation, reason = "a few metres")]
-                    let height = (1e4 * above).round() as i64;
+                    let height = to_i64((1e4 * above).round());
                     (layers.block(voxel, [0, 1]), layers.count_beside(voxel), height)
                 };
                 (layers.len(), positions.iter().map(of_point).collect::<Vec<_>>())

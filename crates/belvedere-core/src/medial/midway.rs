@@ -1,13 +1,13 @@
 //! Places midway between neighbouring points, where something is filled that its points are too sparse for.
 
+use belvedere_data::cast::to_cell;
 use rayon::slice::ParallelSliceMut;
 use std::cmp::Ordering;
 
 /// Keeps one of `rows` in each cube of this side, metres, in ascending order, whatever the order of the points. Dense
 /// clouds have thousands of points within reach of each other, and more balls there fill nothing more.
 pub(super) fn one_in_each_cell(positions: &[[f32; 3]], mut rows: Vec<usize>, side: f32) -> Vec<usize> {
-    #[expect(clippy::cast_possible_truncation, reason = "cells of centimetres over any cloud; `as` saturates")]
-    let cell = |row: usize| positions[row].map(|v| (v / side).floor() as i32);
+    let cell = |row: usize| positions[row].map(|v| to_cell(f64::from(v / side)));
     let first = |a: usize, b: usize| cell(a).cmp(&cell(b)).then(by_axes(positions[a], positions[b])).then(a.cmp(&b));
     rows.par_sort_unstable_by(|&a, &b| first(a, b));
     rows.dedup_by_key(|row| cell(*row));

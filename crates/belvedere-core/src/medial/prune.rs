@@ -6,6 +6,7 @@ use super::survey::{BLOCK, Survey};
 use crate::neighbors::NeighborIndex;
 use crate::normals::OrientedCloud;
 use belvedere_data::balls::{MedialBalls, NO_TOUCH};
+use belvedere_data::cast::to_i64;
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::{dot, sub};
 use belvedere_data::{Error, Result};
@@ -90,8 +91,7 @@ fn superfluous(
     let origin = oriented.origin();
     let block = |row: u32| -> [i64; 2] {
         let p = placed[row as usize];
-        #[expect(clippy::cast_possible_truncation, reason = "positions of a cloud are far below 2^63 blocks")]
-        [0, 1].map(|axis| ((f64::from(p[axis]) + origin[axis]) / f64::from(BLOCK)).floor() as i64)
+        [0, 1].map(|axis| to_i64(((f64::from(p[axis]) + origin[axis]) / f64::from(BLOCK)).floor()))
     };
     let is_usable = |row: &u32| balls.touch[*row as usize] != NO_TOUCH && balls.radii[*row as usize] > 0.0;
     let mut rows: Vec<([i64; 2], u32)> =

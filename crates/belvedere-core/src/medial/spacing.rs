@@ -23,7 +23,6 @@ pub(super) fn pulse_counts(positions: &[[f32; 3]], attributes: &Attributes) -> C
 /// Mean horizontal distance between so many pulses of [`pulse_counts`], metres: the side of the square that each has to
 /// itself.
 pub(super) fn spacing_of(count: u32) -> f32 {
-    #[expect(clippy::cast_precision_loss, reason = "a count on nine square metres")]
     let area = AREA_M2 / count.max(1) as f32;
     area.sqrt()
 }

@@ -2,6 +2,7 @@
 
 use super::blocks::{BlockTable, SIDE, VOXELS, block_of, place_in_block};
 use super::walk::GridLine;
+use belvedere_data::cast::{to_f32, to_i32, to_u32};
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::medium::{ExtinctionVoxels, MAX_EXTINCTION, VOXEL_SIDE};
 use belvedere_data::vector::unit;
@@ -114,8 +115,7 @@ pub fn estimate(returns: &PlantReturns<'_>, params: &MediumParams, control: &Con
             (counts.hits as f64 / STEPS + path * towards) / (counts.path as f64 / STEPS + path)
         };
         let around = shrunk(near, params.mean, params.near_path);
-        #[expect(clippy::cast_possible_truncation, reason = "a rate per metre")]
-        let found = (shrunk(own, around, params.own_path) / VOXEL_SIDE) as f32;
+        let found = to_f32(shrunk(own, around, params.own_path) / VOXEL_SIDE);
         found.clamp(0.0, MAX_EXTINCTION)
     };
     let voxels = grid.near_plants();
@@ -149,8 +149,7 @@ impl Grid {
     fn of(returns: &PlantReturns<'_>) -> Self {
         let base = returns.origin.map(|v| (v / VOXEL_SIDE).floor());
         let shift = std::array::from_fn(|axis| returns.origin[axis] / VOXEL_SIDE - base[axis]);
-        #[expect(clippy::cast_possible_truncation, reason = "origins lie within a million km of zero")]
-        let base = base.map(|v| v as i32);
+        let base = base.map(to_i32);
         let mut grid = Self { base, shift, table: BlockTable::default(), plants: Vec::new() };
         let is_plant = |(_, kind): &(&[f32; 3], &PlantReturn)| **kind == PlantReturn::Plant;
         let rows = returns.positions.par_iter().zip(returns.kinds);
@@ -177,8 +176,7 @@ impl Grid {
 
     fn voxel(&self, place: [f64; 3]) -> [i32; 3] {
         // clear of the ends of i32, so that neighbours never overflow
-        #[expect(clippy::cast_possible_truncation, reason = "clamped")]
-        place.map(|v| v.floor().clamp(-1e9, 1e9) as i32)
+        place.map(|v| to_i32(v.floor().clamp(-1e9, 1e9)))
     }
 
     /// Voxels with plants and all around them, ascending. Between returns a crown goes on: of 4 to 8 returns/m² half of
@@ -254,14 +252,12 @@ impl Grid {
 
 /// Adds steps to a sum.
 fn add(sums: &[AtomicU32], place: Option<usize>, steps: f64) {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to a few thousand")]
     if let Some(sum) = place.and_then(|place| sums.get(place)) {
-        sum.fetch_add(steps.round() as u32, Ordering::Relaxed);
+        sum.fetch_add(to_u32(steps.round()), Ordering::Relaxed);
     }
 }
 
 #[cfg(test)]
-#[expect(clippy::cast_possible_truncation, reason = "small numbers of tests")]
 mod tests {
     use super::*;
     use crate::medium::Medium;
@@ -284,8 +280,8 @@ mod tests {
             let place: [f64; 3] = std::array::from_fn(|axis| ground[axis] + up[axis] * at / up[2]);
             let is_hit = at > 2.0 && (0..2).all(|axis| (0.0..20.0).contains(&place[axis]));
             let end = if is_hit { place } else { ground };
-            positions.push(end.map(|v| v as f32));
-            scanner.push(eye.map(|v| v as f32));
+            positions.push(end.map(to_f32));
+            scanner.push(eye.map(to_f32));
             kinds.push(if is_hit { PlantReturn::Plant } else { PlantReturn::Elsewhere });
         }
         (positions, scanner, kinds)

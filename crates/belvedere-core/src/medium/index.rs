@@ -2,6 +2,7 @@
 
 use super::blocks::{BlockTable, SIDE, VOXELS, block_of, place_in_block};
 use super::walk::GridLine;
+use belvedere_data::cast::to_i32;
 use belvedere_data::medium::{ExtinctionVoxels, VOXEL_SIDE};
 use std::ops::ControlFlow;
 
@@ -29,8 +30,7 @@ impl Medium {
         // whole numbers of voxels near the origin keep all digits of local positions
         let base = origin.map(|v| (v / VOXEL_SIDE).floor());
         let shift = std::array::from_fn(|axis| origin[axis] / VOXEL_SIDE - base[axis] - 0.5);
-        #[expect(clippy::cast_possible_truncation, reason = "origins lie within a million km of zero")]
-        let base = base.map(|v| v as i32);
+        let base = base.map(to_i32);
         let relative = |voxel: &[i32; 3]| -> [i32; 3] {
             std::array::from_fn(|axis| voxel[axis].saturating_sub(base[axis]).clamp(i32::MIN / 4, i32::MAX / 4))
         };
@@ -95,9 +95,9 @@ fn cells_around(voxel: [i32; 3]) -> impl Iterator<Item = [i32; 3]> {
 }
 
 #[cfg(test)]
-#[expect(clippy::cast_possible_truncation, reason = "small numbers of tests")]
 mod tests {
     use super::*;
+    use belvedere_data::cast::to_f32;
     use belvedere_data::random::uniform;
     use belvedere_data::vector::unit;
 
@@ -109,7 +109,7 @@ mod tests {
                     let number = (x * 400 + y * 20 + z) as u64;
                     if uniform(1, number) < 0.3 {
                         voxels.voxels.push([origin[0] + x, origin[1] + y, origin[2] + z]);
-                        voxels.extinction.push(uniform(2, number) as f32);
+                        voxels.extinction.push(to_f32(uniform(2, number)));
                     }
                 }
             }

@@ -1,6 +1,7 @@
 //! The cells of a grid that a line passes, one after the other.
 
 use super::blocks::SIDE;
+use belvedere_data::cast::to_i32;
 use std::ops::ControlFlow;
 
 /// A line in the coordinates of a grid.
@@ -57,10 +58,9 @@ impl GridLine {
         mut visit: impl FnMut([i32; 3], [f64; 2]) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
         let entry = self.at(from);
-        #[expect(clippy::cast_possible_truncation, reason = "within the bounds of cells")]
         let mut cell: [i32; 3] = std::array::from_fn(|axis| {
             // rounding may put the entry beside the first or the last cell
-            ((entry[axis] / f64::from(side)).floor() as i32).clamp(low[axis], high[axis] - 1)
+            to_i32((entry[axis] / f64::from(side)).floor()).clamp(low[axis], high[axis] - 1)
         });
         let step: [i32; 3] = self.towards.map(|v| if v > 0.0 { 1 } else { -1 });
         let leaves = |axis: usize, cell: i32| {
@@ -91,7 +91,6 @@ impl GridLine {
 }
 
 #[cfg(test)]
-#[expect(clippy::cast_possible_truncation, reason = "small numbers of tests")]
 mod tests {
     use super::*;
     use belvedere_data::random::uniform;
@@ -113,7 +112,7 @@ mod tests {
             let _ = line.each_cell::<()>(1, all, ranges, |cell, [from, to]| {
                 let middle = line.at(f64::midpoint(from, to));
                 if to - from > 1e-9 {
-                    assert_eq!(cell, middle.map(|v| v.floor() as i32), "{i}");
+                    assert_eq!(cell, middle.map(|v| to_i32(v.floor())), "{i}");
                 }
                 total += to - from;
                 ControlFlow::Continue(())

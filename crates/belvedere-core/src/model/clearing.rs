@@ -1,15 +1,14 @@
 //! Effect of clearing an area at a place: removes a point, cuts a ball, or closes the ground.
 
-use super::ClearedArea;
+use super::cleared_area::{ClearedArea, GROUND};
 use crate::ground::{Ground, GroundParams, GroundPoints, MapGrid, ground_points};
+use belvedere_data::cast::to_index;
 use belvedere_data::control::Control;
 use belvedere_data::polygon::PolygonIndex;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::{sub, to_f32, unit};
 use belvedere_data::{PointCloud, Result};
 
-/// ASPRS class of ground.
-const GROUND: u8 = 2;
 /// Height above the ground up to which a point or a ball belongs to it, metres: that up to which points are taken for
 /// ground where none are classed.
 const ABOVE_GROUND: f64 = 0.3;
@@ -120,8 +119,7 @@ impl Clearing {
     /// Balls that close the ground where no ground point is near: centres and radii.
     pub fn closing_balls(&self) -> impl Iterator<Item = ([f32; 3], f32)> {
         let grid = self.ground.grid;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cells")]
-        let step = (GROUND_STEP / grid.cell).floor().max(1.0) as usize;
+        let step = to_index((GROUND_STEP / grid.cell).floor().max(1.0));
         let places = (0..grid.height)
             .step_by(step)
             .flat_map(move |row| (0..grid.width).step_by(step).map(move |column| (column, row)));
@@ -164,9 +162,8 @@ impl Clearing {
         let grid = &self.ground.grid;
         let place = [(center[0] - grid.corner[0]) / grid.cell, (grid.corner[1] - center[1]) / grid.cell];
         let reach = radius / grid.cell;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the grid")]
         let range = |axis: usize, count: usize| {
-            let end = |value: f64| value.clamp(0.0, count as f64) as usize;
+            let end = |value: f64| to_index(value.clamp(0.0, count as f64));
             end(place[axis] - reach)..end((place[axis] + reach).ceil())
         };
         range(1, grid.height).any(|row| {
@@ -186,8 +183,7 @@ impl Clearing {
         let grid = &self.ground.grid;
         let mut tops = Raster::filled(grid.width, grid.height, f32::NAN);
         let around = if matches!(self.area, IndexedArea::Class(_)) { AROUND_OF_CLASS } else { AROUND };
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cells")]
-        let reach = (around / grid.cell) as usize;
+        let reach = to_index(around / grid.cell);
         let mut highest = Raster::filled(grid.width, grid.height, f32::NEG_INFINITY);
         let standing = (0..cloud.len()).filter(|&row| self.stands_in(cloud.positions[row], class_of(cloud, row)));
         for position in standing.map(|row| cloud.positions[row]) {

@@ -5,6 +5,7 @@ use crate::neighbors::{Neighbor, NeighborIndex};
 use crate::normals::estimate::{Neighborhood, estimate_with_scatter, estimate_within_reach};
 use crate::normals::{Normals, Scatter};
 use belvedere_data::Result;
+use belvedere_data::cast::to_row;
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::dot;
 use rayon::prelude::*;
@@ -44,7 +45,7 @@ impl CloseRange {
         neighborhood: Neighborhood,
         control: &Control<'_>,
     ) -> Result<Self> {
-        let mut rows: Vec<u32> = (0..u32::try_from(positions.len()).unwrap_or(u32::MAX)).collect();
+        let mut rows: Vec<u32> = (0..to_row(positions.len())).collect();
         drop_near(positions, &mut rows, MIN_DISTANCE, control)?;
         let of_rows = |column: &[[f32; 3]]| -> Vec<[f32; 3]> {
             rows.iter().filter_map(|&row| column.get(row as usize).copied()).collect()

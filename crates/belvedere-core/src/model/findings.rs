@@ -2,6 +2,7 @@
 //! swapped classes.
 
 use crate::strips::{StripOffset, StripReport};
+use belvedere_data::cast::{to_cell, to_i64};
 use belvedere_data::cloud::ADJUSTED_GPS_EPOCH;
 use belvedere_data::weather::date_of_unix_day;
 use belvedere_data::{Attributes, GpsTimeKind, PointCloud};
@@ -152,17 +153,13 @@ fn ground_on_top(cloud: &PointCloud) -> Option<f64> {
 
 /// Cell of a position in which surveys and classes are compared.
 fn cell_of(position: [f32; 3]) -> [i32; 2] {
-    #[expect(clippy::cast_possible_truncation, reason = "cells of a cloud, and saturating")]
-    let cell = [0, 1].map(|i| (f64::from(position[i]) / CELL).floor() as i32);
-    cell
+    [0, 1].map(|i| to_cell(f64::from(position[i]) / CELL))
 }
 
 /// Day of a GPS time, days since 1970.
 pub(super) fn unix_day_of(gps_time: f64) -> Option<i64> {
     let day = ((gps_time + ADJUSTED_GPS_EPOCH) / DAY).floor();
-    #[expect(clippy::cast_possible_truncation, reason = "checked")]
-    let day = (day.abs() < 1e7).then_some(day as i64);
-    day
+    (day.abs() < 1e7).then_some(to_i64(day))
 }
 
 /// The surveys of a cloud by gaps of months, where there are several, and the changes between the first and the last.

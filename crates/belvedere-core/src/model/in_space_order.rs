@@ -5,6 +5,7 @@
 //! the same one whatever the order of the file. Where a program has mixed the points of a scanner, neighbours would
 //! also lie anywhere in memory, and fetching them would take most of the time.
 
+use belvedere_data::cast::{to_i64, to_row};
 use belvedere_data::vector::compare_places;
 use belvedere_data::{Attributes, PointCloud};
 use rayon::prelude::*;
@@ -28,8 +29,7 @@ pub(super) fn space_order(cloud: &PointCloud) -> Option<Vec<u32>> {
 fn rows_in_space_order(cloud: &PointCloud) -> Vec<u32> {
     let [east, north, _] = cloud.frame.origin;
     let square = |place: f32, origin: f64| {
-        #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
-        let number = ((f64::from(place) + origin) / SIDE).floor() as i64;
+        let number = to_i64(((f64::from(place) + origin) / SIDE).floor());
         // squares 262 km apart share a number, which costs time and nothing else
         (number & 0xFFFF) as u32
     };
@@ -37,8 +37,7 @@ fn rows_in_space_order(cloud: &PointCloud) -> Vec<u32> {
         let morton = spread(square(x, east)) | spread(square(y, north)) << 1;
         u64::from(morton) << 32 | u64::from(row)
     };
-    #[expect(clippy::cast_possible_truncation, reason = "rows of a cloud are numbered with 32 bits everywhere")]
-    let mut keys: Vec<u64> = cloud.positions.par_iter().enumerate().map(|(row, p)| key((row as u32, *p))).collect();
+    let mut keys: Vec<u64> = cloud.positions.par_iter().enumerate().map(|(row, p)| key((to_row(row), *p))).collect();
     keys.par_sort_unstable();
     #[expect(clippy::cast_possible_truncation, reason = "the lower half")]
     let row = |key: u64| key as u32;

@@ -9,6 +9,7 @@
 mod blocked_pulses;
 mod build;
 mod clear;
+mod cleared_area;
 mod clearing;
 mod close_range_normals;
 mod estimate_statistics;
@@ -25,7 +26,8 @@ mod surfaces;
 mod terrain;
 
 pub use belvedere_data::model::{DerivedParts, ModelParts};
-pub use clear::{ClearReport, ClearedArea};
+pub use clear::ClearReport;
+pub use cleared_area::ClearedArea;
 pub use clearing::Clearing;
 pub use estimate_statistics::SurveyExtremes;
 pub use findings::{DatedSurvey, SurveyChange, SurveyFindings};

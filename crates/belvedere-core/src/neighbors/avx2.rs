@@ -7,47 +7,49 @@
               scalar form"
 )]
 
-use super::lanes::{LANES, LaneBlock, Lanes, WideNode};
-use super::{Neighbor, NeighborIndex, Tangent, search, tangent_ball};
+use super::lanes::{LANES, LaneBlock, Lanes, PointTree, WideNode};
+use super::search::{self, Neighbor};
+use super::tangent::Tangent;
+use super::tangent_ball;
 use std::arch::x86_64::*;
 
 // SAFETY of the calls below: `Instructions::NeighborAvx2` is only stored in an index after
 // `is_x86_feature_detected!("avx2")`.
 
-pub(super) fn nearest(index: &NeighborIndex, query: [f32; 3], bound_squared: f32) -> Option<Neighbor> {
+pub(super) fn nearest(tree: &PointTree, query: [f32; 3], bound_squared: f32) -> Option<Neighbor> {
     #[target_feature(enable = "avx2")]
-    fn run(index: &NeighborIndex, query: [f32; 3], bound_squared: f32) -> Option<Neighbor> {
-        search::nearest::<NeighborAvx2>(index, query, bound_squared)
+    fn run(tree: &PointTree, query: [f32; 3], bound_squared: f32) -> Option<Neighbor> {
+        search::nearest::<NeighborAvx2>(tree, query, bound_squared)
     }
     // SAFETY: see above
-    unsafe { run(index, query, bound_squared) }
+    unsafe { run(tree, query, bound_squared) }
 }
 
-pub(super) fn k_nearest(index: &NeighborIndex, query: [f32; 3], k: usize, found: &mut Vec<Neighbor>) {
+pub(super) fn k_nearest(tree: &PointTree, query: [f32; 3], k: usize, found: &mut Vec<Neighbor>) {
     #[target_feature(enable = "avx2")]
-    fn run(index: &NeighborIndex, query: [f32; 3], k: usize, found: &mut Vec<Neighbor>) {
-        search::k_nearest::<NeighborAvx2>(index, query, k, found);
+    fn run(tree: &PointTree, query: [f32; 3], k: usize, found: &mut Vec<Neighbor>) {
+        search::k_nearest::<NeighborAvx2>(tree, query, k, found);
     }
     // SAFETY: see above
-    unsafe { run(index, query, k, found) }
+    unsafe { run(tree, query, k, found) }
 }
 
-pub(super) fn within_radius(index: &NeighborIndex, query: [f32; 3], radius: f32, visit: impl FnMut(Neighbor)) {
+pub(super) fn within_radius(tree: &PointTree, query: [f32; 3], radius: f32, visit: impl FnMut(Neighbor)) {
     #[target_feature(enable = "avx2")]
-    fn run(index: &NeighborIndex, query: [f32; 3], radius: f32, visit: impl FnMut(Neighbor)) {
-        search::within_radius::<NeighborAvx2>(index, query, radius, visit);
+    fn run(tree: &PointTree, query: [f32; 3], radius: f32, visit: impl FnMut(Neighbor)) {
+        search::within_radius::<NeighborAvx2>(tree, query, radius, visit);
     }
     // SAFETY: see above
-    unsafe { run(index, query, radius, visit) }
+    unsafe { run(tree, query, radius, visit) }
 }
 
-pub(super) fn smallest_tangent_ball(index: &NeighborIndex, tangent: &Tangent, max_radius: f32) -> Option<(f32, u32)> {
+pub(super) fn smallest_tangent_ball(tree: &PointTree, tangent: &Tangent, max_radius: f32) -> Option<(f32, u32)> {
     #[target_feature(enable = "avx2")]
-    fn run(index: &NeighborIndex, tangent: &Tangent, max_radius: f32) -> Option<(f32, u32)> {
-        tangent_ball::search::<NeighborAvx2>(index, tangent, max_radius)
+    fn run(tree: &PointTree, tangent: &Tangent, max_radius: f32) -> Option<(f32, u32)> {
+        tangent_ball::search::<NeighborAvx2>(tree, tangent, max_radius)
     }
     // SAFETY: see above
-    unsafe { run(index, tangent, max_radius) }
+    unsafe { run(tree, tangent, max_radius) }
 }
 
 struct NeighborAvx2;

@@ -1,6 +1,6 @@
 //! Building of the tree: split at the median of the longest extent down to full leaves, then boxes from the leaves up.
 
-use super::lanes::{Child, LANES, LaneBlock, WideNode};
+use super::lanes::{Child, LANES, LaneBlock, PointTree, WideNode};
 use belvedere_data::Result;
 use belvedere_data::control::{Control, Stop};
 
@@ -17,25 +17,25 @@ struct Item {
 
 type BoxCorners = ([f32; 3], [f32; 3]);
 
-/// Nodes (the root first), blocks of points in tree order, and the index of the point in each slot.
-pub(super) fn build(points: &[[f32; 3]], control: &Control<'_>) -> Result<(Vec<WideNode>, Vec<LaneBlock>, Vec<u32>)> {
+/// Builds the tree of points.
+pub(super) fn build(points: &[[f32; 3]], control: &Control<'_>) -> Result<PointTree> {
     let stop = Stop::new(control);
     let mut items: Vec<Item> = points.iter().zip(0..).map(|(&point, index)| Item { point, index }).collect();
     sort_to_leaves(&mut items, &stop, control);
     stop.check()?;
-    let (nodes, blocks) = fit(&items);
+    let tree = fit(&items);
     control.check()?;
-    Ok((nodes, blocks, items.iter().map(|item| item.index).collect()))
+    Ok(tree)
 }
 
-/// Nodes and blocks for points that moved a little: `order` is that of the tree they were in, which stays.
-pub(super) fn refit(points: &[[f32; 3]], order: &[u32]) -> (Vec<WideNode>, Vec<LaneBlock>) {
+/// The tree of points that moved a little: `order` is that of the tree they were in, which stays.
+pub(super) fn refit(points: &[[f32; 3]], order: &[u32]) -> PointTree {
     let items: Vec<Item> = order.iter().map(|&index| Item { point: points[index as usize], index }).collect();
     fit(&items)
 }
 
-/// Nodes and blocks of points in tree order.
-fn fit(items: &[Item]) -> (Vec<WideNode>, Vec<LaneBlock>) {
+/// The tree of points in its order.
+fn fit(items: &[Item]) -> PointTree {
     let blocks = items
         .chunks(LANES)
         .map(|chunk| {
@@ -47,7 +47,7 @@ fn fit(items: &[Item]) -> (Vec<WideNode>, Vec<LaneBlock>) {
         .collect();
     let mut nodes = Vec::with_capacity(items.len() / (LEAF_POINTS * 4) + 1);
     add_node(items, 0, &mut nodes);
-    (nodes, blocks)
+    PointTree { nodes, blocks, order: items.iter().map(|item| item.index).collect() }
 }
 
 /// Returns the length of the first of two runs of whole leaves, as equal as possible.

@@ -1,6 +1,6 @@
 //! Eight boxes or points at a time: the memory layout, and the scalar form of each test.
 
-use super::Tangent;
+use super::tangent::Tangent;
 
 /// Points or boxes tested together.
 pub(super) const LANES: usize = 8;
@@ -60,6 +60,20 @@ impl Child {
         }
         let first = (self.0 & !Self::LEAF) as usize >> 2;
         Err(first..first + (self.0 & 3) as usize + 1)
+    }
+}
+
+/// The tree of an index: nodes, the root first; blocks of points in its order; and the index of the point in each slot.
+#[derive(Debug)]
+pub(super) struct PointTree {
+    pub(super) nodes: Vec<WideNode>,
+    pub(super) blocks: Vec<LaneBlock>,
+    pub(super) order: Vec<u32>,
+}
+
+impl PointTree {
+    pub(super) fn is_empty(&self) -> bool {
+        self.order.is_empty()
     }
 }
 

@@ -21,27 +21,20 @@ mod lanes;
 mod search;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 mod simd128;
+mod tangent;
 mod tangent_ball;
 
 pub use crate::instructions::Instructions;
-pub use tangent_ball::Tangent;
+pub use search::Neighbor;
+pub use tangent::Tangent;
 
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
 #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
 use lanes::NeighborScalar as NeighborPlain;
-use lanes::{LaneBlock, WideNode};
+use lanes::PointTree;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 use simd128::NeighborSimd128 as NeighborPlain;
-
-/// A point found, by its index in the array the index was built from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Neighbor {
-    /// Index of the point.
-    pub index: u32,
-    /// Its squared distance from the query, square metres.
-    pub distance_squared: f32,
-}
 
 /// Maximum distance of a neighbour in a survey from the air, metres: more than the usual 16 neighbours need on any
 /// surface.
@@ -52,9 +45,7 @@ pub const FARTHEST_NEIGHBOR: f32 = 16.0;
 /// Memory: 16 bytes a point and about 1 byte a point for the nodes.
 #[derive(Debug)]
 pub struct NeighborIndex {
-    nodes: Vec<WideNode>,
-    blocks: Vec<LaneBlock>,
-    order: Vec<u32>,
+    tree: PointTree,
     instructions: Instructions,
 }
 
@@ -83,8 +74,7 @@ impl NeighborIndex {
         }
         check_positions(points)?;
         let instructions = if instructions == Instructions::detect() { instructions } else { Instructions::Scalar };
-        let (nodes, blocks, order) = build::build(points, control)?;
-        Ok(Self { nodes, blocks, order, instructions })
+        Ok(Self { tree: build::build(points, control)?, instructions })
     }
 
     /// The index of the same points after each moved a little: faster to make than a new one, as fast to search.
@@ -97,27 +87,26 @@ impl NeighborIndex {
             return Err(Error::LengthMismatch { what: "moved points", expected: self.len(), found: points.len() });
         }
         check_positions(points)?;
-        let (nodes, blocks) = build::refit(points, &self.order);
-        Ok(Self { nodes, blocks, ..self })
+        Ok(Self { tree: build::refit(points, &self.tree.order), ..self })
     }
 
     /// Number of points.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.order.len()
+        self.tree.order.len()
     }
 
     /// Returns true if there is no point.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.order.is_empty()
+        self.tree.is_empty()
     }
 
     /// Indices of the points in tree order: neighbours in this list are near each other in space, so work done in this
     /// order finds its memory in the cache.
     #[must_use]
     pub fn tree_order(&self) -> &[u32] {
-        &self.order
+        &self.tree.order
     }
 
     /// The point nearest to `query` whose squared distance is strictly below `bound_squared`, or `None`. Of equally
@@ -125,9 +114,9 @@ impl NeighborIndex {
     #[must_use]
     pub fn nearest_within(&self, query: [f32; 3], bound_squared: f32) -> Option<Neighbor> {
         match self.instructions {
-            Instructions::Scalar => search::nearest::<NeighborPlain>(self, query, bound_squared),
+            Instructions::Scalar => search::nearest::<NeighborPlain>(&self.tree, query, bound_squared),
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2 => avx2::nearest(self, query, bound_squared),
+            Instructions::Avx2 => avx2::nearest(&self.tree, query, bound_squared),
         }
     }
 
@@ -135,9 +124,9 @@ impl NeighborIndex {
     /// by index.
     pub fn k_nearest(&self, query: [f32; 3], k: usize, found: &mut Vec<Neighbor>) {
         match self.instructions {
-            Instructions::Scalar => search::k_nearest::<NeighborPlain>(self, query, k, found),
+            Instructions::Scalar => search::k_nearest::<NeighborPlain>(&self.tree, query, k, found),
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2 => avx2::k_nearest(self, query, k, found),
+            Instructions::Avx2 => avx2::k_nearest(&self.tree, query, k, found),
         }
     }
 
@@ -145,9 +134,9 @@ impl NeighborIndex {
     /// only.
     pub fn within_radius(&self, query: [f32; 3], radius: f32, visit: impl FnMut(Neighbor)) {
         match self.instructions {
-            Instructions::Scalar => search::within_radius::<NeighborPlain>(self, query, radius, visit),
+            Instructions::Scalar => search::within_radius::<NeighborPlain>(&self.tree, query, radius, visit),
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2 => avx2::within_radius(self, query, radius, visit),
+            Instructions::Avx2 => avx2::within_radius(&self.tree, query, radius, visit),
         }
     }
 
@@ -158,9 +147,9 @@ impl NeighborIndex {
     #[must_use]
     pub fn smallest_tangent_ball(&self, tangent: &Tangent, max_radius: f32) -> Option<(f32, u32)> {
         match self.instructions {
-            Instructions::Scalar => tangent_ball::search::<NeighborPlain>(self, tangent, max_radius),
+            Instructions::Scalar => tangent_ball::search::<NeighborPlain>(&self.tree, tangent, max_radius),
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2 => avx2::smallest_tangent_ball(self, tangent, max_radius),
+            Instructions::Avx2 => avx2::smallest_tangent_ball(&self.tree, tangent, max_radius),
         }
     }
 }

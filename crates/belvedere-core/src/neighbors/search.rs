@@ -1,7 +1,15 @@
 //! Walks through the tree, the same for every kind of lanes.
 
-use super::lanes::{Child, LANES, Lanes};
-use super::{Neighbor, NeighborIndex};
+use super::lanes::{Child, LANES, Lanes, PointTree};
+
+/// A point found, by its index in the array the index was built from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Neighbor {
+    /// Index of the point.
+    pub index: u32,
+    /// Its squared distance from the query, square metres.
+    pub distance_squared: f32,
+}
 
 /// Children waiting to be opened, nearest on top.
 ///
@@ -54,8 +62,8 @@ pub(super) fn set_lanes(mut mask: u32) -> impl Iterator<Item = usize> {
 
 /// Calls `visit` with the points no farther than the bound it returns, which must not grow.
 #[inline(always)]
-fn walk<L: Lanes>(index: &NeighborIndex, query: [f32; 3], bound: f32, mut visit: impl FnMut(Neighbor) -> f32) {
-    if index.is_empty() || !(bound >= 0.0) {
+fn walk<L: Lanes>(tree: &PointTree, query: [f32; 3], bound: f32, mut visit: impl FnMut(Neighbor) -> f32) {
+    if tree.is_empty() || !(bound >= 0.0) {
         return;
     }
     // missing children lie at an infinite distance, which must stay above every bound
@@ -68,16 +76,16 @@ fn walk<L: Lanes>(index: &NeighborIndex, query: [f32; 3], bound: f32, mut visit:
         }
         match child.open() {
             Ok(node) => {
-                let node = &index.nodes[node];
+                let node = &tree.nodes[node];
                 let mask = L::boxes(node, query, bound, &mut distances);
                 pending.push(mask, &distances, &node.children);
             }
             Err(blocks) => {
                 for block in blocks {
-                    let mask = L::points(&index.blocks[block], query, bound, &mut distances);
+                    let mask = L::points(&tree.blocks[block], query, bound, &mut distances);
                     for lane in set_lanes(mask) {
                         let distance_squared = distances[lane];
-                        bound = visit(Neighbor { index: index.order[block * LANES + lane], distance_squared });
+                        bound = visit(Neighbor { index: tree.order[block * LANES + lane], distance_squared });
                     }
                 }
             }
@@ -86,12 +94,12 @@ fn walk<L: Lanes>(index: &NeighborIndex, query: [f32; 3], bound: f32, mut visit:
 }
 
 #[inline(always)]
-pub(super) fn nearest<L: Lanes>(index: &NeighborIndex, query: [f32; 3], bound_squared: f32) -> Option<Neighbor> {
+pub(super) fn nearest<L: Lanes>(tree: &PointTree, query: [f32; 3], bound_squared: f32) -> Option<Neighbor> {
     if !(bound_squared > 0.0) {
         return None;
     }
     let mut best = Neighbor { index: u32::MAX, distance_squared: bound_squared.next_down().min(f32::MAX) };
-    walk::<L>(index, query, best.distance_squared, |found| {
+    walk::<L>(tree, query, best.distance_squared, |found| {
         if found.distance_squared < best.distance_squared
             || (found.distance_squared == best.distance_squared && found.index < best.index)
         {
@@ -103,12 +111,12 @@ pub(super) fn nearest<L: Lanes>(index: &NeighborIndex, query: [f32; 3], bound_sq
 }
 
 #[inline(always)]
-pub(super) fn k_nearest<L: Lanes>(index: &NeighborIndex, query: [f32; 3], k: usize, found: &mut Vec<Neighbor>) {
+pub(super) fn k_nearest<L: Lanes>(tree: &PointTree, query: [f32; 3], k: usize, found: &mut Vec<Neighbor>) {
     found.clear();
     if k == 0 {
         return;
     }
-    walk::<L>(index, query, f32::MAX, |new| {
+    walk::<L>(tree, query, f32::MAX, |new| {
         let after = |old: &Neighbor| {
             old.distance_squared > new.distance_squared
                 || (old.distance_squared == new.distance_squared && old.index > new.index)
@@ -129,17 +137,12 @@ pub(super) fn k_nearest<L: Lanes>(index: &NeighborIndex, query: [f32; 3], k: usi
 }
 
 #[inline(always)]
-pub(super) fn within_radius<L: Lanes>(
-    index: &NeighborIndex,
-    query: [f32; 3],
-    radius: f32,
-    mut visit: impl FnMut(Neighbor),
-) {
+pub(super) fn within_radius<L: Lanes>(tree: &PointTree, query: [f32; 3], radius: f32, mut visit: impl FnMut(Neighbor)) {
     if !(radius >= 0.0) {
         return;
     }
     let bound = radius * radius;
-    walk::<L>(index, query, bound, |found| {
+    walk::<L>(tree, query, bound, |found| {
         if found.distance_squared <= bound {
             visit(found);
         }

@@ -1,7 +1,7 @@
 //! Eight lanes in WebAssembly: the same arithmetic as [`super::lanes::NeighborScalar`], in the same order.
 
-use super::Tangent;
 use super::lanes::{LANES, LaneBlock, Lanes, WideNode};
+use super::tangent::Tangent;
 use crate::f32x8::Eight;
 
 pub(super) struct NeighborSimd128;

@@ -2,6 +2,7 @@
 
 use super::{Normals, Scatter};
 use crate::neighbors::{Neighbor, NeighborIndex};
+use belvedere_data::cast::to_f32;
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::dot;
 use belvedere_data::{Error, Parameter, Result};
@@ -285,20 +286,16 @@ impl Plane {
 
     /// The plane of a neighbourhood with these eigenvalues, this component of the least one and this mean, from the
     /// point.
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "unit vectors, ratios below one and lengths within a neighbourhood"
-    )]
     fn new(values: [f64; 3], normal: [f64; 3], mean: [f64; 3]) -> Self {
         let [min, middle, largest] = values;
         if !(middle > LINE * largest && largest > 0.0 && normal.iter().all(|v| v.is_finite())) {
             return Self::NONE;
         }
         Self {
-            normal: normal.map(|v| v as f32),
-            quality: (1.0 - min.max(0.0) / middle) as f32,
-            offset: dot(mean, normal) as f32,
-            roughness: min.max(0.0).sqrt() as f32,
+            normal: normal.map(to_f32),
+            quality: to_f32(1.0 - min.max(0.0) / middle),
+            offset: to_f32(dot(mean, normal)),
+            roughness: to_f32(min.max(0.0).sqrt()),
         }
     }
 }

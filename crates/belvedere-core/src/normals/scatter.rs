@@ -4,6 +4,7 @@
 //! more points there are, the farther out that is. Balls are therefore tangent to the planes of neighbourhoods, if
 //! noise and not shape moves points away from them.
 
+use belvedere_data::cast::to_index;
 use belvedere_data::vector::{dot, sub};
 use rayon::prelude::*;
 
@@ -74,8 +75,7 @@ impl Scatter {
 /// The lower quartile of those that are finite.
 fn lower_quartile(mut roughness: Vec<f32>) -> Option<f32> {
     roughness.retain(|roughness| roughness.is_finite());
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a length")]
-    let place = (roughness.len() as f64 * SMOOTH_SHARE) as usize;
+    let place = to_index(roughness.len() as f64 * SMOOTH_SHARE);
     (!roughness.is_empty()).then(|| *roughness.select_nth_unstable_by(place, f32::total_cmp).1)
 }
 

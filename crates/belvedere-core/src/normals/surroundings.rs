@@ -1,5 +1,6 @@
 //! The highest points in the surroundings, which show on which side of a steep surface the building is.
 
+use belvedere_data::cast::to_cell;
 use rayon::prelude::*;
 
 /// Width of a cell: about the spacing of the sparsest clouds worth orienting, and a tenth of a small house.
@@ -69,8 +70,6 @@ impl HighestPointGrid {
     }
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "a float to integer cast saturates, which is what far points need")]
 fn cell(coordinate: f64) -> i32 {
-    // clear of the ends of i32, so that a range of cells never overflows; 500 000 km suffice
-    ((coordinate / CELL_M).floor() as i32).clamp(i32::MIN / 4, i32::MAX / 4)
+    to_cell(coordinate / CELL_M)
 }

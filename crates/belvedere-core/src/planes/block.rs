@@ -1,6 +1,7 @@
 //! The points of a block and its margin, in an order that follows from their positions.
 
 use super::line::clip;
+use belvedere_data::cast::{to_i64, to_index, to_row};
 use belvedere_data::control::Control;
 use belvedere_data::patches::SurfacePatches;
 use belvedere_data::{Attributes, Error, Result};
@@ -114,12 +115,12 @@ struct Grid {
 
 impl Grid {
     fn new(margin: f64) -> Self {
-        Self { margin, side: count_of((BLOCK + 2.0 * margin) / CELL) + 1 }
+        Self { margin, side: to_index((BLOCK + 2.0 * margin) / CELL) + 1 }
     }
 
     /// Column or row of a coordinate, the nearest one for those beyond.
     fn cell(&self, v: f64) -> usize {
-        count_of((v + self.margin) / CELL).min(self.side - 1)
+        to_index((v + self.margin) / CELL).min(self.side - 1)
     }
 
     /// Number of the cell of a place.
@@ -168,9 +169,7 @@ pub(super) fn blocks(survey: &SurveyPoints<'_>, margin: f64, control: &Control<'
 
 /// Number of the block of a coordinate of the reference system.
 fn number(v: f64) -> i64 {
-    #[expect(clippy::cast_possible_truncation, reason = "positions of a cloud are far below 2^63 blocks")]
-    let number = (v / BLOCK).floor() as i64;
-    number
+    to_i64((v / BLOCK).floor())
 }
 
 /// Number of the block that a local position lies in.
@@ -210,7 +209,6 @@ fn returns(survey: &SurveyPoints, row: usize) -> u8 {
 impl Block {
     /// The points of a block.
     pub(super) fn new(survey: &SurveyPoints<'_>, block: BlockRows, margin: f64) -> Self {
-        #[expect(clippy::cast_precision_loss, reason = "numbers of blocks")]
         let [x, y] = [0, 1].map(|axis| block.number[axis] as f64 * BLOCK - survey.origin[axis]);
         let corner = [x, y, 0.0];
         let grid = Grid::new(margin);
@@ -236,7 +234,7 @@ impl Block {
         for row in block.rows {
             let at = survey.positions[row as usize];
             let cell = grid.number(std::array::from_fn(|i| f64::from(at[i]) - corner[i]));
-            keys.push((u32::try_from(cell).unwrap_or(u32::MAX), at.map(ordered), row));
+            keys.push((to_row(cell), at.map(ordered), row));
         }
         keys.sort_unstable_by_key(|key| (key.0, key.1));
         let mut returns: Vec<Return> = keys.iter().map(|key| read(key.2)).collect();
@@ -377,11 +375,4 @@ impl Block {
 fn ordered(v: f32) -> u32 {
     let bits = v.to_bits();
     if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
-}
-
-/// A number of cells, 0 if negative.
-fn count_of(cells: f64) -> usize {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cells of a block, and saturating")]
-    let count = cells.max(0.0) as usize;
-    count
 }

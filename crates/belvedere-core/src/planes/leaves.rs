@@ -7,6 +7,7 @@ use super::line::{PlanLine, SLIVER, area, clip};
 use super::patches::{Patch, fan};
 use super::ridges::{RidgeLine, convex};
 use super::roof_planes::Roofs;
+use belvedere_data::cast::to_index;
 use belvedere_data::patches::PatchKind;
 use belvedere_data::vector::to_f32;
 
@@ -104,8 +105,7 @@ impl Cover {
     /// Columns, or rows, whose middles lie between two places.
     fn range(&self, axis: usize, from: f64, to: f64) -> std::ops::Range<usize> {
         let cells = |v: f64| ((v - self.low[axis]) / self.cell - 0.5).ceil().clamp(0.0, self.size[axis] as f64);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the grid")]
-        let range = cells(from) as usize..cells(to) as usize;
+        let range = to_index(cells(from))..to_index(cells(to));
         range
     }
 
@@ -144,8 +144,7 @@ impl Cover {
         }
         // cells of one grid, wherever the roof begins
         let low = low.map(|v| (v / params.cell).floor() * params.cell);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cells of a block")]
-        let size = [0, 1].map(|axis| ((high[axis] - low[axis]) / params.cell).ceil().max(1.0) as usize);
+        let size = [0, 1].map(|axis| to_index(((high[axis] - low[axis]) / params.cell).ceil().max(1.0)));
         let mut cover = Self { low, size, cell: params.cell, counts: Vec::new() };
         let (mut to_return, mut to_passed) =
             (vec![f32::INFINITY; size[0] * size[1]], vec![f32::INFINITY; size[0] * size[1]]);

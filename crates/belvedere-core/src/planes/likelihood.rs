@@ -6,6 +6,7 @@
 
 use super::line::PlanLine;
 use super::samples::Samples;
+use belvedere_data::cast::{to_i32, to_index};
 
 /// Lines tried on each side of the first, by place and by turn.
 const STEPS: i32 = 4;
@@ -52,8 +53,7 @@ pub(super) struct LikelihoodTable {
 
 impl LikelihoodTable {
     pub(super) fn new(params: &LikelihoodParams) -> Self {
-        #[expect(clippy::cast_possible_truncation, reason = "the size of a small table")]
-        let last = (TABLE_STEPS * TABLE_WIDTHS) as i32;
+        let last = to_i32(TABLE_STEPS * TABLE_WIDTHS);
         let value = |place: i32| {
             let outside = f64::from(place) / TABLE_STEPS;
             (params.outlier_share + (1.0 - 2.0 * params.outlier_share) / (1.0 + outside.exp())).ln()
@@ -64,8 +64,7 @@ impl LikelihoodTable {
     /// Logarithm of the likelihood that a pulse ended on the plane, so many widths outside of the edge.
     fn of(&self, outside: f64) -> f64 {
         let place = (outside.clamp(-TABLE_WIDTHS, TABLE_WIDTHS) + TABLE_WIDTHS) * TABLE_STEPS;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the table")]
-        let place = (place + 0.5) as usize;
+        let place = to_index(place + 0.5);
         self.values[place]
     }
 

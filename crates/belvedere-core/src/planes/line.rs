@@ -1,5 +1,7 @@
 //! Straight lines in plan.
 
+use belvedere_data::cast::to_index;
+
 /// A piece of a straight line in plan, metres from the corner of its block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct PlanLine {
@@ -53,12 +55,7 @@ impl PlanLine {
     /// Pieces of about `of` metres that it is cut into.
     pub(super) fn pieces(&self, of: f64) -> Pieces {
         let length = self.length();
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "metres of an edge, and saturating"
-        )]
-        let count = ((length / of).ceil().max(1.0) as usize).min(10_000);
+        let count = to_index((length / of).ceil().max(1.0)).min(10_000);
         Pieces { first: self.ends[0], length: length / count as f64, count }
     }
 
@@ -116,9 +113,7 @@ pub(super) struct Pieces {
 impl Pieces {
     /// Number of the piece of a range.
     pub(super) fn number(&self, range: f64) -> usize {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the line, and saturating")]
-        let piece = (((range - self.first) / self.length).max(0.0) as usize).min(self.count - 1);
-        piece
+        to_index((range - self.first) / self.length).min(self.count - 1)
     }
 
     /// Range at which a piece begins.

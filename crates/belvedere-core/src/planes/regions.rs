@@ -9,6 +9,7 @@ use super::roof_planes::Roofs;
 use super::walls::WallLine;
 use belvedere_data::Result;
 use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls, NO_TOUCH};
+use belvedere_data::cast::{to_f32, to_index};
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::vector::{dot, sub, unit};
 use rayon::prelude::*;
@@ -151,8 +152,7 @@ impl SurfaceRegions {
             });
             most = most.min(fits.fold(0.0, f64::max));
         }
-        #[expect(clippy::cast_possible_truncation, reason = "a radius in metres, no larger than it was")]
-        let most = most as f32;
+        let most = to_f32(most);
         most.min(radius)
     }
 }
@@ -179,8 +179,7 @@ pub fn cap(
         let radius = regions.radius_of(point, center, whole);
         let inward = unit(sub(center.map(f64::from), point.map(f64::from)))?;
         let by = f64::from(whole - radius);
-        #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
-        let moved = std::array::from_fn(|i| (f64::from(center[i]) - by * inward[i]) as f32);
+        let moved = std::array::from_fn(|i| to_f32(f64::from(center[i]) - by * inward[i]));
         (radius < whole).then_some((row, moved, radius))
     };
     let capped: Vec<_> = (0..balls.len()).into_par_iter().with_min_len(CHUNK).filter_map(capped).collect();
@@ -198,8 +197,7 @@ impl BlockRegions {
     /// The regions of a point, local metres, before surfaces that count.
     fn regions(&self, p: [f64; 3], params: &RegionParams, counts: impl Fn(&Surface, [f64; 3]) -> bool) -> Vec<Region> {
         let p = sub(p, self.corner);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturating, within the block")]
-        let [column, row] = [0, 1].map(|axis| ((p[axis] / CELL) as usize).min(CELLS - 1));
+        let [column, row] = [0, 1].map(|axis| to_index(p[axis] / CELL).min(CELLS - 1));
         let near = self.cells.get(row * CELLS + column).into_iter().flatten();
         let surfaces = near.filter_map(|&number| self.surfaces.get(number as usize));
         let mut found: Vec<Region> = surfaces
@@ -330,8 +328,7 @@ pub(super) fn of_block(
     let mut cells = vec![Vec::new(); CELLS * CELLS];
     for (number, surface) in surfaces.iter().enumerate() {
         let [low, high] = surface.bounds(params);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the block")]
-        let cell = |v: f64| (v / CELL).clamp(0.0, CELLS as f64) as usize;
+        let cell = |v: f64| to_index((v / CELL).clamp(0.0, CELLS as f64));
         for row in cell(low[1])..(cell(high[1]) + 1).min(CELLS) {
             for column in cell(low[0])..(cell(high[0]) + 1).min(CELLS) {
                 cells[row * CELLS + column].extend(u32::try_from(number));

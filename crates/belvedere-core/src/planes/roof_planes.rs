@@ -4,6 +4,7 @@ use super::block::{Block, Building};
 use super::fit::{Plane, Sums};
 use crate::neighbors::NeighborIndex;
 use belvedere_data::Result;
+use belvedere_data::cast::to_index;
 use belvedere_data::control::Control;
 use belvedere_data::vector::{sub, to_f32};
 use std::collections::BTreeMap;
@@ -269,8 +270,7 @@ impl<'a> Patchwork<'a> {
         }
         let mut roughness: Vec<f64> = local.iter().map(|plane| plane.noise).filter(|v| v.is_finite()).collect();
         roughness.sort_unstable_by(f64::total_cmp);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a length")]
-        let quartile = roughness.get((roughness.len() as f64 * SMOOTH[0]) as usize).copied();
+        let quartile = roughness.get(to_index(roughness.len() as f64 * SMOOTH[0])).copied();
         let noise = quartile.map_or(max_noise, |v| (v / SMOOTH[1]).clamp(params.noise[0], max_noise));
         Ok(Self { params, points, neighbors, local, noise })
     }

@@ -3,6 +3,7 @@
 use super::block::Block;
 use super::ridges::{RidgeLine, convex};
 use super::roof_planes::Roofs;
+use belvedere_data::cast::to_index;
 
 /// Parameters of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,10 +82,10 @@ impl Near {
             }
         }
         let cell = reach / 2.0;
-        let size = [0, 1].map(|axis| index(high[axis] - low[axis], cell) + 1);
+        let size = [0, 1].map(|axis| to_index((high[axis] - low[axis]) / cell) + 1);
         let mut near = Self { low, cell, size, holds: vec![false; size[0] * size[1]] };
         for p in points {
-            let [column, row] = [0, 1].map(|axis| index(p[axis] - low[axis], cell));
+            let [column, row] = [0, 1].map(|axis| to_index((p[axis] - low[axis]) / cell));
             for row in row.saturating_sub(2)..=(row + 2).min(size[1] - 1) {
                 for column in column.saturating_sub(2)..=(column + 2).min(size[0] - 1) {
                     near.holds[row * size[0] + column] = true;
@@ -102,15 +103,9 @@ impl Near {
         if (0..2).any(|axis| p[axis] < self.low[axis]) {
             return false;
         }
-        let [column, row] = [0, 1].map(|axis| index(p[axis] - self.low[axis], self.cell));
+        let [column, row] = [0, 1].map(|axis| to_index((p[axis] - self.low[axis]) / self.cell));
         column < self.size[0] && row < self.size[1] && self.holds[row * self.size[0] + column]
     }
-}
-
-fn index(length: f64, cell: f64) -> usize {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cells of a block, and saturating")]
-    let index = (length / cell).max(0.0) as usize;
-    index
 }
 
 impl Samples {

@@ -8,6 +8,7 @@ use super::fit::Plane;
 use super::leaves::Leaf;
 use super::patches::{Patch, fan};
 use super::roof_planes::Roofs;
+use belvedere_data::cast::{to_i64, to_u32};
 use belvedere_data::patches::PatchKind;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
@@ -108,9 +109,7 @@ impl PlanIndex {
 }
 
 fn cell(p: [f64; 2], side: f64) -> [i64; 2] {
-    #[expect(clippy::cast_possible_truncation, reason = "cells of a block")]
-    let cell = p.map(|v| (v / side).floor() as i64);
-    cell
+    p.map(|v| to_i64((v / side).floor()))
 }
 
 /// Returns true if a plane is a slab: level, flat, and with pulses passing below, or of the class of bridge decks.
@@ -174,8 +173,7 @@ fn each_below(plane: &Plane, pulse: &Return, params: &SlabParams, mut visit: imp
     }
     let [from, to] = [((depth - depths[1]) / nearer).max(0.0), (depth - depths[0]) / nearer];
     let length = (to - from) * x.hypot(y);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some metres, and saturating")]
-    let steps = (length / params.step).ceil().clamp(1.0, 1000.0) as u32;
+    let steps = to_u32((length / params.step).ceil().clamp(1.0, 1000.0));
     for step in 0..=steps {
         let up = from + (to - from) * f64::from(step) / f64::from(steps);
         visit([pulse.p[0] + up * x, pulse.p[1] + up * y, pulse.p[2] + up]);

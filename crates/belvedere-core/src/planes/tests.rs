@@ -1,9 +1,8 @@
 //! Houses whose surfaces are known in closed form, scanned by pulses that meet flat polygons.
 
-#![expect(clippy::cast_possible_truncation, reason = "positions of small scenes")]
-
 use super::*;
 use belvedere_data::Attributes;
+use belvedere_data::cast::{to_f32, to_index};
 use belvedere_data::control::Control;
 use belvedere_data::patches::PatchKind;
 use belvedere_data::random::uniform;
@@ -19,7 +18,7 @@ const NOISE: f64 = 0.02;
 /// A scan of faces over level ground, with ten pulses per square metre from two lines.
 fn scan(faces: &[Face], low: [f64; 2], high: [f64; 2]) -> Scene {
     let mut scene = Scene::default();
-    let count = (10.0 * (high[0] - low[0]) * (high[1] - low[1])) as u64;
+    let count = to_index(10.0 * (high[0] - low[0]) * (high[1] - low[1])) as u64;
     let mut number = 0;
     let mut draw = || {
         number += 1;
@@ -37,8 +36,8 @@ fn scan(faces: &[Face], low: [f64; 2], high: [f64; 2]) -> Scene {
         let error = NOISE * ((0..12).map(|_| draw()).sum::<f64>() - 6.0);
         let range = share + error / length(way);
         let p: [f64; 3] = std::array::from_fn(|i| scanner[i] + range * way[i]);
-        scene.positions.push(p.map(|v| v as f32));
-        scene.scanner.push(scanner.map(|v| v as f32));
+        scene.positions.push(p.map(to_f32));
+        scene.scanner.push(scanner.map(to_f32));
         scene.classes.push(class);
     }
     scene
@@ -342,7 +341,7 @@ fn below_eaves_the_wall_is_a_plane_of_its_own() {
         assert!((middle.abs() - 4.0).abs() < 3.0 * wall.sd + 0.01, "{wall:?}");
         let south = wall.ends[0][1].signum();
         // the ball of a point of this wall may not bulge out of it below the eaves, and nothing hinders it within
-        let y = (4.0 * south) as f32;
+        let y = to_f32(4.0 * south);
         let regions = surfaces.regions.of_point([0.0, y, 3.0]);
         let holds = |y: f64| regions.iter().any(|region| region.distance([0.0, y * south, 3.0]) < 0.0);
         assert!(holds(4.1) && holds(4.4) && !holds(3.9) && !holds(3.95), "{regions:?}");
@@ -437,9 +436,9 @@ fn a_part_finds_what_the_whole_finds_in_any_order() {
     }
     let scene = scan(&faces, [-10.0, -50.0], [60.0, 20.0]);
     let whole = scene.surfaces();
-    let margin = PlaneParams::default().margin as f32;
+    let margin = to_f32(PlaneParams::default().margin);
     let is_of = |p: [f64; 3]| p[0] < corner[0] && p[1] < corner[1];
-    let mut part = scene.select(|p| p[0] < corner[0] as f32 + margin + 0.1 && p[1] < corner[1] as f32 + margin + 0.1);
+    let mut part = scene.select(|p| p[0] < to_f32(corner[0]) + margin + 0.1 && p[1] < to_f32(corner[1]) + margin + 0.1);
     part.positions.reverse();
     part.scanner.reverse();
     part.classes.reverse();

@@ -6,6 +6,7 @@ use super::edges::{EdgeLine, Outline};
 use super::line::PlanLine;
 use super::patches::{Patch, Sheet};
 use super::roof_planes::Roofs;
+use belvedere_data::cast::to_index;
 use belvedere_data::patches::PatchKind;
 
 /// Parameters of walls below edges.
@@ -79,9 +80,7 @@ impl WallParams {
     /// Number of points that a wall needs where pulses are `spacing` metres apart, of one that needs `full` at most.
     fn points_at(&self, full: f64, spacing: f64) -> usize {
         let wanted = (full * self.spacing / spacing).clamp(self.fewest_points.min(full), full).round();
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a small number")]
-        let wanted = wanted as usize;
-        wanted
+        to_index(wanted)
     }
 }
 
@@ -267,11 +266,7 @@ fn patches_of(block: &Block, roofs: &Roofs, wall: &WallLine, params: &WallParams
     let top = &roofs.planes[wall.plane].plane;
     let heights = wall.line.end_points().map(|p| top.height(p));
     let [low, high] = [wall.bottom - reach, heights[0].max(heights[1])];
-    let count = |length: f64| {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cells of a wall, and saturating")]
-        let count = (length / cell).ceil().max(0.0) as usize;
-        count
-    };
+    let count = |length: f64| to_index((length / cell).ceil());
     let size = [count(to - from), count(high - low)];
     let mut counts = vec![false; size[0] * size[1]];
     for &[t, z] in &wall.points {

@@ -1,5 +1,6 @@
 //! Returns that share a laser pulse.
 
+use belvedere_data::cast::to_row;
 use std::cmp::Ordering;
 
 use rayon::prelude::*;
@@ -172,8 +173,7 @@ impl Pulses {
         self.source_ids.push(first.shot.0);
         self.first_present.push(first.number <= 1);
         self.last_present.push(last.number >= last.count);
-        #[expect(clippy::cast_possible_truncation, reason = "rows of a cloud are numbered with 32 bits everywhere")]
-        self.offsets.push(self.returns.len() as u32);
+        self.offsets.push(to_row(self.returns.len()));
         report.pulse_count += 1;
         report.multi_return_count += usize::from(returns.len() > 1);
         report.incomplete_count += usize::from(returns.len() < usize::from(last.count));

@@ -3,6 +3,7 @@
 
 use super::Pulses;
 use belvedere_data::PointCloud;
+use belvedere_data::cast::to_i32;
 use belvedere_data::contradiction::{FoundContradiction, TRAJECTORY_TIME};
 use belvedere_data::report::rounded;
 use belvedere_data::trajectory::{ClockOffset, Trajectory};
@@ -120,8 +121,7 @@ pub(super) fn time_offset(
     let (mut best, mut least) = (0.0, before);
     let mut width = params.max_offset;
     for step in params.steps {
-        #[expect(clippy::cast_possible_truncation, reason = "some tens of steps")]
-        let count = (width / step).round() as i32;
+        let count = to_i32((width / step).round());
         let around = best;
         // from the middle outwards, so that the nearest of equal ones is taken
         let near = (0..=count).flat_map(|i| [f64::from(i), -f64::from(i)]);

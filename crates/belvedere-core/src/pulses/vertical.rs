@@ -1,5 +1,6 @@
 //! Pulses that are assumed to fall straight down, where the position of the scanner is unknown.
 
+use belvedere_data::cast::to_cell;
 use belvedere_data::control::{Control, Stop};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
@@ -50,7 +51,7 @@ pub fn vertical_pulses(
     };
     check("search radius of points above", params.reach, 0.05..=10.0, "0.05 to 10 m")?;
     check("minimum height of points above", params.rise, 0.0..=100.0, "0 to 100 m")?;
-    let cell = |p: &[f32; 3]| [p[0], p[1]].map(|v| cell_of(v, params.reach));
+    let cell = |p: &[f32; 3]| [p[0], p[1]].map(|v| to_cell(f64::from(v / params.reach)));
     // by cell, the highest of each first
     let mut cells: Vec<([i32; 2], [f32; 3])> = positions.par_iter().map(|p| (cell(p), *p)).collect();
     cells.par_sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1[2].total_cmp(&a.1[2])));
@@ -82,12 +83,6 @@ pub fn vertical_pulses(
     let scanner = positions.par_iter().map(above).collect();
     stop.check()?;
     Ok(scanner)
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "a float to integer cast saturates, which is what far points need")]
-fn cell_of(coordinate: f32, size: f32) -> i32 {
-    // clear of the ends of i32, so that neighbouring cells never overflow
-    ((coordinate / size).floor() as i32).clamp(i32::MIN / 4, i32::MAX / 4)
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use crate::blocking::{Ball, BlockRule};
 use crate::ray_index::{Ray, RayIndex};
 use belvedere_data::balls::{MedialBalls, NO_TOUCH};
+use belvedere_data::cast::to_row;
 use belvedere_data::model::TreeParts;
 use belvedere_data::vector::{length, to_f32};
 use belvedere_data::{Error, Parameter, Result};
@@ -41,8 +42,7 @@ fn usable(balls: &MedialBalls, rule: &BlockRule) -> Result<(Vec<Ball>, Vec<u32>)
     balls.validate()?;
     let ball_of = |row: usize| Ball { center: balls.centers[row], radius: balls.radii[row] };
     let rows = (0..balls.len()).filter(|&row| balls.touch[row] != NO_TOUCH && ball_of(row).is_usable());
-    #[expect(clippy::cast_possible_truncation, reason = "balls are numbered with 32 bits")]
-    Ok(rows.map(|row| (ball_of(row), row as u32)).unzip())
+    Ok(rows.map(|row| (ball_of(row), to_row(row))).unzip())
 }
 
 impl std::fmt::Debug for BallTree {

@@ -215,11 +215,11 @@ mod tests {
     use crate::blocking::BlockRule;
     use crate::medial::MedialBalls;
     use crate::query::Visibility;
+    use belvedere_data::cast::to_f32;
     use belvedere_data::random::uniform;
 
-    #[expect(clippy::cast_possible_truncation, reason = "positions are f32")]
     fn random(seed: u64, i: usize, k: u64) -> f32 {
-        uniform(seed, 8 * i as u64 + k) as f32
+        to_f32(uniform(seed, 8 * i as u64 + k))
     }
 
     /// Ground of large balls, with tiny ones over it and a few that are larger than all the rest.

@@ -1,5 +1,6 @@
 //! The curved earth below long lines of sight.
 
+use belvedere_data::cast::to_u32;
 use belvedere_data::vector::{length, sub};
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
@@ -137,8 +138,7 @@ impl EarthParams {
             return vec![from, to];
         }
         let count = (span / CHORD).ceil().clamp(1.0, MAX_CHORDS);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number up to 10 000")]
-        let last = count as u32;
+        let last = to_u32(count);
         let corner = |i: u32| -> [f64; 3] {
             match i {
                 0 => from,

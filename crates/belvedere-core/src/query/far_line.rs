@@ -1,6 +1,7 @@
 //! A line of sight over the curved earth, from its observer on.
 
 use super::EarthParams;
+use belvedere_data::vector::piece_in_box;
 
 /// A line of sight over far terrain, local metres.
 pub(super) struct FarLine<'a> {
@@ -40,4 +41,12 @@ impl<'a> FarLine<'a> {
     pub(super) fn span_to(&self, place: [f64; 3]) -> f64 {
         (place[0] - self.observer[0]).hypot(place[1] - self.observer[1])
     }
+}
+
+/// Returns the piece of a line over a box in plan, from and to, metres from the start of the line. The box is given by
+/// its low and high corner; the line is `span` metres long along the unit vector `along`. `None` if the line passes
+/// beside it.
+pub(super) fn piece_over([low, high]: [[f64; 2]; 2], start: [f64; 3], along: [f64; 2], span: f64) -> Option<[f64; 2]> {
+    let sides = std::array::from_fn(|axis| [low[axis] - start[axis], high[axis] - start[axis]]);
+    piece_in_box(sides, along, [0.0, span]).filter(|[from, to]| from < to)
 }

@@ -1,7 +1,7 @@
 //! Lines of sight that leave the cloud: to the terrain around it, and from there.
 
 use super::far_line::FarLine;
-use super::far_terrain::piece_over;
+use super::far_line::piece_over;
 use super::{Answer, Blocker, EarthParams, LineOfSight, MedialScene, Obstruction};
 use crate::ray_index::in_order;
 use belvedere_data::vector::{length, sub};

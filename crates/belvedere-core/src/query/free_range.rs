@@ -1,6 +1,6 @@
 //! Range of free sight from an eye along a direction.
 
-use super::medial_scene::nearest_blocker;
+use super::blocker::nearest_blocker;
 use super::triangles::LineEnds;
 use super::{Blocker, MedialScene};
 use crate::ray_index::Ray;

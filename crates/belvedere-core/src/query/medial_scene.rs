@@ -2,12 +2,13 @@
 
 use super::backend::{Backend, PreparedBackend};
 use super::ball_tree::BallTree;
-use super::certified::{LineEnd, LineInView, line_in_view, viewer_of};
+use super::blocker::nearest_blocker;
 use super::cpu::Cpu;
 use super::far_terrain::FarTerrain;
 use super::freed_space::{FreedSpace, pieces_outside};
 use super::lazy::Lazy;
 use super::triangles::{BlockingTriangles, LineEnds};
+use super::view_line::{LineEnd, LineInView, line_in_view, viewer_of};
 use super::{Answer, Blocker, Coverage, Proof, Sight, Viewer, Visibility};
 use crate::blocking::{Ball, BlockRule};
 use crate::medial::MedialBalls;
@@ -422,18 +423,6 @@ impl MedialScene {
     #[inline]
     pub(super) fn front(&self, number: usize, ray: &Ray) -> Option<f64> {
         self.tree.front(number, ray)
-    }
-}
-
-/// The nearer of a ball and a triangle, each with its range; the ball where both are equally near.
-pub(super) fn nearest_blocker(
-    ball: Option<(Blocker, f64)>,
-    triangle: Option<(Blocker, f64)>,
-) -> Option<(Blocker, f64)> {
-    match (ball, triangle) {
-        (Some(ball), Some(triangle)) if triangle.1 < ball.1 => Some(triangle),
-        (None, triangle) => triangle,
-        (ball, _) => ball,
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::blocking::Profile;
 use crate::depth::DepthMap;
+use belvedere_data::cast::to_index;
 use belvedere_data::random;
 use belvedere_data::vector::to_f32;
 use rayon::prelude::*;
@@ -114,12 +115,7 @@ pub fn query_points(map: &DepthMap, targets: &[[f32; 3]], depth_bias: f32) -> Ve
             if !(x >= 0.0 && y >= 0.0 && z + depth_bias >= min_depth && z <= far) {
                 return Answer::OutsideView;
             }
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "not negative: rounds down, saturates"
-            )]
-            match map.depth.get(x as usize, y as usize) {
+            match map.depth.get(to_index(x), to_index(y)) {
                 None => Answer::OutsideView,
                 Some(depth) if z < depth + depth_bias => Answer::Visible,
                 Some(_) => Answer::Blocked,

@@ -3,6 +3,7 @@
 use super::lazy::Lazy;
 use super::seen_space::SeenSpace;
 use crate::pulses::{FreeSegmentColumns, FreeSegments, lower_ends};
+use belvedere_data::cast::to_cell;
 use belvedere_data::control::Control;
 use belvedere_data::model::ProofParts;
 use belvedere_data::{Error, Parameter, Result};
@@ -98,8 +99,7 @@ pub fn nearness(free_segments: &FreeSegments) -> f64 {
 /// [`nearness`] of pulses with these lower ends, local metres.
 #[must_use]
 pub fn nearness_of(lower_ends: impl Iterator<Item = [f32; 3]>) -> f64 {
-    #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
-    let cell = |start: [f32; 3]| [0, 1].map(|i| (start[i] / COUNTING_CELL).floor() as i32);
+    let cell = |start: [f32; 3]| [0, 1].map(|i| to_cell(f64::from(start[i] / COUNTING_CELL)));
     let mut cells: Vec<[i32; 2]> = lower_ends.map(cell).collect();
     cells.par_sort_unstable();
     let mut counts: Vec<usize> = cells.chunk_by(|a, b| a == b).map(<[_]>::len).collect();

@@ -2,6 +2,7 @@
 
 use crate::pulses::FreeSegments;
 use belvedere_data::Result;
+use belvedere_data::cast::to_index;
 use belvedere_data::control::Control;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -140,14 +141,14 @@ impl SeenSpace {
         let layers = (rise / (per_nearness * nearness)).ceil().clamp(1.0, MAX_LAYERS);
         let counts = extent.map(|extent| (extent / side).floor() + 1.0);
         let usable = reach > 0.0 && rise > 0.0 && rise.is_finite() && counts[0] * counts[1] < 2.0 * MAX_COLUMNS;
-        let size = if usable { counts.map(whole) } else { [0; 2] };
+        let size = if usable { counts.map(to_index) } else { [0; 2] };
         let [width, rows] = size.map(|count| count.div_ceil(TILE));
         Self {
             low: [low[0], low[1], floor],
             side,
             height: rise / layers,
             per_side: 1.0 / side,
-            layers: whole(layers),
+            layers: to_index(layers),
             nearness,
             reach,
             size,
@@ -273,8 +274,7 @@ impl SeenSpace {
     /// Marks boxes of the layer in which a pulse begins, if it ends above that. Its ends are in layers, and its lower
     /// end is at `place`, metres from the middle of the tile's first box.
     fn mark_lowest(&self, [bottom, top]: [f64; 2], place: [f64; 2], lean: [f64; 2], boxes: &mut [u64; TILE * TILE]) {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
-        let layer = bottom as usize;
+        let layer = to_index(bottom);
         let above = (layer + 1) as f64;
         let below = (bottom - layer as f64) * self.height;
         let reach = (self.nearness.powi(2) - below.powi(2)).max(0.0).sqrt() - half_diagonal(self.side);
@@ -327,7 +327,7 @@ impl SeenSpace {
         if !(column >= 0.0 && row >= 0.0 && layer >= 0.0) {
             return None;
         }
-        let [column, row, layer] = [column, row, layer].map(whole);
+        let [column, row, layer] = [column, row, layer].map(to_index);
         if column >= self.size[0] || row >= self.size[1] || layer >= 64 {
             return None;
         }
@@ -354,7 +354,7 @@ impl SeenSpace {
         let mut at = from;
         while at < to && unseen < enough {
             let places = self.places(line, at);
-            let [column, row, layer] = std::array::from_fn(|axis| whole(places[axis]).min(last[axis]));
+            let [column, row, layer] = std::array::from_fn(|axis| to_index(places[axis]).min(last[axis]));
             let (tile, within) = self.tile_around(free_segments, [column, row])?;
             let (boxes, is_near) = match tile.widest(within, layer) {
                 Some((width, word)) => (boxes_around([column, row, layer], width, word), true),
@@ -426,12 +426,6 @@ fn boxes_around([column, row, layer]: [usize; 3], width: usize, word: u64) -> [[
     let down = (word << (63 - layer)).leading_ones() as usize;
     let [column, row] = [column, row].map(|index| index / width * width);
     [[column, column + width], [row, row + width], [layer + 1 - down, layer + up]]
-}
-
-/// The number below; 0 for one below zero and for NaN.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
-fn whole(number: f64) -> usize {
-    number as usize
 }
 
 /// Returns the distance from the middle of a square to its corners.
@@ -558,7 +552,7 @@ mod tests {
             let mut at = STEP / 2.0;
             while at < range {
                 let places = space.places((from, direction), at);
-                let cell: [usize; 3] = std::array::from_fn(|axis| whole(places[axis]));
+                let cell: [usize; 3] = std::array::from_fn(|axis| to_index(places[axis]));
                 expected += if segments.passes_within(space.middle(cell), space.nearness) { 0.0 } else { STEP };
                 at += STEP;
             }

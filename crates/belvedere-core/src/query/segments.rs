@@ -1,16 +1,16 @@
 //! Lines of sight between pairs of points: the first obstacle, and all obstacles along them.
 
 use super::ball_tree::PROBE;
+use super::blocker::{Blocker, nearest_blocker};
 use super::freed_space::pieces_outside;
-use super::medial_scene::nearest_blocker;
 use super::triangles::LineEnds;
 use super::{Answer, EarthParams, MedialScene};
 use crate::blocking::{Chord, Sheet};
 use crate::ray_index::{Ray, in_order};
 use crate::triangle_tree::Corners;
+use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::vector::{length, sub};
-use belvedere_data::{PatchKind, Result};
 use rayon::prelude::*;
 
 /// Pairs handed to a thread at once.
@@ -26,39 +26,6 @@ pub struct LineOfSight {
     /// Length that no pulse came near to, metres; 0 if pulses are not known or the line is blocked; NaN outside the
     /// cloud. On a line that leaves the cloud, only the part over the cloud counts.
     pub unproven_length: f64,
-}
-
-/// Kind of an obstacle on a line of sight.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Blocker {
-    /// A ball, by its row among those that the scene was made of.
-    Ball(usize),
-    /// A mesh that was added, by its number ([`super::BlockingTriangles::names`]).
-    Mesh(usize),
-    /// A patch of a surface of the survey, by the kind of its surface.
-    Patch(PatchKind),
-    /// The raster of far terrain, on lines of sight that leave the cloud.
-    Terrain,
-}
-
-impl Blocker {
-    /// The row of a ball.
-    #[must_use]
-    pub fn ball(self) -> Option<usize> {
-        if let Self::Ball(row) = self { Some(row) } else { None }
-    }
-
-    /// The number of a mesh.
-    #[must_use]
-    pub fn mesh(self) -> Option<usize> {
-        if let Self::Mesh(number) = self { Some(number) } else { None }
-    }
-
-    /// Returns the kind of the patch, if it is one.
-    #[must_use]
-    pub fn patch(self) -> Option<PatchKind> {
-        if let Self::Patch(kind) = self { Some(kind) } else { None }
-    }
 }
 
 /// Obstacle before a target.

@@ -4,6 +4,7 @@ use super::{Blocker, EarthParams, MedialScene};
 use crate::blocking::Ball;
 use crate::triangle_tree::Corners;
 use belvedere_data::Result;
+use belvedere_data::cast::to_i64;
 use belvedere_data::control::Control;
 use belvedere_data::vector::{length, sub};
 use rayon::prelude::*;
@@ -171,8 +172,7 @@ fn each_azimuth([x, y, _]: [f64; 3], radius: f64, [first, step]: [f64; 2], count
     let (middle, half) = ((x.atan2(y) - first).rem_euclid(TAU), (radius / across).asin());
     // a step of rounding outward costs nothing: the exact test follows
     let (from, to) = (((middle - half) / step - 1e-9).ceil(), ((middle + half) / step + 1e-9).floor());
-    #[expect(clippy::cast_possible_truncation, reason = "at most a turn and a quarter in steps")]
-    let (from, to) = (from as i64, to as i64);
+    let (from, to) = (to_i64(from), to_i64(to));
     #[expect(clippy::cast_possible_wrap, clippy::cast_possible_truncation, reason = "below count")]
     (from..=to).for_each(|i| visit(i.rem_euclid(count as i64) as usize));
 }

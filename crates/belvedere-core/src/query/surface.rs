@@ -1,6 +1,7 @@
 //! Surfaces as small pieces that represent their visible parts: strata with a random place in each.
 
 use crate::neighbors::NeighborIndex;
+use belvedere_data::cast::{to_index, to_row};
 use belvedere_data::control::Control;
 use belvedere_data::random::uniform;
 use belvedere_data::vector::{cross, dot, length, sub, to_f32, unit};
@@ -236,12 +237,7 @@ fn slices(outline: &[[f64; 2]], axis: usize, step: f64) -> Vec<Vec<[f64; 2]>> {
         .iter()
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [f64::min(low, p[axis]), f64::max(high, p[axis])]);
     let width = ends[1] - ends[0];
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the number of pieces is bounded before"
-    )]
-    let count = (width / step).ceil().max(1.0) as usize;
+    let count = to_index((width / step).ceil().max(1.0));
     let edge = |i: usize| ends[0] + width * i as f64 / count as f64;
     (0..count)
         .map(|i| {
@@ -283,9 +279,8 @@ fn place_on([a, b, c]: [[f64; 3]; 3], [u, v]: [f64; 2]) -> [f64; 3] {
     std::array::from_fn(|i| a[i] + u * (b[i] - a[i]) + v * (c[i] - a[i]))
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "faces are numbered with 32 bits")]
 fn index_u32(index: usize) -> u32 {
-    index as u32
+    to_row(index)
 }
 
 #[cfg(test)]

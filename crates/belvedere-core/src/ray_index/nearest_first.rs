@@ -1,6 +1,7 @@
 //! Walk through the tree of boxes that opens the nearest first, and only those that are still wanted.
 
-use super::{NodePart, NodeParts, PARTS, RayIndex, TREE_SLACK};
+use super::node_parts::{NodePart, NodeParts, PARTS};
+use super::{RayIndex, TREE_SLACK};
 use belvedere_data::vector::to_f32;
 use smallvec::SmallVec;
 

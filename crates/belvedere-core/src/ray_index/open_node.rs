@@ -1,6 +1,7 @@
 //! Nodes whose parts are tested side by side, for searches that follow more than one ray at once.
 
-use super::{NodePart, PARTS, RayIndex};
+use super::RayIndex;
+use super::node_parts::PARTS;
 use belvedere_data::vector::to_f32;
 use obvhs::cwbvh::node::CwBvhNode;
 use std::ops::Range;
@@ -77,22 +78,10 @@ impl OpenNode<'_> {
     }
 }
 
-/// Returns the kind of a part of a node.
-#[inline(always)]
-pub(super) fn part_of(node: &CwBvhNode, part: usize) -> NodePart {
-    if node.is_child_empty(part) {
-        NodePart::Nothing
-    } else if node.is_leaf(part) {
-        let (first, count) = node.child_primitives(part);
-        NodePart::Rows { first, count }
-    } else {
-        NodePart::Node(node.child_node_index(part))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ray_index::NodePart;
     use belvedere_data::random::uniform;
 
     #[test]

@@ -1,5 +1,6 @@
 //! Density of points on the walls of buildings, which airborne scans cover worst.
 
+use belvedere_data::cast::to_i64;
 use std::f64::consts::PI;
 
 use rayon::prelude::*;
@@ -62,8 +63,7 @@ impl FacadeSummary {
         let Some(classes) = cloud.attributes.classification.as_ref() else { return Ok(None) };
         let building_count = classes.iter().filter(|&&class| class == BUILDING).count();
         let stride = i64::try_from(building_count.div_ceil(MAX_POINTS)).unwrap_or(i64::MAX).max(1);
-        #[expect(clippy::cast_possible_truncation, reason = "saturates; clouds are not 2^63 squares wide")]
-        let square = |v: f32| (v / SQUARE).floor() as i64;
+        let square = |v: f32| to_i64(f64::from((v / SQUARE).floor()));
         // Neighbouring squares of a row and of a column fall into different parts.
         let is_chosen = |p: &[f32; 3]| (square(p[0]) + 7 * square(p[1])).rem_euclid(stride) == 0;
         let buildings: Vec<[f32; 3]> = cloud

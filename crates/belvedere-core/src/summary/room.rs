@@ -1,6 +1,7 @@
 //! Rooms: floor and ceiling tell which axis is up, and their distance the unit of a cloud without a reference system.
 
 use belvedere_data::Bounds;
+use belvedere_data::cast::to_index;
 use belvedere_data::contradiction::{FoundContradiction, UNIT_OF_ROOM};
 
 /// A normal is along an axis where its component is more than this: within 14°.
@@ -124,8 +125,7 @@ fn room_along(axis: usize, positions: &[[f32; 3]], normals: &[[f32; 3]]) -> Opti
     let others = [(axis + 1) % 3, (axis + 2) % 3];
     let sides = others.map(|other| high[other] - low[other]);
     let mut heights: Vec<f32> = positions.iter().map(|p| p[axis]).collect();
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a count")]
-    let at = |share: f64| ((heights.len() - 1) as f64 * share) as usize;
+    let at = |share: f64| to_index((heights.len() - 1) as f64 * share);
     let [first, last] = [at(ROOM.trimmed), at(1.0 - ROOM.trimmed)];
     let floor = *heights.select_nth_unstable_by(first, f32::total_cmp).1;
     let ceiling = *heights.select_nth_unstable_by(last, f32::total_cmp).1;
@@ -175,9 +175,8 @@ mod tests {
         let areas = [width * depth, width * depth, width * height, width * height, depth * height, depth * height];
         let mut points = (Vec::new(), Vec::new());
         for (face, area) in (0_u64..).zip(areas) {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "test places")]
-            for i in 0..(100.0 * area) as u64 {
-                let [a, b] = [2 * face, 2 * face + 1].map(|seed| uniform(seed, i) as f32);
+            for i in 0..to_index(f64::from(100.0 * area)) as u64 {
+                let [a, b] = [2 * face, 2 * face + 1].map(|seed| to_f32(uniform(seed, i)));
                 let (p, n) = match face {
                     0 => ([width * a, depth * b, 0.0], [0.0, 0.0, 1.0]),
                     1 => ([width * a, depth * b, height], [0.0, 0.0, -1.0]),

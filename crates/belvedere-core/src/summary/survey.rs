@@ -3,6 +3,7 @@
 use crate::pulses::{MIN_ASSUMED_SHARE, ScannerReport, come_from_the_ground};
 use crate::summary::CloudSummary;
 use belvedere_data::PointCloud;
+use belvedere_data::cast::to_cell;
 use std::fmt;
 
 /// Minimum share of the points whose scanner must be known for nothing to be missing, percent: points beside the first
@@ -119,8 +120,7 @@ impl SurveyKind {
 /// Returns true if the densest twentieth of the cells, in plan, holds [`UNEVEN_SHARE`] of the points, as near a scanner
 /// on the ground.
 fn is_uneven(positions: &[[f32; 3]], side: f64) -> bool {
-    #[expect(clippy::cast_possible_truncation, reason = "saturates; clouds are not 2^31 cells wide")]
-    let cell = |v: f32| (f64::from(v) / side).floor() as i32;
+    let cell = |v: f32| to_cell(f64::from(v) / side);
     let mut cells: Vec<[i32; 2]> = positions.iter().map(|p| [cell(p[0]), cell(p[1])]).collect();
     cells.sort_unstable();
     let mut counts: Vec<usize> = cells.chunk_by(|a, b| a == b).map(<[_]>::len).collect();

@@ -109,15 +109,15 @@ fn median_spacing(positions: &[[f32; 3]], index: &NeighborIndex) -> Option<f64> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use belvedere_data::cast::to_f32;
     use belvedere_data::random::uniform;
 
     fn unit_says(positions: &[[f32; 3]]) -> Option<&'static str> {
         unit_contradiction_of(positions, &Control::none()).unwrap().map(|found| found.row.key)
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "test places")]
     fn random(seed: u64, i: u64) -> f32 {
-        uniform(seed, i) as f32
+        to_f32(uniform(seed, i))
     }
 
     /// Level ground of 60 by 50 m with a house of 12 by 10 m and 8 m, two points for each square metre.

@@ -1,6 +1,7 @@
 //! Parallel views: the paper's viewport, and views that fit a scene.
 
 use super::{MAX_PIXEL_COUNT, MAX_SIDE, Projection, View, ViewFrame};
+use crate::cast::to_index;
 use crate::vector::{cross, dot, unit};
 use crate::{Error, Parameter, Result};
 
@@ -43,8 +44,7 @@ impl View {
                 "at most 65536 on a side and 268435456 pixels in all",
             );
         }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked against MAX_PIXEL_COUNT")]
-        let size_px = [width as usize, height as usize];
+        let size_px = [to_index(width), to_index(height)];
         Ok(Self {
             frame: ViewFrame { eye: p0, right, down, forward },
             projection: Projection::Orthographic { pixels_per_metre },

@@ -2,6 +2,7 @@
 
 use super::{View, ViewFrame};
 use crate::Parameter;
+use crate::cast::to_index;
 use crate::vector::dot;
 
 /// Projection of space onto the picture.
@@ -82,12 +83,7 @@ impl View {
         if !(x >= 0.0 && y >= 0.0 && depth >= near && depth <= far) {
             return None;
         }
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "not negative: rounds down, saturates"
-        )]
-        let pixel = [x as usize, y as usize];
+        let pixel = [to_index(x), to_index(y)];
         (pixel[0] < self.size_px[0] && pixel[1] < self.size_px[1]).then_some(pixel)
     }
 

@@ -1,5 +1,7 @@
 //! Days of the proleptic Gregorian calendar, as weather files and formulas of the sun's distance count them.
 
+use crate::cast::{to_i32, to_i64};
+
 /// Seconds of a day.
 pub(super) const DAY: f64 = 86_400.0;
 
@@ -91,8 +93,7 @@ pub fn day_of_year(unix_s: f64) -> Option<u16> {
     if !(-719_162.0..=2_932_896.0).contains(&day) {
         return None;
     }
-    #[expect(clippy::cast_possible_truncation, reason = "days of ten thousand years")]
-    let (day, guess) = (day as i64, (1970.0 + day / 365.2425).floor() as i32);
+    let (day, guess) = (to_i64(day), to_i32((1970.0 + day / 365.2425).floor()));
     let first = |year: i32| CalendarDay::new(year, 1, 1).map(unix_day);
     // the guess is off by one at most, since leap days are at most two days off their mean
     let start = [guess + 1, guess, guess - 1].into_iter().filter_map(first).find(|&start| start <= day)?;

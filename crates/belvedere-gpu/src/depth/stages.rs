@@ -1,6 +1,7 @@
 //! The stages of a depth map as pipelines, the buffers between them, and which stage uses which buffer.
 
-use super::{BLOCK, LEVELS, MAX_TILES, RANGES, STEPS, Shows, tiles_before, whole};
+use super::{BLOCK, LEVELS, MAX_TILES, RANGES, STEPS, Shows, tiles_before};
+use belvedere_data::cast::to_row;
 use belvedere_data::view::{Projection, View};
 
 /// All shaders together: each uses those before it.
@@ -181,7 +182,7 @@ impl BoundStages<'_> {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             pass.set_pipeline(pipeline);
             pass.set_bind_group(0, bindings, &[]);
-            pass.dispatch_workgroups(whole(groups), 1, 1);
+            pass.dispatch_workgroups(to_row(groups), 1, 1);
         }
     }
 
@@ -190,6 +191,6 @@ impl BoundStages<'_> {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_pipeline(self.draw.0);
         pass.set_bind_group(0, &self.draw.1, &[]);
-        pass.dispatch_workgroups(whole(columns), whole(rows), 1);
+        pass.dispatch_workgroups(to_row(columns), to_row(rows), 1);
     }
 }

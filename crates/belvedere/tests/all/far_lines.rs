@@ -6,11 +6,12 @@ use crate::mountains::{grid, mountains};
 use belvedere::PointCloud;
 use belvedere::apps::eyes::{EyeFault, fault_of_target, skip_unfit_eyes, skip_unfit_far_eyes};
 use belvedere::apps::profile::sight_profile;
+use belvedere::apps::radio_link::RadioWave;
 use belvedere::apps::targets::{CellParams, Targets};
 use belvedere::apps::viewshed::{Observer, ViewshedParams, far_viewshed, min_visible_heights, viewshed};
 use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid};
-use belvedere::query::{Answer, Blocker, EarthParams, LineOfSight, MedialScene, RadioWave};
+use belvedere::query::{Answer, Blocker, EarthParams, LineOfSight, MedialScene};
 use belvedere::random::uniform;
 use belvedere::raster::Raster;
 
@@ -169,18 +170,18 @@ fn zones_of_radio_links_clear_the_terrain() {
     let middle = wave.zone_radius([3500.0, 3500.0]);
     let expected = |height: f64| (height - earth.sag(7000.0, 0.5)) / middle;
     for height in [3.0, 6.0, 40.0] {
-        let found = plain.fresnel_clearance(link(height), wave, &earth, 9.0);
+        let found = wave.zone_clearance(&plain, link(height), &earth, 9.0);
         assert!((found - expected(height)).abs() < 1e-3, "{height}: {found} {}", expected(height));
     }
     // a ridge along x = 2000, 100 m high, steep enough that its crest is nearest
     let ridge = open_scene(grid(401, 20.0, |x, _| if x == 2000.0 { 100.0 } else { 0.0 }), cloud);
-    let found = ridge.fresnel_clearance(link(104.0), wave, &earth, 9.0);
+    let found = wave.zone_clearance(&ridge, link(104.0), &earth, 9.0);
     let gap = 104.0 - 100.0 - earth.sag(7000.0, 1500.0 / 7000.0);
     assert!((found - gap / wave.zone_radius([1500.0, 5500.0])).abs() < 2e-3, "{found}");
     // within the cloud terrain does not count, and a link that the ridge blocks has no zone
     let zones = |scene: &MedialScene, pairs: &[[[f64; 3]; 2]]| {
         let sights = scene.lines_of_sight(pairs, &earth, &Control::none()).unwrap();
-        scene.fresnel_clearances(pairs, &sights, wave, &earth, &Control::none()).unwrap()
+        wave.zone_clearances(scene, pairs, &sights, &earth, &Control::none()).unwrap()
     };
     let inside = [[4300.0, -4300.0, 20.0], [4400.0, -4400.0, 20.0]];
     assert_eq!(zones(&ridge, &[inside, link(90.0)]), [1.0, 0.0]);

@@ -1,5 +1,6 @@
 //! Patches of surfaces of the survey: what they block by closed forms, and all ways of looking against single lines.
 
+use belvedere::apps::radio_link::RadioWave;
 use belvedere::blocking::{BlockRule, PATCH_DEPTH, Profile};
 use belvedere::control::Control;
 use belvedere::depth::{ItemBuffer, NO_BALL};
@@ -7,7 +8,7 @@ use belvedere::medial::MedialBalls;
 use belvedere::model::{ModelParts, SceneModel};
 use belvedere::query::target_tree::TargetTree;
 use belvedere::query::{
-    Answer, Blocker, BlockingTriangles, Curvature, EarthParams, MedialScene, RadioWave, Scope, Viewer, random_targets,
+    Answer, Blocker, BlockingTriangles, Curvature, EarthParams, MedialScene, Scope, Viewer, random_targets,
 };
 use belvedere::random::uniform;
 use belvedere::vector::{length, sub, unit};
@@ -299,6 +300,6 @@ fn ranges_and_radio_links_know_patches() {
     // two metres above the wall
     let wave = RadioWave::of_frequency(2.4).unwrap();
     let ends = [[-30.0, 0.0, 12.0], [70.0, 0.0, 12.0]];
-    let found = scene.fresnel_clearance(ends, wave, &EarthParams::flat(), 9.0);
+    let found = wave.zone_clearance(&scene, ends, &EarthParams::flat(), 9.0);
     assert!((found - 2.0 / wave.zone_radius([30.0, 70.0])).abs() < 1e-6, "{found}");
 }

@@ -25,8 +25,9 @@ use crate::cameras::{
     Mount, Placement, PlacementParams, ROOF_CAMERA_HEIGHT, counted_weights, coverage, leave_out_private, place_cameras,
 };
 use crate::landmark::observer_cell_for;
+use crate::radio_link::RadioWave;
 use crate::targets::Targets;
-use belvedere_core::query::{Certainty, EarthParams, RadioWave, UnprovenAs};
+use belvedere_core::query::{Certainty, EarthParams, UnprovenAs};
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
 use candidates::given_eyes;

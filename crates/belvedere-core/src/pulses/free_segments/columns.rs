@@ -1,8 +1,10 @@
 //! Free segments as columns of numbers, with as few digits as the required accuracy allows.
 
+use super::FreeSegments;
+use super::segment::{FreeSegment, SegmentsByAxis};
 use super::tree::{SegmentAxis, SegmentTree, node_count};
-use super::{FreeSegment, FreeSegments, SegmentsByAxis};
 use belvedere_data::Result;
+use belvedere_data::cast::to_row;
 use belvedere_data::control::Control;
 use belvedere_data::free_segments::FreeSegmentColumns;
 use rayon::prelude::*;
@@ -99,8 +101,7 @@ impl FreeSegments {
     /// Those of [`FreeSegmentColumns::validate`], and [`Error::Cancelled`](belvedere_data::Error::Cancelled).
     pub fn from_columns(columns: &FreeSegmentColumns, control: &Control<'_>) -> Result<Self> {
         columns.validate()?;
-        #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
-        let rows: Vec<u32> = (0..columns.starts.len() as u32).collect();
+        let rows: Vec<u32> = (0..to_row(columns.starts.len())).collect();
         Self::index(by_way(columns, &rows, control)?, None, columns.top, control)
     }
 
@@ -149,12 +150,12 @@ fn by_way(columns: &FreeSegmentColumns, rows: &[u32], control: &Control<'_>) -> 
 mod tests {
     use super::*;
     use crate::pulses::FreeSegmentParams;
+    use belvedere_data::cast::to_f32;
     use belvedere_data::random::uniform;
 
     #[test]
-    #[expect(clippy::cast_possible_truncation, reason = "test places in f32")]
     fn an_index_that_is_kept_is_the_one_that_was_made() {
-        let random = |i: u64, k: u64| uniform(9, 4 * i + k) as f32;
+        let random = |i: u64, k: u64| to_f32(uniform(9, 4 * i + k));
         let returns: Vec<[f32; 3]> =
             (0..3000).map(|i| [40.0 * random(i, 0), 40.0 * random(i, 1), 9.0 * random(i, 2)]).collect();
         // from the air and from the ground
@@ -171,7 +172,7 @@ mod tests {
         assert_eq!(kept.len(), made.len());
         assert!((0..made.len()).all(|number| kept.segment(number) == made.segment(number)));
         for i in 0..500 {
-            let place = [0, 1, 2].map(|k| [40.0, 40.0, 12.0][k as usize] * uniform(10, 3 * i + k));
+            let place = [0, 1, 2].map(|k| [40.0, 40.0, 12.0][k] * uniform(10, 3 * i + k as u64));
             assert_eq!(kept.passes_within(place, 0.4), made.passes_within(place, 0.4));
         }
         // what does not belong together is indexed anew

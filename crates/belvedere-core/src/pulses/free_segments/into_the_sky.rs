@@ -1,6 +1,8 @@
 //! The ways of pulses that returned nothing because they went into the sky.
 
-use super::{FreeSegment, FreeSegments, SegmentAxis, SegmentsByAxis};
+use super::FreeSegments;
+use super::segment::{FreeSegment, SegmentsByAxis};
+use super::tree::SegmentAxis;
 use belvedere_data::control::Control;
 use belvedere_data::sky_region::SkyRegion;
 use belvedere_data::{PointCloud, Result};

@@ -1,7 +1,8 @@
 //! Distances between pulses and points or lines.
 
+use super::segment::FreeSegment;
 use super::tree::{SegmentAxis, SegmentNode};
-use super::{FreeSegment, FreeSegments, GAP_M};
+use super::{FreeSegments, GAP_M};
 use belvedere_data::vector::{dot, sub, to_f32, unit};
 use std::ops::ControlFlow;
 

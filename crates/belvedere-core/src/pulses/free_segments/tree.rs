@@ -1,6 +1,7 @@
 //! A tree over free segments of one main direction: its nodes store where their segments pass two planes.
 
-use super::FreeSegment;
+use super::segment::FreeSegment;
+use belvedere_data::cast::to_row;
 use belvedere_data::control::{Control, Stop};
 use std::ops::{ControlFlow, Range};
 
@@ -131,8 +132,7 @@ impl SegmentTree {
                 visit(next..next + node.count as usize, state)?;
                 continue;
             }
-            #[expect(clippy::cast_possible_truncation, reason = "nodes are numbered with 32 bits")]
-            let first = index as u32 + 1;
+            let first = to_row(index) + 1;
             (stack[depth], stack[depth + 1]) = (node.next, first);
             depth += 2;
         }
@@ -281,8 +281,7 @@ impl TreeBuild<'_> {
         let kept = self.boxes.and_then(|boxes| boxes.get(index));
         let mut node = kept.map_or_else(|| SegmentNode::around(items, self.way), |kept| SegmentNode::of_box(*kept));
         let Some((own, below)) = nodes.split_first_mut() else { return };
-        #[expect(clippy::cast_possible_truncation, reason = "segments and nodes are numbered with 32 bits")]
-        let number = |value: usize| value as u32;
+        let number = |value: usize| to_row(value);
         if items.len() <= LEAF {
             (node.next, node.count) = (number(first), number(items.len()));
             *own = node;

@@ -152,13 +152,13 @@ mod tests {
     use crate::blocking::BlockRule;
     use crate::query::backend::LineAnswer;
     use belvedere_data::balls::{LIMIT_TOUCH, MedialBalls};
+    use belvedere_data::cast::to_f32;
     use belvedere_data::random::uniform;
 
     #[test]
     fn many_targets_are_swept_and_few_are_not() {
-        #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
         let place = |seed: u64, i: u64| {
-            std::array::from_fn(|axis| (uniform(seed + axis as u64, i) * [100.0, 100.0, 20.0][axis]) as f32)
+            std::array::from_fn(|axis| to_f32(uniform(seed + axis as u64, i) * [100.0, 100.0, 20.0][axis]))
         };
         let count = 300;
         let balls = MedialBalls {

@@ -3,6 +3,7 @@
 use crate::blocking::{Ball, BlockRule};
 use crate::query::backend::WORD;
 use belvedere_data::Result;
+use belvedere_data::cast::{to_index, to_row};
 use belvedere_data::control::Control;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -45,10 +46,9 @@ pub(super) struct CellBits {
 
 impl CellBits {
     fn new(bits: Vec<u64>, width: usize) -> Self {
-        #[expect(clippy::cast_possible_truncation, reason = "there are at most 2^30 cells")]
         let of_row = |row: &[u64]| {
             let first = row.iter().position(|word| *word != 0).unwrap_or(0);
-            [first, row.iter().rposition(|word| *word != 0).map_or(first, |last| last + 1)].map(|word| word as u32)
+            [first, row.iter().rposition(|word| *word != 0).map_or(first, |last| last + 1)].map(to_row)
         };
         let taken = bits.par_chunks(width).with_min_len(CHUNK).map(of_row).collect();
         Self { bits, width, taken }
@@ -85,8 +85,7 @@ impl SpaceLayers {
         while (count(cell, 0) + 64.0) * (count(cell, 1) + 1.0) * count(cell, 2) > MAX_CELLS {
             cell *= 1.25;
         }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by the number of cells")]
-        let mut size: [usize; 3] = std::array::from_fn(|axis| count(cell, axis) as usize);
+        let mut size: [usize; 3] = std::array::from_fn(|axis| to_index(count(cell, axis)));
         size[0] += 1;
         size[1] += 1;
         let width = size[0].div_ceil(WORD);
@@ -113,18 +112,12 @@ impl SpaceLayers {
     }
 
     /// Marks the cells that a ball with the first of two radii reaches, and those that one with the second fills.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "cells of the grid, which holds the ball"
-    )]
     fn mark(&self, [reached, filled]: [&[AtomicU64]; 2], center: [f64; 3], [reach, fill]: [f64; 2]) {
         // in cells from the corner
         let at: [f64; 3] = std::array::from_fn(|i| (center[i] - self.low[i]) / self.cell);
         let (reach, fill) = (reach / self.cell, fill.max(0.0) / self.cell);
-        let cells = |axis: usize, from: f64, to: f64| -> [usize; 2] {
-            [from.max(0.0) as usize, (to.max(0.0) as usize).min(self.size[axis] - 1)]
-        };
+        let cells =
+            |axis: usize, from: f64, to: f64| -> [usize; 2] { [to_index(from), to_index(to).min(self.size[axis] - 1)] };
         let near = |axis: usize, k: usize| (k as f64 - at[axis]).max(at[axis] - (k + 1) as f64).max(0.0);
         let far = |axis: usize, k: usize| (at[axis] - k as f64).abs().max((at[axis] - (k + 1) as f64).abs());
         let [z0, z1] = cells(2, at[2] - reach, at[2] + reach);

@@ -8,6 +8,7 @@
 //! its cell has none ([`TargetCell::cell`]) and stays open.
 
 use super::space_layers::SpaceLayers;
+use belvedere_data::cast::{to_i32, to_i64};
 
 /// Bits of the fraction of a height, in cells.
 const HEIGHT_BITS: u32 = 18;
@@ -40,10 +41,9 @@ impl TargetCell {
     pub(super) fn new(space: &SpaceLayers, position: [f32; 3]) -> Option<Self> {
         let at: [f64; 3] = std::array::from_fn(|i| (f64::from(position[i]) - space.low[i]) / space.cell);
         let is_near = at[0].abs() < MAX_ACROSS && at[1].abs() < MAX_ACROSS && at[2].abs() < MAX_HEIGHT;
-        #[expect(clippy::cast_possible_truncation, reason = "the limits above fit")]
         is_near.then(|| Self {
-            across: [at[0], at[1]].map(|v| (v * (1_i64 << ACROSS_BITS) as f64).floor() as i64),
-            height: (at[2] * f64::from(1 << HEIGHT_BITS)).floor() as i32,
+            across: [at[0], at[1]].map(|v| to_i64((v * (1_i64 << ACROSS_BITS) as f64).floor())),
+            height: to_i32((at[2] * f64::from(1 << HEIGHT_BITS)).floor()),
         })
     }
 
@@ -88,10 +88,9 @@ impl SweptDirection {
         let slope = [direction[0] / direction[2], direction[1] / direction[2]];
         let rise = near * direction[2] / space.cell;
         let is_swept = direction[2] > 0.0 && slope[0].abs().max(slope[1].abs()) <= MAX_SLOPE && rise < MAX_HEIGHT;
-        #[expect(clippy::cast_possible_truncation, reason = "the limits above fit")]
         is_swept.then(|| Self {
-            slope: slope.map(|v| (v * f64::from(1 << SLOPE_BITS)).round() as i32),
-            rise: (rise * f64::from(1 << HEIGHT_BITS)).floor() as i32,
+            slope: slope.map(|v| to_i32((v * f64::from(1 << SLOPE_BITS)).round())),
+            rise: to_i32((rise * f64::from(1 << HEIGHT_BITS)).floor()),
             slope_exact: slope,
         })
     }
@@ -131,8 +130,7 @@ impl SweptDirection {
 }
 
 /// The whole number below.
-#[expect(clippy::cast_possible_truncation, reason = "cells of a scene")]
 fn whole(value: f64) -> i64 {
-    let toward_zero = value as i64;
+    let toward_zero = to_i64(value);
     toward_zero - i64::from(toward_zero as f64 > value)
 }

@@ -10,8 +10,8 @@ use super::coverage::CEILING;
 use super::far_line::FarLine;
 use crate::triangle_tree::Corners;
 use belvedere_data::ElevationGrid;
+use belvedere_data::cast::to_index;
 use belvedere_data::horizon::HorizonProfile;
-use belvedere_data::vector::piece_in_box;
 use rayon::prelude::*;
 pub(super) use relief::TerrainGuess;
 use relief::{LineStarts, TerrainHeights};
@@ -77,8 +77,7 @@ impl FarTerrain {
         let (grid, [box_low, box_high]) = (relief.grid(), relief.within());
         let [west, north] = grid.north_west();
         let patches = |from: f64, to: f64, cell: f64, nodes: usize| {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturated casts in the grid")]
-            let [from, to] = [from, to].map(|end| (end / cell).floor().max(-1.0) as i64 + 1).map(|end| end as usize);
+            let [from, to] = [from, to].map(|end| to_index((end / cell).floor() + 1.0));
             from.saturating_sub(1)..to.min(nodes - 1)
         };
         let columns = patches(low[0] - west, high[0] - west, grid.cell()[0], grid.heights().width());
@@ -167,12 +166,4 @@ impl FarTerrain {
 fn on_map([x, y, z]: [f64; 3]) -> ([f64; 2], f64) {
     let across = x.hypot(y);
     if across > 0.0 { ([x / across, y / across], z / across) } else { ([0.0, 1.0], z * f64::INFINITY) }
-}
-
-/// Returns the piece of a line over a box in plan, from and to, metres from the start of the line. The box is given by
-/// its low and high corner; the line is `span` metres long along the unit vector `along`. `None` if the line passes
-/// beside it.
-pub(super) fn piece_over([low, high]: [[f64; 2]; 2], start: [f64; 3], along: [f64; 2], span: f64) -> Option<[f64; 2]> {
-    let sides = std::array::from_fn(|axis| [low[axis] - start[axis], high[axis] - start[axis]]);
-    piece_in_box(sides, along, [0.0, span]).filter(|[from, to]| from < to)
 }

@@ -2,8 +2,9 @@
 
 use super::super::EarthParams;
 use super::super::far_line::FarLine;
-use super::piece_over;
+use crate::query::far_line::piece_over;
 use belvedere_data::ElevationGrid;
+use belvedere_data::cast::to_index;
 use std::ops::ControlFlow;
 
 /// Smallest step of a line in cells for each metre: a line along an axis is turned by less than its rounding, so that
@@ -281,8 +282,7 @@ impl TerrainHeights {
         if (0..2).any(|axis| bounds[axis][0] < 0.0 || bounds[axis][1] >= (size[axis] - 1) as f64) {
             return false;
         }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the grid")]
-        let [columns, rows] = bounds.map(|[from, to]| from as usize..=to as usize + 1);
+        let [columns, rows] = bounds.map(|[from, to]| to_index(from)..=to_index(to) + 1);
         rows.into_iter().all(|row| {
             columns.clone().all(|column| self.grid.heights().get(column, row).is_some_and(|v| f64::from(v) > line))
         })

@@ -3,6 +3,7 @@
 use super::{FarTerrain, LineStarts, on_map};
 use crate::query::backend::{BLOCK, WORD};
 use belvedere_data::Result;
+use belvedere_data::cast::to_index;
 use belvedere_data::control::Control;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -53,8 +54,7 @@ fn hide_block(far: &FarTerrain, targets: &[[f32; 3]], directions: &[[f64; 3]], r
         {
             continue;
         }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part of a turn")]
-        let sector = (along[0].atan2(along[1]).rem_euclid(TAU) / TAU * SECTORS as f64) as usize % SECTORS;
+        let sector = to_index(along[0].atan2(along[1]).rem_euclid(TAU) / TAU * SECTORS as f64) % SECTORS;
         let top = relief.top(middle, along, &far.earth, guesses[sector]);
         guesses[sector] = top.map(|top| top.span);
         let hides_all = top.is_some_and(|top| {

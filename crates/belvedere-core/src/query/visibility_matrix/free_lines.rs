@@ -7,6 +7,7 @@ use super::super::{BlockingTriangles, FarTerrain, MedialScene};
 use super::VisibilityMatrix;
 use super::behind_triangles::hide_behind_triangles;
 use super::looking::{Sky, headings};
+use belvedere_data::cast::to_row;
 use belvedere_data::control::Control;
 use belvedere_data::vector::{length, piece_in_box};
 use belvedere_data::{Error, Parameter, Result};
@@ -280,8 +281,7 @@ impl<'a> FreeLines<'a> {
     /// Converts the lines that are still free into a matrix.
     #[must_use]
     pub fn into_matrix(self) -> VisibilityMatrix {
-        #[expect(clippy::cast_possible_truncation, reason = "targets are numbered with 32 bits")]
-        let mut places = vec![self.tree.positions().len() as u32; self.tree.len()];
+        let mut places = vec![to_row(self.tree.positions().len()); self.tree.len()];
         for (place, &row) in (0..).zip(self.tree.rows()) {
             places[row as usize] = place;
         }

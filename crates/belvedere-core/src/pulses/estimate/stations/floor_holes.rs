@@ -1,5 +1,6 @@
 //! Round holes in floors, as a tripod leaves them below itself.
 
+use belvedere_data::cast::{to_cell, to_index, to_row, to_u32};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -72,15 +73,15 @@ pub(super) fn floor_holes(points: &[[f32; 3]]) -> Vec<[f64; 3]> {
 /// The cells of a sample of the points, by place.
 fn cells(points: &[[f32; 3]]) -> Vec<FloorCell> {
     let share = (SAMPLED as f64 / points.len().max(1) as f64).max(MIN_SHARE);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of the range; `as` saturates")]
-    let max = (share * f64::from(u32::MAX)) as u32;
+    let max = to_u32(share * f64::from(u32::MAX));
     let sampled = points.par_iter().filter(|p| scattered(p.map(f32::to_bits)) <= max);
-    let mut sorted: Vec<([i32; 2], f32)> = sampled.map(|p| ([p[0], p[1]].map(cell_of), p[2])).collect();
+    let mut sorted: Vec<([i32; 2], f32)> =
+        sampled.map(|p| ([p[0], p[1]].map(|v| to_cell(f64::from(v / CELL))), p[2])).collect();
     sorted.par_sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let cell = |chunk: &[([i32; 2], f32)]| {
         let &(at, height) = chunk.get(chunk.len() / 10)?;
         let count = chunk.iter().filter(|(_, z)| (z - height).abs() <= SLAB).count();
-        Some(FloorCell { at, count: u32::try_from(count).unwrap_or(u32::MAX), height })
+        Some(FloorCell { at, count: to_row(count), height })
     };
     sorted.chunk_by(|a, b| a.0 == b.0).filter_map(cell).collect()
 }
@@ -93,12 +94,6 @@ fn scattered(bits: [u32; 3]) -> u32 {
         (state ^ (state >> 29)).wrapping_mul(0x94D0_49BB_1331_11EB)
     });
     (mixed >> 32) as u32
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "a float to integer cast saturates, which is what far points need")]
-fn cell_of(coordinate: f32) -> i32 {
-    // clear of the ends of i32, so that neighbouring cells never overflow
-    ((coordinate / CELL).floor() as i32).clamp(i32::MIN / 4, i32::MAX / 4)
 }
 
 /// Floor points of the cell at a place, if its floor is at about this height: below a ceiling nothing else may have
@@ -142,8 +137,7 @@ fn hole_about(cells: &[FloorCell], foot: [i32; 2], dense: u32) -> Option<(f64, [
     for cell in on_floor().filter(|cell| f64::from(cell.count) >= max) {
         let [x, y] = [0, 1].map(|i| f64::from(cell.at[i] - foot[i]));
         let range = x.hypot(y) * f64::from(CELL);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "one of few sectors")]
-        let sector = (y.atan2(x).rem_euclid(TAU) / TAU * SECTORS as f64) as usize % SECTORS;
+        let sector = to_index(y.atan2(x).rem_euclid(TAU) / TAU * SECTORS as f64) % SECTORS;
         let own = &mut edge[sector];
         *own = Some(own.map_or(range, |known| known.min(range)));
     }

@@ -4,6 +4,7 @@ mod floor_holes;
 mod pulse_grid;
 
 use crate::pulses::scanner_report::FoundStation;
+use belvedere_data::cast::to_index;
 use belvedere_data::cloud::to_local;
 use belvedere_data::control::Control;
 use belvedere_data::vector::to_f32;
@@ -229,13 +230,13 @@ fn seen_from(points: &[[f32; 3]], stations: &[StationFit], control: &Control<'_>
     for (number, station) in stations.iter().enumerate() {
         control.check()?;
         let side = (IMAGE_STEPS * station.steps[0].max(station.steps[1])).max(TAU / MAX_COLUMNS);
-        let size = [TAU / side, 2.0 * FRAC_PI_2 / side].map(count_of);
+        let size = [TAU / side, 2.0 * FRAC_PI_2 / side].map(|count| to_index(count) + 1);
         let image: Vec<AtomicU32> = (0..size[0] * size[1]).map(|_| AtomicU32::new(u32::MAX)).collect();
         let seen = |p: &[f32; 3]| {
             let [x, y, z] = [0, 1, 2].map(|i| f64::from(p[i]) - station.position[i]);
             let level = x.hypot(y);
-            let column = count_of(y.atan2(x).rem_euclid(TAU) / side).min(size[0]) - 1;
-            let row = count_of((z.atan2(level) + FRAC_PI_2) / side).min(size[1]) - 1;
+            let column = to_index(y.atan2(x).rem_euclid(TAU) / side).min(size[0] - 1);
+            let row = to_index((z.atan2(level) + FRAC_PI_2) / side).min(size[1] - 1);
             (row * size[0] + column, to_f32(level.hypot(z)))
         };
         points.par_iter().for_each(|p| {
@@ -253,12 +254,6 @@ fn seen_from(points: &[[f32; 3]], stations: &[StationFit], control: &Control<'_>
         });
     }
     Ok(nearest.into_iter().map(|own| own.map(|(_, number)| number)).collect())
-}
-
-/// The least whole number above a positive one.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some thousands")]
-fn count_of(v: f64) -> usize {
-    v.floor() as usize + 1
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The grid of directions in which a scanner on a tripod sends its pulses.
 
+use belvedere_data::cast::to_cell;
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -43,9 +44,8 @@ fn directions(points: &[[f64; 3]], place: [f64; 3], tilt: [f64; 2]) -> Vec<([f64
 }
 
 /// Number of the cell of side `side` radians that a direction lies in.
-#[expect(clippy::cast_possible_truncation, reason = "some ten thousand cells each way")]
 fn cell(d: [f64; 2], side: f64) -> [i32; 2] {
-    [((d[0] + PI) / side).floor() as i32, ((d[1] + FRAC_PI_2) / side).floor() as i32]
+    [to_cell((d[0] + PI) / side), to_cell((d[1] + FRAC_PI_2) / side)]
 }
 
 fn sorted_cells(directions: &[([f64; 2], usize)], side: f64) -> Vec<[i32; 2]> {

@@ -1,9 +1,8 @@
 //! Fresnel zones of radio links: the space around a line of sight that must be free too.
 
-use super::triangles::LineEnds;
-use super::{Answer, EarthParams, LineOfSight, MedialScene};
-use crate::blocking::Ball;
-use crate::triangle_tree::Corners;
+use belvedere_core::query::{Answer, EarthParams, LineOfSight, MedialScene, Obstacle};
+use belvedere_core::triangle_tree::Corners;
+use belvedere_data::cast::to_index;
 use belvedere_data::control::Control;
 use belvedere_data::vector::{dot, length, sub, unit};
 use belvedere_data::{Error, Parameter, Result};
@@ -165,11 +164,9 @@ impl Link {
     }
 
     /// Boxes around pieces of the zone, by `share` of its radius: lowest and highest corner.
-    fn boxes(&self, share: f64) -> impl Iterator<Item = [[f64; 3]; 2]> + '_ {
+    fn boxes(&self, share: f64) -> impl Iterator<Item = [[f64; 3]; 2]> + Clone {
         let count = (self.length / PIECE).ceil().clamp(1.0, MAX_PIECES);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of pieces")]
-        let pieces = 0..count as u64;
-        pieces.map(move |piece| {
+        (0..to_index(count)).map(move |piece| {
             let [from, to] = [piece as f64, (piece + 1) as f64].map(|i| self.length * i / count);
             let widest = self.radius((self.length / 2.0).clamp(from, to)) * share;
             let place = |t: f64| -> [f64; 3] {
@@ -202,66 +199,39 @@ fn min(mut from: f64, mut to: f64, value: impl Fn(f64) -> f64) -> f64 {
     value(f64::midpoint(from, to)).max(0.0)
 }
 
-impl MedialScene {
+impl RadioWave {
     /// Returns the free share of the radius of the first Fresnel zone of a radio link between two points, local metres.
     /// It is 0 if something touches the line itself, and at most `max`. A zone counts as free from 0.6 on (ITU-R
     /// P.530). NaN for points that are not finite, or coincide.
     ///
-    /// Balls that hold an end are left out and balls near an end give way to it, as to a target; so do triangles on
-    /// which an end lies. Whether the line of sight is proven is another question. On a curved line the sag is that at
-    /// the middle of each ball.
-    ///
-    /// A link that leaves the cloud must clear the terrain beyond it too: four triangles for each patch of the raster,
-    /// which meet its bilinear surface at the nodes and in the middle.
+    /// The obstacles are those of [`MedialScene::visit_obstacles_near`]. Whether the line of sight is proven is another
+    /// question. On a curved line the sag is that at the middle of each ball.
     #[must_use]
-    pub fn fresnel_clearance(&self, ends: [[f64; 3]; 2], wave: RadioWave, earth: &EarthParams, max: f64) -> f64 {
-        let is_far = self.leaves_cloud(ends);
-        let Some(link) = Link::new(ends, wave, earth, is_far) else { return f64::NAN };
+    pub fn zone_clearance(self, scene: &MedialScene, ends: [[f64; 3]; 2], earth: &EarthParams, max: f64) -> f64 {
+        let Some(link) = Link::new(ends, self, earth, scene.leaves_cloud(ends)) else { return f64::NAN };
         let mut clearance = max;
-        for [low, high] in link.boxes(max).filter(|_| is_far) {
-            self.far_terrain().each_triangle_near([low, high].map(|[x, y, _]| [x, y]), |corners| {
-                if clearance > 0.0 {
-                    clearance = clearance.min(link.share_before(corners, clearance));
-                }
-            });
-        }
-        for [low, high] in link.boxes(max) {
-            self.tree().index().visit_near(low, high, |number| {
-                let Ball { center, radius } = self.ball(number);
-                let center = center.map(f64::from);
-                let distances = ends.map(|end| length(sub(center, end)));
-                let whole = f64::from(radius);
-                let counted = distances.map(|distance| self.params().radius_for(whole, distance));
-                let holds = distances.into_iter().any(|distance| distance <= whole);
-                if clearance > 0.0 && !holds {
-                    clearance = clearance.min(link.share_beside(center, counted[0].min(counted[1]), clearance));
-                }
-            });
-        }
-        if let Some(triangles) = self.triangles() {
-            let ends = LineEnds { target: ends[0], viewer: Some(ends[1]) };
-            for corners in triangles.triangles_near(link.boxes(max), &ends) {
-                if clearance > 0.0 {
-                    clearance = clearance.min(link.share_before(corners, clearance));
-                }
+        scene.visit_obstacles_near(ends, link.boxes(max), |obstacle| {
+            if clearance > 0.0 {
+                clearance = clearance.min(match obstacle {
+                    Obstacle::Ball { center, radius } => link.share_beside(center, radius, clearance),
+                    Obstacle::Triangle(corners) => link.share_before(corners, clearance),
+                });
             }
-        }
+        });
         clearance
     }
-}
 
-impl MedialScene {
-    /// [`MedialScene::fresnel_clearance`] up to the whole zone of each of `pairs`, (N, two ends), local metres, whose
-    /// lines of sight are `sights`, (N,), of [`MedialScene::lines_of_sight`]. A link that is blocked has none free, and
-    /// one with an end outside the cloud, or without a line, is NaN. Progress counts pairs.
+    /// [`RadioWave::zone_clearance`] up to the whole zone of each of `pairs`, (N, two ends), local metres, whose lines
+    /// of sight are `sights`, (N,), of [`MedialScene::lines_of_sight`]. A link that is blocked has none free, and one
+    /// with an end outside the cloud, or without a line, is NaN. Progress counts pairs.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`] for another number of lines of sight, and [`Error::Cancelled`].
-    pub fn fresnel_clearances(
-        &self,
+    pub fn zone_clearances(
+        self,
+        scene: &MedialScene,
         pairs: &[[[f64; 3]; 2]],
         sights: &[Option<LineOfSight>],
-        wave: RadioWave,
         earth: &EarthParams,
         control: &Control<'_>,
     ) -> Result<Vec<f64>> {
@@ -272,9 +242,9 @@ impl MedialScene {
         let of_pair = |(&ends, sight): (&[[f64; 3]; 2], &Option<LineOfSight>)| {
             control.check()?;
             let clearance = match sight.map(|sight| sight.answer) {
-                None | Some(Answer::OutsideCloud | Answer::OutsideView) => f64::NAN,
+                Some(Answer::Visible | Answer::Unproven) => self.zone_clearance(scene, ends, earth, 1.0),
                 Some(Answer::Blocked | Answer::InsideObstacle) => 0.0,
-                Some(Answer::Visible | Answer::Unproven) => self.fresnel_clearance(ends, wave, earth, 1.0),
+                _ => f64::NAN,
             };
             control.advance(1);
             Ok(clearance)
@@ -286,8 +256,7 @@ impl MedialScene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::blocking::BlockRule;
-    use crate::query::BlockingTriangles;
+    use belvedere_core::query::{BlockRule, BlockingTriangles};
     use belvedere_data::Mesh;
     use belvedere_data::balls::MedialBalls;
     use belvedere_data::random::uniform;
@@ -324,11 +293,10 @@ mod tests {
         for i in 0..40 {
             let random = |k: u64| uniform(7, 16 * i + k);
             let along = 5.0 + 85.0 * random(0);
-            #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
             let center: [f32; 3] =
-                std::array::from_fn(|k| (ends[0][k] + along * axis[k] + 8.0 * (random(1 + k as u64) - 0.5)) as f32);
+                std::array::from_fn(|k| to_f32(ends[0][k] + along * axis[k] + 8.0 * (random(1 + k as u64) - 0.5)));
             let radius = to_f32(0.2 + 3.0 * random(5));
-            let found = scene(&[(center, radius)]).fresnel_clearance(ends, wave, &EarthParams::flat(), 9.0);
+            let found = wave.zone_clearance(&scene(&[(center, radius)]), ends, &EarthParams::flat(), 9.0);
             // random points of the ball: none leaves less, and the best leaves hardly more. About 100 000 lie 3 cm
             // apart on the largest ball, a fiftieth of the zone and more near its ends; a ball that the line crosses
             // has points as near to it
@@ -363,14 +331,14 @@ mod tests {
         let wave = RadioWave::of_frequency(2.4).unwrap();
         let ends = [[0.0, 0.0, 10.0], [100.0, 0.0, 10.0]];
         let scene = scene(&[]).with_triangles(Some(added));
-        let found = scene.fresnel_clearance(ends, wave, &EarthParams::flat(), 9.0);
+        let found = wave.zone_clearance(&scene, ends, &EarthParams::flat(), 9.0);
         let expected = 2.0 / wave.zone_radius([30.0, 70.0]);
         assert!((found - expected).abs() < 1e-6, "{found} {expected}");
         // beyond its end, in its own direction, a wall does not matter
         let before = [[0.0, 0.0, 7.0], [29.0, 0.0, 7.0]];
-        assert!(scene.fresnel_clearance(before, wave, &EarthParams::flat(), 9.0) >= 9.0);
+        assert!(wave.zone_clearance(&scene, before, &EarthParams::flat(), 9.0) >= 9.0);
         let through = [[0.0, 0.0, 7.0], [100.0, 0.0, 7.0]];
-        assert!(scene.fresnel_clearance(through, wave, &EarthParams::flat(), 9.0) < 1e-6);
+        assert!(wave.zone_clearance(&scene, through, &EarthParams::flat(), 9.0) < 1e-6);
     }
 
     #[test]
@@ -390,7 +358,7 @@ mod tests {
             let mesh = Mesh { vertices: corners.to_vec(), triangles: vec![[0, 1, 2]], ..Mesh::default() };
             let added = BlockingTriangles::new(&mesh, "sheet", [0.0; 3], None, None).unwrap();
             let scene = scene(&[]).with_triangles(Some(added));
-            let found = scene.fresnel_clearance(ends, wave, &EarthParams::flat(), 9.0);
+            let found = wave.zone_clearance(&scene, ends, &EarthParams::flat(), 9.0);
             let mut min = 9.0_f64;
             // a grid of 300 by 300: points lie 10 cm apart or less, a thirtieth of the zone and more near its ends
             for (u, v) in (0..=300_u16).flat_map(|u| (0..=300 - u).map(move |v| (u, v))) {
@@ -416,10 +384,10 @@ mod tests {
         let ends = [[0.0, 0.0, 50.0], [10_000.0, 0.0, 50.0]];
         let scene = scene(&[([5000.0, 0.0, 20.0], 5.0)]);
         let [flat, curved] =
-            [EarthParams::flat(), EarthParams::default()].map(|earth| scene.fresnel_clearance(ends, wave, &earth, 9.0));
+            [EarthParams::flat(), EarthParams::default()].map(|earth| wave.zone_clearance(&scene, ends, &earth, 9.0));
         let sag = EarthParams::default().sag(10_000.0, 0.5);
         let radius = wave.zone_radius([5000.0, 5000.0]);
         assert!((flat - 25.0 / radius).abs() < 1e-3 && (curved - (25.0 - sag) / radius).abs() < 1e-3);
-        assert!(scene.fresnel_clearance([ends[0]; 2], wave, &EarthParams::flat(), 1.0).is_nan());
+        assert!(wave.zone_clearance(&scene, [ends[0]; 2], &EarthParams::flat(), 1.0).is_nan());
     }
 }
