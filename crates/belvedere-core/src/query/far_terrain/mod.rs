@@ -1,17 +1,18 @@
 //! Terrain beyond the cloud that hides the sky above the horizon: a profile for all places, an elevation raster, or
 //! both.
 
+pub(super) mod line;
 mod relief;
 mod rows;
 mod visible;
 
 use super::EarthParams;
 use super::coverage::CEILING;
-use super::far_line::FarLine;
 use crate::triangle_tree::Corners;
 use belvedere_data::ElevationGrid;
 use belvedere_data::cast::to_index;
 use belvedere_data::horizon::HorizonProfile;
+use line::FarLine;
 use rayon::prelude::*;
 pub(super) use relief::TerrainGuess;
 use relief::{LineStarts, TerrainHeights};

@@ -1,8 +1,7 @@
 //! An elevation raster and the maxima of its blocks: exact horizons without a look at every cell.
 
 use super::super::EarthParams;
-use super::super::far_line::FarLine;
-use crate::query::far_line::piece_over;
+use super::line::{FarLine, piece_over};
 use belvedere_data::ElevationGrid;
 use belvedere_data::cast::to_index;
 use std::ops::ControlFlow;

@@ -2,7 +2,7 @@
 
 use super::super::EarthParams;
 use super::FarTerrain;
-use crate::query::far_line::piece_over;
+use super::line::piece_over;
 
 /// Step along a profile as a share of the distance, and its limits: metres, and a share of a cell.
 const STEP: f64 = 0.01;

@@ -1,7 +1,7 @@
 //! How likely answers are right: fits the scores of evidence, and measures what probabilities are worth.
 //!
 //! ```sh
-//! cargo research confidence -- fit crates/belvedere-core/src/query/confidence_scores.csv
+//! cargo research confidence -- fit crates/belvedere-core/src/query/lines/confidence_scores.csv
 //! cargo research confidence -- fit-sums crates/belvedere-apps/src/sum_errors.csv
 //! cargo research confidence -- judge village,town,old-town,towers 201,202 10 air
 //! cargo research confidence -- judge-sums village,town,old-town,towers 201 10 air

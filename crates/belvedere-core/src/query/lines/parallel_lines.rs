@@ -1,7 +1,7 @@
 //! Lines of sight parallel to one, beside it: if their answers differ, it passes an edge of an obstacle.
 
-use super::MedialScene;
-use super::ball_tree::{MARGIN, near_reach};
+use crate::query::MedialScene;
+use crate::query::ball_tree::{MARGIN, near_reach};
 use crate::ray_index::{END, Ray, Visit};
 use belvedere_data::vector::{cross, dot, sub, to_f32, unit};
 use std::f64::consts::FRAC_PI_4;
@@ -10,7 +10,7 @@ use std::f64::consts::FRAC_PI_4;
 /// third ring at 0.08 m made probabilities no better.
 const RINGS: [f64; 2] = [0.16, 0.32];
 /// Lines of each ring.
-pub(super) const RING_LINES: usize = 8;
+pub(in crate::query) const RING_LINES: usize = 8;
 /// All lines, the line itself first.
 const LINES: usize = 1 + RINGS.len() * RING_LINES;
 /// Slots for lines, a multiple of those that are tested at once.

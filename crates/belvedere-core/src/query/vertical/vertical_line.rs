@@ -1,9 +1,9 @@
 //! Visible parts of a vertical line, such as a tower: exact for the union of balls, triangles and far terrain.
 
-use super::far_line::FarLine;
-use super::far_terrain::TerrainGuess;
 use super::vertical_plane::VerticalPlane;
-use super::{EarthParams, MedialScene};
+use crate::query::far_terrain::TerrainGuess;
+use crate::query::far_terrain::line::FarLine;
+use crate::query::{EarthParams, MedialScene};
 use crate::ray_index::{BoxReach, NodeParts, PARTS, RayIndex};
 use belvedere_data::vector::to_f32;
 use smallvec::SmallVec;

@@ -1,5 +1,7 @@
 //! Surfaces as small pieces that represent their visible parts: strata with a random place in each.
 
+pub mod mesh;
+
 use crate::neighbors::NeighborIndex;
 use belvedere_data::cast::{to_index, to_row};
 use belvedere_data::control::Control;

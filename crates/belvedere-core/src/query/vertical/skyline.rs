@@ -1,7 +1,7 @@
 //! The skyline around a place: how high the sky begins in each direction.
 
-use super::{Blocker, EarthParams, MedialScene};
 use crate::blocking::Ball;
+use crate::query::{Blocker, EarthParams, MedialScene};
 use crate::triangle_tree::Corners;
 use belvedere_data::Result;
 use belvedere_data::cast::to_i64;

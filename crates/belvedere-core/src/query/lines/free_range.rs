@@ -1,8 +1,8 @@
 //! Range of free sight from an eye along a direction.
 
-use super::blocker::nearest_blocker;
-use super::triangles::LineEnds;
-use super::{Blocker, MedialScene};
+use crate::query::blocker::nearest_blocker;
+use crate::query::triangles::LineEnds;
+use crate::query::{Blocker, MedialScene};
 use crate::ray_index::Ray;
 use belvedere_data::vector::{dot, sub};
 
@@ -39,8 +39,8 @@ impl MedialScene {
     /// its range, metres. `None` if nothing blocks.
     ///
     /// In contrast to [`MedialScene::seen_along`] the place is a target. Balls near it give way by
-    /// [`BlockRule::shell`](super::BlockRule::shell), so that the surface of the place does not hide its neighbourhood.
-    /// An obstacle is found in exactly the directions that the visibility matrix has as blocked by balls and meshes. Of
+    /// [`BlockRule::shell`](crate::query::BlockRule::shell), so that the surface of the place does not hide its
+    /// neighbourhood. An obstacle is found in exactly the directions that the visibility matrix has as blocked by balls and meshes. Of
     /// all balls that block, it is the one that the line enters first. The range is 0 in a ball that holds the place
     /// even with the shell.
     #[must_use]

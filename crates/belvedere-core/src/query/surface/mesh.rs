@@ -1,7 +1,7 @@
 //! Mesh targets: how much of each face and of each object a viewer sees.
 
-use super::surface::{Sides, SurfacePiece, SurfacePieces};
-use super::{Answer, Viewer};
+use super::{Sides, SurfacePiece, SurfacePieces};
+use crate::query::{Answer, Viewer};
 use belvedere_data::vector::{dot, sub, to_f32};
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
@@ -135,7 +135,7 @@ pub fn facing(surface: &SurfacePieces, viewer: Viewer<'_>) -> Result<Vec<bool>> 
 }
 
 /// Returns the area of each face of `surface` that `viewer` sees, (faces). `ask` answers for places, (M, 3) local
-/// metres, such as [`super::Visibility::visible`] for the same viewer. Answers other than [`Answer::Visible`] or
+/// metres, such as [`crate::query::Visibility::visible`] for the same viewer. Answers other than [`Answer::Visible`] or
 /// [`Answer::Unproven`] count as not visible.
 ///
 /// Each piece counts as its place does. The standard error of a face follows from pairs of neighbouring pieces that

@@ -1,7 +1,7 @@
 //! Minimum visible height: how high a target must be to be seen over obstacles.
 
 use super::vertical_plane::VerticalPlane;
-use super::{EarthParams, MedialScene};
+use crate::query::{EarthParams, MedialScene};
 use crate::triangle_tree::Corners;
 use belvedere_data::vector::{length, sub, unit};
 

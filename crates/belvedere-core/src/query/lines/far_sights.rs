@@ -1,8 +1,7 @@
 //! Lines of sight that leave the cloud: to the terrain around it, and from there.
 
-use super::far_line::FarLine;
-use super::far_line::piece_over;
-use super::{Answer, Blocker, EarthParams, LineOfSight, MedialScene, Obstruction};
+use crate::query::far_terrain::line::{FarLine, piece_over};
+use crate::query::{Answer, Blocker, EarthParams, LineOfSight, MedialScene, Obstruction};
 use crate::ray_index::in_order;
 use belvedere_data::vector::{length, sub};
 
@@ -52,7 +51,7 @@ impl MedialScene {
 
     /// The answer of [`MedialScene::far_sight_answer`] and its first obstacle; `None` instead of
     /// [`Answer::OutsideView`].
-    pub(super) fn far_line_of_sight(
+    pub(in crate::query) fn far_line_of_sight(
         &self,
         observer: [f64; 3],
         target: [f64; 3],

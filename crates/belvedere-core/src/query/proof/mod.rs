@@ -1,13 +1,18 @@
 //! Proof by pulses of the space along a line of sight.
 
+pub(super) mod freed_space;
+mod seen_space;
+
+pub use freed_space::FreedSpace;
+
 use super::lazy::Lazy;
-use super::seen_space::SeenSpace;
 use crate::pulses::{FreeSegmentColumns, FreeSegments, lower_ends};
 use belvedere_data::cast::to_cell;
 use belvedere_data::control::Control;
 use belvedere_data::model::ProofParts;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
+use seen_space::SeenSpace;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 

@@ -9,8 +9,8 @@
 //! # Source
 //! This project's own. Logistic regression on classes of evidence: a scorecard (Hosmer & Lemeshow 2000, chapter 3).
 
-use super::{Answer, BlockedLines, MedialScene, ParallelLines, Proof, Viewer};
 use crate::medium::Medium;
+use crate::query::{Answer, BlockedLines, MedialScene, ParallelLines, Proof, Viewer};
 use crate::ray_index::Ray;
 use belvedere_data::control::Control;
 use belvedere_data::vector::to_f32;
@@ -36,7 +36,7 @@ const CROWNS_BALLS: f64 = 0.2;
 const CROWNS_DEPTH: f64 = 2.4;
 /// Distance of the nearest pulse beyond which a scanner on the ground did not see an end, metres.
 const SCANNED_WITHIN: f64 = 1.0;
-/// Unproven length from which on a line to such an end is unknown, metres: what [`super::ProofParams`] tolerates.
+/// Unproven length from which on a line to such an end is unknown, metres: what `ProofParams` tolerates.
 const UNKNOWN_FROM: f64 = 0.5;
 /// Probabilities are no nearer to 0 and 1 before logarithms are taken.
 const MIN_PROBABILITY: f64 = 1e-4;

@@ -1,11 +1,11 @@
 //! Lines of sight between pairs of points: the first obstacle, and all obstacles along them.
 
-use super::ball_tree::PROBE;
-use super::blocker::{Blocker, nearest_blocker};
-use super::freed_space::pieces_outside;
-use super::triangles::LineEnds;
-use super::{Answer, EarthParams, MedialScene};
 use crate::blocking::{Chord, Sheet};
+use crate::query::ball_tree::PROBE;
+use crate::query::blocker::{Blocker, nearest_blocker};
+use crate::query::proof::freed_space::pieces_outside;
+use crate::query::triangles::LineEnds;
+use crate::query::{Answer, EarthParams, MedialScene};
 use crate::ray_index::{Ray, in_order};
 use crate::triangle_tree::Corners;
 use belvedere_data::Result;
@@ -106,7 +106,12 @@ impl MedialScene {
     }
 
     /// Returns the line of sight of `observer` along the part that [`MedialScene::answer_on_chords`] answers.
-    pub(super) fn sight_on_chords(&self, observer: [f64; 3], ends: [[f64; 3]; 2], corners: &[[f64; 3]]) -> LineOfSight {
+    pub(in crate::query) fn sight_on_chords(
+        &self,
+        observer: [f64; 3],
+        ends: [[f64; 3]; 2],
+        corners: &[[f64; 3]],
+    ) -> LineOfSight {
         let pieces = self.chords(ends, corners);
         let is_from_start = observer == ends[0];
         let mut from_observer: Vec<&LinePiece> = pieces.iter().collect();
@@ -192,7 +197,7 @@ impl MedialScene {
 
     /// Returns the answer for the part of a line of sight that runs along chords through `corners`, from the side of
     /// the first end on. The two ends are given in order ([`in_order`]); the rules for ends apply to the whole line.
-    pub(super) fn answer_on_chords(&self, ends: [[f64; 3]; 2], corners: &[[f64; 3]]) -> Answer {
+    pub(in crate::query) fn answer_on_chords(&self, ends: [[f64; 3]; 2], corners: &[[f64; 3]]) -> Answer {
         let pieces = self.chords(ends, corners);
         let is_blocked = |piece: &LinePiece| {
             self.triangles().is_some_and(|triangles| triangles.blocks_piece(&piece.ray, &piece.line_ends()))
@@ -281,7 +286,7 @@ impl MedialScene {
 
     /// Calls `visit` with the number in the index of every ball that blocks the line of sight from `observer` to
     /// `target`.
-    pub(super) fn each_blocker(
+    pub(in crate::query) fn each_blocker(
         &self,
         observer: [f64; 3],
         target: [f64; 3],
@@ -298,7 +303,7 @@ impl MedialScene {
     }
 
     /// Calls `visit` with every triangle that blocks the line of sight from `observer` to `target`.
-    pub(super) fn each_blocking_triangle(
+    pub(in crate::query) fn each_blocking_triangle(
         &self,
         observer: [f64; 3],
         target: [f64; 3],
@@ -360,8 +365,8 @@ impl MedialScene {
         nearest_blocker(ball, triangle)
     }
 
-    /// The piece of a chord that a ball blocks, as [`BlockRule::blocked_piece`](super::BlockRule::blocked_piece) gives
-    /// it, from the start of the chord.
+    /// The piece of a chord that a ball blocks, from the start of the chord, as
+    /// [`BlockRule::blocked_piece`](crate::query::BlockRule::blocked_piece) gives it.
     fn blocked_on(&self, number: usize, piece: &LinePiece) -> Option<[f64; 2]> {
         let LinePiece { ray, for_balls, is_whole, ends: [target, observer] } = *piece;
         if is_whole {
@@ -376,7 +381,7 @@ impl MedialScene {
 /// same seed gives the same pairs for any number of threads.
 #[must_use]
 pub fn random_pairs(low: [f32; 3], high: [f32; 3], count: usize, seed: u64) -> Vec<[[f64; 3]; 2]> {
-    let ends = super::random_targets(low, high, 2 * count, seed);
+    let ends = crate::query::random_targets(low, high, 2 * count, seed);
     ends.as_chunks::<2>().0.iter().map(|pair| pair.map(|end| end.map(f64::from))).collect()
 }
 

@@ -1,8 +1,8 @@
 //! Obstacles near a line of sight, for what needs more room than the line itself.
 
-use super::MedialScene;
-use super::triangles::LineEnds;
 use crate::blocking::Ball;
+use crate::query::MedialScene;
+use crate::query::triangles::LineEnds;
 use crate::triangle_tree::Corners;
 use belvedere_data::vector::{length, sub};
 

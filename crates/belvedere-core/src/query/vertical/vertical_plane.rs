@@ -1,8 +1,8 @@
 //! The vertical plane through an eye and a vertical line, and what obstacles hide of it: intervals of elevations.
 
-use super::EarthParams;
 use super::skyline::cut;
 use crate::blocking::Ball;
+use crate::query::EarthParams;
 use crate::triangle_tree::Corners;
 use belvedere_data::vector::sub;
 

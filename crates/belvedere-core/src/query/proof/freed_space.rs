@@ -1,6 +1,6 @@
 //! Space that is free because its objects were cleared.
 
-use super::proof::clip;
+use super::clip;
 use crate::ground::MapGrid;
 use crate::ray_index::Ray;
 use belvedere_data::raster::Raster;
@@ -72,7 +72,7 @@ impl FreedSpace {
 }
 
 /// The parts of a line that lie outside all of `spaces`: from and to.
-pub(super) fn pieces_outside(spaces: &[FreedSpace], ray: &Ray) -> Vec<[f64; 2]> {
+pub(in crate::query) fn pieces_outside(spaces: &[FreedSpace], ray: &Ray) -> Vec<[f64; 2]> {
     spaces.iter().fold(vec![ray.ranges], |pieces, space| {
         let mut outside = Vec::with_capacity(pieces.len() + 1);
         pieces.into_iter().for_each(|piece| space.cut(ray, piece, &mut outside));
