@@ -4,6 +4,7 @@ use crate::rows::{RowBlock, SkyObstacles, check_normals, fold_rows, normals_of};
 use crate::targets::Targets;
 use crate::tree_light::{Season, TreeLight};
 use belvedere_core::query::{Answer, MedialScene, Viewer};
+use belvedere_data::cast::to_f32;
 use belvedere_data::control::Control;
 use belvedere_data::vector::{cross, dot, unit};
 use belvedere_data::{Error, Result};
@@ -230,9 +231,7 @@ pub fn lit_shares(
         };
         let before = directions.iter().enumerate().filter(is_before);
         let light: f64 = before.map(|(column, _)| block.line(target, first + column).share(factor)).sum();
-        #[expect(clippy::cast_possible_truncation, reason = "a share")]
-        let share = (light / directions.len().max(1) as f64) as f32;
-        share
+        to_f32(light / directions.len().max(1) as f64)
     };
     Ok((0..matrix.target_count()).into_par_iter().with_min_len(CHUNK).map(share).collect())
 }

@@ -47,7 +47,23 @@ pub const fn to_u8(value: f64) -> u8 {
     value as u8
 }
 
-/// Returns the number of a row or ball with 32 bits; rows of clouds and balls are numbered so. `u32::MAX` at most.
+/// Returns a number without its fraction: 0 for negative numbers and NaN, `u32::MAX` at most.
+#[inline]
+#[must_use]
+#[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
+pub const fn to_u32(value: f64) -> u32 {
+    value as u32
+}
+
+/// Returns the number of the cell that a place, in cells, lies in: clear of the ends of `i32`, so that cells around it
+/// exist.
+#[inline]
+#[must_use]
+pub fn to_cell(place: f64) -> i32 {
+    to_i32(place.floor()).clamp(i32::MIN / 4, i32::MAX / 4)
+}
+
+/// Returns an index or a count with 32 bits, as rows of clouds and balls are numbered: `u32::MAX` at most.
 #[inline]
 #[must_use]
 pub fn to_row(index: usize) -> u32 {
@@ -65,6 +81,8 @@ mod tests {
         assert_eq!([to_i32(-1e10), to_i32(-1.9)], [i32::MIN, -1]);
         assert_eq!([to_i64(f64::INFINITY), to_i64(2.5)], [i64::MAX, 2]);
         assert_eq!([to_u8(256.0), to_u8(-1.0)], [255, 0]);
+        assert_eq!([to_u32(1e10), to_u32(-1.0)], [u32::MAX, 0]);
+        assert_eq!([to_cell(-0.5), to_cell(2.9), to_cell(1e12)], [-1, 2, i32::MAX / 4]);
         assert_eq!([to_row(7), to_row(usize::MAX)], [7, u32::MAX]);
     }
 }

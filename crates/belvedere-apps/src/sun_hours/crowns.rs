@@ -5,6 +5,7 @@ use super::{CHUNK, Counted, ROUNDING, SunHours, SunHoursParams, sun_hours};
 use crate::rows::{LineLight, RowBlock};
 use crate::sun::SunSchedule;
 use belvedere_core::query::VisibilityMatrix;
+use belvedere_data::cast::to_row;
 use belvedere_data::vector::{dot, to_f32};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
@@ -96,8 +97,7 @@ impl DaysByFactor {
             if kind == kinds.len() {
                 kinds.push(factor);
             }
-            #[expect(clippy::cast_possible_truncation, reason = "rows of a schedule, for two factors or so")]
-            let first = (kind * schedule.directions.len()) as u32;
+            let first = to_row(kind * schedule.directions.len());
             day.steps.iter_mut().for_each(|step| step.direction += first);
         }
         by_factor.directions = schedule.directions.repeat(kinds.len());

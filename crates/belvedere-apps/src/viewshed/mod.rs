@@ -13,6 +13,7 @@ use crate::targets::Measure;
 use belvedere_core::ground::Ground;
 use belvedere_core::query::target_tree::TargetTree;
 use belvedere_core::query::{Answer, EarthParams, MedialScene, UnprovenAs, Viewer};
+use belvedere_data::cast::to_row;
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::to_f32;
@@ -295,8 +296,7 @@ impl ViewshedTree<'_> {
                 seen[row] |= 1 << number;
                 seen_counts[number] += 1;
             }
-            #[expect(clippy::cast_possible_truncation, reason = "targets are numbered with 32 bits")]
-            Answer::Unproven => unproven.push(row as u32),
+            Answer::Unproven => unproven.push(to_row(row)),
             _ => {}
         };
         let can_look = |observer: &Observer| observer.eye.iter().all(|v| v.is_finite());

@@ -4,6 +4,7 @@
 use crate::apps::difference::described;
 use crate::apps::targets::{Measure, ResultKind};
 use crate::apps::viewshed::{SEEN, SEEN_BY, Viewshed};
+use crate::cast::to_u32;
 use crate::io::{
     BandLabel, BandValues, Bands, Georeference, MetadataTag, ReadBands, Source, read_tif_bands, write_cog,
     write_tif_bands,
@@ -73,8 +74,7 @@ impl Pixels {
     pub fn of_measures(measures: &[Measure], [width, height]: [usize; 2]) -> Result<Self> {
         let kind = measures.first().map_or(ResultKind::Number, |measure| measure.kind);
         let bands = measures.iter().map(|measure| measure.values.clone());
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts")]
-        let count = |value: f32| ResultKind::count(value.is_finite().then_some(value as u32));
+        let count = |value: f32| ResultKind::count(value.is_finite().then(|| to_u32(value.into())));
         let answer = |value: f32| ResultKind::answer(value.is_finite().then_some(value > 0.0));
         match kind {
             ResultKind::Answer if measures.iter().all(|measure| measure.kind == kind) => {
