@@ -6,6 +6,7 @@ use belvedere_core::ground::{Ground, MapGrid};
 use belvedere_core::query::{Answer, BackFaces, MedialScene, Sides, SurfacePiece, SurfacePieces, Viewer};
 use belvedere_data::cast::to_index;
 use belvedere_data::control::Control;
+use belvedere_data::error::check_length;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::{dot, length, sub, to_f32};
 use belvedere_data::{Error, Parameter, Result};
@@ -48,13 +49,7 @@ impl ProtectedView {
     /// [`Error::LengthMismatch`] for a ground of other cells.
     pub fn above_ground(&self, ground: &Ground) -> Result<Raster<f32>> {
         let (limits, heights) = (self.limits.values(), ground.heights.values());
-        if limits.len() != heights.len() {
-            return Err(Error::LengthMismatch {
-                what: "cells of the ground",
-                expected: limits.len(),
-                found: heights.len(),
-            });
-        }
+        check_length("cells of the ground", limits.len(), heights.len())?;
         let above = |(limit, height): (&f32, &f32)| match limit - height {
             room if room.is_nan() => f32::NAN,
             room => room.max(0.0),

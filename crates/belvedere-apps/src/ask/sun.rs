@@ -121,6 +121,11 @@ pub fn remark_on_sun(site: Option<Site>, [azimuth, elevation]: [f64; 2]) -> Opti
     })
 }
 
+/// Refuses a question without days.
+pub(super) fn missing_days<T>() -> Result<T> {
+    Err(Error::invalid(Parameter::Period, "missing", "given as days or as two times"))
+}
+
 impl Days {
     /// Returns true if there is no day.
     #[must_use]

@@ -15,6 +15,7 @@ use belvedere_core::query::target_tree::TargetTree;
 use belvedere_core::query::{Answer, EarthParams, MedialScene, UnprovenAs, Viewer};
 use belvedere_data::cast::to_row;
 use belvedere_data::control::Control;
+use belvedere_data::error::check_length;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Parameter, Result};
@@ -205,10 +206,7 @@ pub fn viewshed_among(
     control: &Control<'_>,
 ) -> Result<Viewshed> {
     check(observers, &params.earth)?;
-    let (expected, found) = (targets.len(), tree.len());
-    if expected != found {
-        return Err(Error::LengthMismatch { what: "tree of targets", expected, found });
-    }
+    check_length("tree of targets", targets.len(), tree.len())?;
     let queried = ViewshedTree { scene, tree, targets, params };
     let mut result = Viewshed {
         answers: queried.before_anybody_sees(observers),

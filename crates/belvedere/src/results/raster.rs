@@ -5,6 +5,7 @@ use crate::apps::difference::described;
 use crate::apps::targets::{Measure, ResultKind};
 use crate::apps::viewshed::{SEEN, SEEN_BY, Viewshed};
 use crate::cast::to_u32;
+use crate::error::check_length;
 use crate::io::{
     BandLabel, BandValues, Bands, Georeference, MetadataTag, ReadBands, Source, read_tif_bands, write_cog,
     write_tif_bands,
@@ -280,9 +281,7 @@ fn in_f32<T: Copy + PartialEq + Into<f32>>(raster: &Raster<T>, nothing: T) -> Re
 }
 
 fn put<T: Copy>(all: &mut [Raster<T>], tile: &[Raster<T>], [column, row]: [i64; 2], side: usize) -> Result<()> {
-    if all.len() != tile.len() {
-        return Err(Error::LengthMismatch { what: "bands of a tile", expected: all.len(), found: tile.len() });
-    }
+    check_length("bands of a tile", all.len(), tile.len())?;
     let count = |number: i64| usize::try_from(number).unwrap_or(0);
     for (all, tile) in all.iter_mut().zip(tile) {
         if tile.width() != side || tile.height() != side {
