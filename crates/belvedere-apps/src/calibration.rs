@@ -1,5 +1,7 @@
 //! Quality of probabilities of being visible: error, calibration, and errors among the most certain.
 
+use belvedere_data::cast::to_index;
+
 /// Probabilities are counted by tenths.
 const TENTHS: usize = 10;
 /// Share of the answers that are the most certain ones.
@@ -59,8 +61,7 @@ impl Calibration {
     pub fn tenths(&self) -> [Tenth; TENTHS] {
         let mut sums = [(0_usize, 0.0, 0.0); TENTHS];
         for &(probability, is_visible) in &self.pairs {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 10")]
-            let tenth = ((probability * TENTHS as f32) as usize).min(TENTHS - 1);
+            let tenth = to_index(f64::from(probability * TENTHS as f32)).min(TENTHS - 1);
             let (count, expected, found) = &mut sums[tenth];
             *count += 1;
             *expected += f64::from(probability);

@@ -1,9 +1,10 @@
 //! Difference between two results on the same cells: before and after a plan.
 
 use crate::viewshed::SEEN;
+use belvedere_data::Result;
 use belvedere_data::contradiction::{DIFFERENT_QUANTITIES, DIFFERENT_SUNS, FoundContradiction};
+use belvedere_data::error::check_length;
 use belvedere_data::report::rounded;
-use belvedere_data::{Error, Result};
 use serde::Serialize;
 
 /// Maximum change, as a share of the largest one, that counts as none: the rounding of equal values.
@@ -124,10 +125,7 @@ pub fn clear_added(before: &mut [f32], after: &mut [f32], added: &[f32]) -> usiz
 /// # Errors
 /// [`Error::LengthMismatch`] where the numbers of cells differ.
 pub fn difference(before: &[f32], after: &[f32], cell_area: f64) -> Result<Difference> {
-    let (expected, found) = (before.len(), after.len());
-    if expected != found {
-        return Err(Error::LengthMismatch { what: "cells after the change", expected, found });
-    }
+    check_length("cells after the change", before.len(), after.len())?;
     let mut values: Vec<f32> = before.iter().zip(after).map(|(before, after)| after - before).collect();
     let scale =
         before.iter().chain(after).filter(|v| v.is_finite()).fold(0.0_f64, |max, v| max.max(f64::from(v.abs())));

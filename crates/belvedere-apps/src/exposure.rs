@@ -8,6 +8,7 @@ use crate::sun_hours::{SunHours, SunHoursParams, sun_hours};
 use crate::targets::{Measure, TARGET_LIFT, Targets, weighted_mean};
 use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
+use belvedere_data::error::check_length;
 use belvedere_data::vector::{cross, dot, to_f32, unit};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
@@ -226,14 +227,9 @@ impl Shaded {
 /// Moon & Spencer 1942, the overcast sky of CIE S 011: luminance 1 + 2 sin of the elevation, a third at the horizon.
 /// Littlefair 2011, Site layout planning for daylight and sunlight, BRE 209, appendix C.
 pub fn sky_component(matrix: &VisibilityMatrix, sky: &SkyDirections, normals: &[[f32; 3]]) -> Result<Vec<f32>> {
-    let sizes = [
-        ("directions of the sky", matrix.direction_count(), sky.directions.len()),
-        ("solid angles of the sky", matrix.direction_count(), sky.solid_angles.len()),
-        ("normals of targets", matrix.target_count(), normals.len()),
-    ];
-    if let Some((what, expected, found)) = sizes.into_iter().find(|(_, expected, found)| expected != found) {
-        return Err(Error::LengthMismatch { what, expected, found });
-    }
+    check_length("directions of the sky", matrix.direction_count(), sky.directions.len())?;
+    check_length("solid angles of the sky", matrix.direction_count(), sky.solid_angles.len())?;
+    check_length("normals of targets", matrix.target_count(), normals.len())?;
     // of the zenith's luminance; a free level plane gets 7π/9 of it
     let luminances: Vec<f64> = sky.directions.iter().map(|direction| (1.0 + 2.0 * direction[2]) / 3.0).collect();
     let component = |(target, normal): (usize, &[f32; 3])| {
@@ -273,10 +269,7 @@ pub fn route_lengths(places: &[[f64; 3]]) -> Vec<f64> {
 /// # Errors
 /// [`Error::LengthMismatch`] unless there is a weight for each target.
 pub fn shaded_shares(matrix: &VisibilityMatrix, weights: &[f64]) -> Result<Vec<f64>> {
-    let expected = matrix.target_count();
-    if weights.len() != expected {
-        return Err(Error::LengthMismatch { what: "weights of targets", expected, found: weights.len() });
-    }
+    check_length("weights of targets", matrix.target_count(), weights.len())?;
     let whole: f64 = weights.iter().sum();
     let share = |direction: usize| {
         let shaded = weights.iter().enumerate().filter(|(target, _)| !matrix.is_free(*target, direction));

@@ -11,6 +11,7 @@ use crate::sun::SunSchedule;
 use crate::targets::{TARGET_LIFT, Window};
 use belvedere_core::query::MedialScene;
 use belvedere_data::control::Control;
+use belvedere_data::error::check_length;
 use belvedere_data::vector::{cross, dot, length, sub, to_f32, unit};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
@@ -231,19 +232,16 @@ pub fn glare(
     control: &Control<'_>,
 ) -> Result<Vec<EyeGlare>> {
     params.validate()?;
-    let expected = schedule.directions.len();
-    if direct.len() != expected {
-        return Err(Error::LengthMismatch { what: "direct radiation", expected, found: direct.len() });
-    }
+    check_length("direct radiation", schedule.directions.len(), direct.len())?;
     let of_pair = |eye: [f64; 3], reflector: &Reflector| -> Vec<Option<Reflection>> {
         if !eye.iter().all(|v| v.is_finite()) {
-            return vec![None; expected];
+            return vec![None; direct.len()];
         }
         let suns = schedule.directions.par_iter().zip(direct);
         suns.map(|(&to_sun, &direct)| reflection(scene, (eye, reflector), (to_sun, direct), params)).collect()
     };
     let of_eye = |&eye: &[f64; 3]| {
-        let mut any = vec![None; expected];
+        let mut any = vec![None; direct.len()];
         let mut of_reflectors = Vec::new();
         for reflector in reflectors {
             control.check()?;

@@ -9,6 +9,7 @@
 use belvedere_core::pulses::{Pulses, SensorPositions};
 use belvedere_core::query::{Answer, UnprovenAs};
 use belvedere_data::cloud::to_local;
+use belvedere_data::error::check_length;
 use belvedere_data::vector::{length, sub, unit};
 use belvedere_data::{Error, Parameter, PointCloud, Result};
 
@@ -145,10 +146,7 @@ pub fn split(
 ) -> Result<HeldOut> {
     cloud.validate()?;
     params.validate()?;
-    if scanner.per_pulse.len() != pulses.len() {
-        let (expected, found) = (pulses.len(), scanner.per_pulse.len());
-        return Err(Error::LengthMismatch { what: "scanner positions of the pulses", expected, found });
-    }
+    check_length("scanner positions of the pulses", pulses.len(), scanner.per_pulse.len())?;
     let mut is_kept = vec![true; cloud.len()];
     let mut held_out =
         HeldOut { behind: params.depths.iter().map(|&d| (d, HeldOutPairs::default())).collect(), ..HeldOut::default() };

@@ -1,6 +1,7 @@
 //! Horizon profiles: above which elevation the sky is free around a place, as photovoltaic tools read it.
 
 use belvedere_core::query::{EarthParams, MedialScene, SkylinePoint};
+use belvedere_data::cast::to_index;
 use belvedere_data::control::Control;
 use belvedere_data::crs::evidence::{CONTRADICTION_DISTANCE, distance_in_words};
 use belvedere_data::crs::{Crs, GeographicProjection};
@@ -135,9 +136,7 @@ pub fn azimuth_count(step: f64) -> Result<usize> {
         let expected = "a divisor of 360 degrees, such as 1, 2.5 or 7.5";
         return Err(Error::invalid(Parameter::AngleStep, format!("{}", step.to_degrees()), expected));
     }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to a million")]
-    let count = count.round() as usize;
-    Ok(count)
+    Ok(to_index(count.round()))
 }
 
 /// Meridian convergence at `position`, (x, y) metres in the system `crs`: the azimuth of grid north, clockwise from

@@ -2,6 +2,7 @@
 
 use belvedere_core::ground::Ground;
 use belvedere_core::query::{Curvature, EarthParams, MedialScene, merged_crossings};
+use belvedere_data::cast::to_u32;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
@@ -49,8 +50,7 @@ pub fn sight_profile(
     let is_far = |place: [f64; 3]| scene.is_on_far_terrain(place);
     let is_over_terrain = is_far(observer) || is_far(target);
     let bends = earth.bends(observer, target) || (is_over_terrain && earth.curvature != Curvature::Off);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most a million")]
-    let count = (span / step).ceil() as u32;
+    let count = to_u32((span / step).ceil());
     let row = |i: u32| {
         if i.is_multiple_of(CHECKED) {
             control.check()?;

@@ -4,7 +4,9 @@ use crate::landmark::LandmarkParams;
 use crate::solar_envelope::ConvexPolygon;
 use belvedere_core::ground::{Ground, MapGrid};
 use belvedere_core::query::{Answer, BackFaces, MedialScene, Sides, SurfacePiece, SurfacePieces, Viewer};
+use belvedere_data::cast::to_index;
 use belvedere_data::control::Control;
+use belvedere_data::error::check_length;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::{dot, length, sub, to_f32};
 use belvedere_data::{Error, Parameter, Result};
@@ -47,13 +49,7 @@ impl ProtectedView {
     /// [`Error::LengthMismatch`] for a ground of other cells.
     pub fn above_ground(&self, ground: &Ground) -> Result<Raster<f32>> {
         let (limits, heights) = (self.limits.values(), ground.heights.values());
-        if limits.len() != heights.len() {
-            return Err(Error::LengthMismatch {
-                what: "cells of the ground",
-                expected: limits.len(),
-                found: heights.len(),
-            });
-        }
+        check_length("cells of the ground", limits.len(), heights.len())?;
         let above = |(limit, height): (&f32, &f32)| match limit - height {
             room if room.is_nan() => f32::NAN,
             room => room.max(0.0),
@@ -204,11 +200,7 @@ impl Slope {
         if south > north_of(first) || north < north_of(first + rows) {
             return;
         }
-        let at = |value: f64, max: usize| {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the grid")]
-            let number = value.clamp(0.0, max as f64) as usize;
-            number
-        };
+        let at = |value: f64, max: usize| to_index(value).min(max);
         let from = at((grid.corner[1] - north) / grid.cell - first as f64, rows);
         let to = at(((grid.corner[1] - south) / grid.cell - first as f64).floor() + 1.0, rows);
         for row in from..to {

@@ -1,5 +1,6 @@
 //! Sampling error of a figure, from resampled blocks of targets.
 
+use belvedere_data::cast::{to_i64, to_index};
 use belvedere_data::random::uniform;
 use serde::Serialize;
 
@@ -31,13 +32,8 @@ impl Tiles {
     #[must_use]
     pub fn new(targets: &[[f32; 3]], side: f32) -> Self {
         let mut numbers = std::collections::BTreeMap::new();
-        let cells: Vec<[i64; 2]> = targets
-            .iter()
-            .map(|p| {
-                #[expect(clippy::cast_possible_truncation, reason = "`as` saturates, and NaN becomes 0")]
-                [0, 1].map(|axis| (p[axis] / side).floor() as i64)
-            })
-            .collect();
+        let cells: Vec<[i64; 2]> =
+            targets.iter().map(|p| [0, 1].map(|axis| to_i64((p[axis] / side).floor().into()))).collect();
         for &cell in &cells {
             numbers.insert(cell, 0_u32);
         }
@@ -64,9 +60,7 @@ pub fn resampled(count: usize, seed: u64, figure: impl Fn(Option<&[u32]>) -> Opt
         let mut weights = vec![0_u32; count];
         for draw in 0..count as u64 {
             let chosen = uniform(seed, resample * count as u64 + draw) * count as f64;
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to the count")]
-            let chosen = chosen as usize;
-            weights[chosen.min(count - 1)] += 1;
+            weights[to_index(chosen).min(count - 1)] += 1;
         }
         figure(Some(&weights))
     };
@@ -77,8 +71,7 @@ pub fn resampled(count: usize, seed: u64, figure: impl Fn(Option<&[u32]>) -> Opt
 fn percentiles(value: f64, mut resampled: Vec<f64>) -> Interval {
     resampled.sort_by(f64::total_cmp);
     let quantile = |share: f64| {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the list")]
-        let index = (share * (resampled.len().max(1) - 1) as f64).round() as usize;
+        let index = to_index((share * (resampled.len().max(1) - 1) as f64).round());
         resampled.get(index).copied().unwrap_or(value)
     };
     Interval { value, low: quantile(0.025), high: quantile(0.975) }

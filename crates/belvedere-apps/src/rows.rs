@@ -9,6 +9,7 @@ use crate::tree_light::{CrownLight, TreeLight};
 use belvedere_core::medium::{HALF_DEPTH, Medium};
 use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
+use belvedere_data::error::check_length;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -318,8 +319,5 @@ pub(crate) fn normals_of<'a>(normals: Option<&'a [[f32; 3]]>, rows: &Range<usize
 
 /// Checks that there is a normal for each target.
 pub(crate) fn check_normals(normals: Option<&[[f32; 3]]>, expected: usize) -> Result<()> {
-    match normals.map(<[_]>::len).filter(|&found| found != expected) {
-        Some(found) => Err(Error::LengthMismatch { what: "normals of targets", expected, found }),
-        None => Ok(()),
-    }
+    check_length("normals of targets", expected, normals.map_or(expected, <[_]>::len))
 }

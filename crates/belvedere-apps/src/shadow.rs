@@ -4,7 +4,9 @@ use crate::rows::{RowBlock, SkyObstacles, check_normals, fold_rows, normals_of};
 use crate::targets::Targets;
 use crate::tree_light::{Season, TreeLight};
 use belvedere_core::query::{Answer, MedialScene, Viewer};
+use belvedere_data::cast::to_f32;
 use belvedere_data::control::Control;
+use belvedere_data::error::check_length;
 use belvedere_data::vector::{cross, dot, unit};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
@@ -122,10 +124,7 @@ pub fn unproven_light(
     if scene.proof().is_none() {
         return Ok(None);
     }
-    let (expected, found) = (targets.len(), lit.len());
-    if expected != found {
-        return Err(Error::LengthMismatch { what: "shares of light", expected, found });
-    }
+    check_length("shares of light", targets.len(), lit.len())?;
     let of_target = |(position, &lit): (&[f32; 3], &f32)| {
         let is_doubtful =
             lit > 0.0 && scene.answer_unblocked_towards(position.map(f64::from), sun.to_sun) == Answer::Unproven;
@@ -209,10 +208,7 @@ pub fn lit_shares(
     if found < expected {
         return Err(Error::LengthMismatch { what: "directions of the sun", expected, found });
     }
-    let expected = matrix.target_count();
-    if let Some(found) = normals.map(<[_]>::len).filter(|&found| found != expected) {
-        return Err(Error::LengthMismatch { what: "normals of targets", expected, found });
-    }
+    check_normals(normals, matrix.target_count())?;
     let share = |target: usize| {
         let is_before = |(_, direction): &(usize, &[f64; 3])| {
             let is_before = normals.is_none_or(|normals| dot(normals[target].map(f64::from), **direction) > 0.0);
@@ -220,9 +216,7 @@ pub fn lit_shares(
         };
         let before = directions.iter().enumerate().filter(is_before);
         let light: f64 = before.map(|(column, _)| block.line(target, first + column).share(factor)).sum();
-        #[expect(clippy::cast_possible_truncation, reason = "a share")]
-        let share = (light / directions.len().max(1) as f64) as f32;
-        share
+        to_f32(light / directions.len().max(1) as f64)
     };
     Ok((0..matrix.target_count()).into_par_iter().with_min_len(CHUNK).map(share).collect())
 }

@@ -3,11 +3,11 @@
 use crate::rows::check_normals;
 use crate::sun::SunSchedule;
 use crate::targets::Targets;
-use crate::window_views::SeenKind;
+use crate::window_views::{SeenKind, check_kinds};
 use belvedere_core::query::{Blocker, MedialScene};
+use belvedere_data::Result;
 use belvedere_data::control::Control;
 use belvedere_data::vector::dot;
-use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 
 /// Maximum difference of the end of a step and the start of the next that follows it, hours: rounding of f32.
@@ -185,10 +185,7 @@ pub fn sun_calendars(
     control: &Control<'_>,
 ) -> Result<Vec<Vec<CalendarDay>>> {
     check_normals(targets.normals.as_deref(), targets.len())?;
-    let expected = scene.tree().rows().iter().map(|&row| row as usize + 1).max().unwrap_or(0);
-    if kinds.len() < expected {
-        return Err(Error::LengthMismatch { what: "kinds of balls", expected, found: kinds.len() });
-    }
+    check_kinds(scene, kinds)?;
     let of_target = |row: usize| {
         control.check()?;
         let days = match targets.is_target(row) {

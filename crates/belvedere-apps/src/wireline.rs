@@ -5,6 +5,7 @@
 
 use crate::towers::Tower;
 use belvedere_core::query::{Answer, EarthParams, MedialScene, VerticalLine, VisibleTerrain};
+use belvedere_data::cast::to_index;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
@@ -104,8 +105,7 @@ impl WirelineFrame {
     fn new(scene: &MedialScene, eye: [f64; 3], azimuth: f64, skyline: &[[f64; 2]], earth: &EarthParams) -> Self {
         let azimuths = || (0..FRAME_COLUMNS).map(|column| Self::azimuth_of(azimuth, column));
         let nearest = |azimuth: f64| {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most their number")]
-            let row = (azimuth.rem_euclid(TAU) / TAU * skyline.len() as f64).round() as usize;
+            let row = to_index((azimuth.rem_euclid(TAU) / TAU * skyline.len() as f64).round());
             skyline.get(row % skyline.len().max(1)).copied().unwrap_or([-PI / 2.0, f64::INFINITY])
         };
         let all: Vec<f64> = azimuths().collect();
@@ -219,8 +219,7 @@ impl RotorOutline {
         earth: &EarthParams,
     ) -> (Self, Option<[f64; 3]>) {
         let columns = 2.0 * radius / distance * WirelineFrame::plane_distance();
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most their maximum")]
-        let count = (columns.ceil().clamp(9.0, MAX_ROTOR_LINES as f64) as usize) | 1;
+        let count = to_index(columns.ceil().clamp(9.0, MAX_ROTOR_LINES as f64)) | 1;
         let across = [azimuth.cos(), -azimuth.sin()];
         let (mut whole, mut open, mut longest) = (0.0, 0.0, (0.0, None));
         let line = |i: usize| {

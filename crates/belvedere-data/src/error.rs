@@ -179,6 +179,14 @@ fn refusal(source: &std::io::Error) -> String {
     }
 }
 
+/// Checks that there are as many values as things that have one.
+///
+/// # Errors
+/// [`Error::LengthMismatch`].
+pub fn check_length(what: &'static str, expected: usize, found: usize) -> Result<()> {
+    if expected == found { Ok(()) } else { Err(Error::LengthMismatch { what, expected, found }) }
+}
+
 impl Error {
     /// Creates an [`Error::InvalidParameter`].
     #[must_use]

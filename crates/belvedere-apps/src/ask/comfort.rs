@@ -7,7 +7,7 @@ use super::remark::Remark;
 use super::scene::Scene;
 use super::sections::{ExposureSection, LinesSection, NamedValues, PeriodSection};
 use super::sky_view::SkyParts;
-use super::sun::{Days, sun_days_above};
+use super::sun::{Days, missing_days, sun_days_above};
 use super::sun_hours::days_in_words;
 use super::sun_place::SunPlace;
 use super::windows::{GivenWindows, WindowTargets};
@@ -141,7 +141,7 @@ impl ComfortQuestion {
         let site = self.place.site(scene, context, None)?;
         let zone = self.place.clock(&site, self.days.times(), context)?;
         let params = self.days.params(&self.place);
-        let Some(period) = self.days.period(&self.place, &site, &zone)? else { return missing_period() };
+        let Some(period) = self.days.period(&self.place, &site, &zone)? else { return missing_days() };
         let binning = match self.shade {
             ShadeAtEachSun::Kept => Binning::Exact,
             ShadeAtEachSun::NotKept => Binning::Auto,
@@ -152,16 +152,12 @@ impl ComfortQuestion {
     }
 }
 
-fn missing_period<T>() -> Result<T> {
-    Err(Error::invalid(Parameter::Period, "missing", "given as days or as two times"))
-}
-
 impl Ask for ComfortQuestion {
     type Found = ComfortResults;
 
     fn check(&self) -> Result<()> {
         if self.days.is_empty() {
-            return missing_period();
+            return missing_days();
         }
         self.days.check(&self.place)?;
         self.sky.directions()?;

@@ -7,7 +7,7 @@ use super::remark::Remark;
 use super::scene::Scene;
 use super::sections::{HeatSection, MeasuresSection, PlacesReport};
 use super::seen_kinds::kinds_of_balls;
-use super::sun::{Days, moment};
+use super::sun::{Days, missing_days, moment};
 use super::sun_and_sky::{Light, OnTargets};
 use super::sun_place::{SunPlace, remark_on_solar_hours};
 use super::trees::{ThroughTrees, remark_on_leaves};
@@ -214,7 +214,7 @@ impl HeatQuestion {
     fn days(&self, site: &Site, context: &mut Context) -> Result<(HeatDays, Zone)> {
         let weather = self.weather()?;
         let zone = self.place.clock(site, self.days.times(), context)?;
-        let Some(period) = self.dated().period(&self.place, site, &zone)? else { return missing_period() };
+        let Some(period) = self.dated().period(&self.place, site, &zone)? else { return missing_days() };
         context.add(remark_on_solar_hours("heat is computed", self.hours, &zone));
         let rows = HeatRows { period: &period, hours: self.hours.unwrap_or([0.0, 24.0]), zone: &zone };
         let mut found = days_of_heat(weather, &rows, site, (&self.surfaces, self.parts))?;
@@ -256,16 +256,12 @@ impl HeatQuestion {
     }
 }
 
-fn missing_period<T>() -> Result<T> {
-    Err(Error::invalid(Parameter::Period, "missing", "given as days or as two times"))
-}
-
 impl Ask for HeatQuestion {
     type Found = OnTargets;
 
     fn check(&self) -> Result<()> {
         if self.days.is_empty() {
-            return missing_period();
+            return missing_days();
         }
         if let Some([from, to]) = self.hours.filter(|[from, to]| !(0.0 <= *from && from <= to && *to <= 24.0)) {
             let expected = "0 to 24, the last not before the first";

@@ -4,6 +4,7 @@
 use super::remark::Remark;
 use super::viewer::remark_on_axis;
 use belvedere_core::model::SceneModel;
+use belvedere_data::cast::to_index;
 use belvedere_data::contradiction::{FoundContradiction, MESH_FLOATS, MESH_IS_HUGE, MESH_SINKS};
 use belvedere_data::report::rounded;
 
@@ -72,8 +73,7 @@ fn level_of_mesh(own: &MeshBox, mut tops: Vec<[f64; 3]>, name: &str) -> Option<F
         return None;
     }
     tops.sort_by(|a, b| a[2].total_cmp(&b[2]));
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a count")]
-    let at = |share: f64| tops.get((tops.len() as f64 * share) as usize).map(|place| place[2]);
+    let at = |share: f64| tops.get(to_index(tops.len() as f64 * share)).map(|place| place[2]);
     let (lowest, ground) = (at(LOWEST)?, at(GROUND)?);
     let below: Vec<f64> = tops.iter().filter(|p| is_around(own, [p[0], p[1]], 0.0)).map(|p| p[2]).collect();
     let supporting = below.iter().filter(|&&level| (level - base).abs() <= SUPPORT).count();

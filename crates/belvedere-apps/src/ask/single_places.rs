@@ -9,6 +9,7 @@ use super::standing::Standing;
 use crate::targets::{CellLevel, CellParams, Targets, grid_around, set_on_terrain};
 use belvedere_core::ground::{Ground, GroundPoints};
 use belvedere_data::Result;
+use belvedere_data::cast::to_f32s;
 use belvedere_data::control::Control;
 use belvedere_data::report::rounded;
 
@@ -76,8 +77,7 @@ pub(super) fn positions(
         .zip(sources)
         .map(|(position, height_from)| PlaceSection { position: in_file(position), height_from })
         .collect();
-    #[expect(clippy::cast_possible_truncation, reason = "local metres")]
-    Ok(positions.iter().map(|position| position.map(|v| v as f32)).collect())
+    Ok(positions.iter().map(|position| to_f32s(*position)).collect())
 }
 
 /// Height of the cell at a position on the map; `None` for one that is no target.

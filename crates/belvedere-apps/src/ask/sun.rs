@@ -9,6 +9,7 @@ use crate::shadow::ShadowSun;
 use crate::sun::{Date, DayParams, Period, Site, SunDay, Zone, sun_days, sun_position_with};
 use crate::sun_hours::RuleDays;
 use crate::tree_light::Season;
+use belvedere_data::cast::to_i32;
 use belvedere_data::report::rounded;
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
@@ -120,6 +121,11 @@ pub fn remark_on_sun(site: Option<Site>, [azimuth, elevation]: [f64; 2]) -> Opti
     })
 }
 
+/// Refuses a question without days.
+pub(super) fn missing_days<T>() -> Result<T> {
+    Err(Error::invalid(Parameter::Period, "missing", "given as days or as two times"))
+}
+
 impl Days {
     /// Returns true if there is no day.
     #[must_use]
@@ -219,10 +225,7 @@ impl Days {
 fn clock_steps(day: &SunDay, step: f64) -> impl Iterator<Item = f64> {
     let (start, steps) = (day.clock_start, &day.steps);
     let pieces = steps.iter().map(move |piece| [piece.start, piece.end].map(|end| (end - start) / step));
-    let numbers = pieces.flat_map(|[from, to]| {
-        #[expect(clippy::cast_possible_truncation, reason = "a few thousand steps of a day")]
-        (from.ceil() as i32..=to.floor() as i32)
-    });
+    let numbers = pieces.flat_map(|[from, to]| to_i32(from.ceil())..=to_i32(to.floor()));
     // neighbouring pieces share their ends
     let mut last = None;
     let numbers = numbers.filter(move |number| last.replace(*number) != Some(*number));

@@ -2,6 +2,7 @@
 
 use super::remark::Remark;
 use belvedere_data::ElevationGrid;
+use belvedere_data::cast::{to_i64, to_index};
 use belvedere_data::contradiction::{FoundContradiction, GROUND_HEIGHTS, TERRAIN_HEIGHTS};
 use belvedere_data::report::rounded;
 use std::collections::HashMap;
@@ -46,9 +47,7 @@ pub fn remark_on_terrain(
     let differs_by = |factor: f64| {
         let mut differences: Vec<f64> = pairs.iter().map(|[top, terrain]| (top - factor * terrain).abs()).collect();
         differences.sort_by(f64::total_cmp);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a count")]
-        let at = (differences.len() as f64 * GROUND_SHARE) as usize;
-        differences.get(at).copied().unwrap_or(0.0)
+        differences.get(to_index(differences.len() as f64 * GROUND_SHARE)).copied().unwrap_or(0.0)
     };
     let as_read = differs_by(1.0);
     if as_read <= AGREES {
@@ -92,8 +91,7 @@ pub(super) fn remark_on_ground_cloud(
     ground: &[[f32; 3]],
     places: impl ExactSizeIterator<Item = [f64; 3]>,
 ) -> Option<Remark> {
-    #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
-    let square = |x: f64, y: f64| [(x / SQUARE).floor() as i64, (y / SQUARE).floor() as i64];
+    let square = |x: f64, y: f64| [x, y].map(|v| to_i64((v / SQUARE).floor()));
     let mut lowest: HashMap<[i64; 2], f64> = HashMap::new();
     for [x, y, z] in ground.iter().map(|p| p.map(f64::from)) {
         let own = lowest.entry(square(x, y)).or_insert(z);
@@ -137,11 +135,7 @@ fn differing(offset: f64) -> FoundContradiction {
 fn common_offset(mut rises: Vec<f64>) -> Option<f64> {
     // from the lowest places upwards: what stands on the ground follows
     rises.sort_by(|a, b| b.total_cmp(a));
-    let share = |part: f64| {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a count")]
-        let count = (rises.len() as f64 * part) as usize;
-        count
-    };
+    let share = |part: f64| to_index(rises.len() as f64 * part);
     let (needed, below) = (share(GROUND_SHARE).max(1), share(MAX_SHARE_BELOW));
     SPREADS.into_iter().find_map(|spread| {
         let is_level = |start: &usize| rises.get(start + needed - 1).is_some_and(|last| rises[*start] - last <= spread);
@@ -168,8 +162,7 @@ mod tests {
 
     fn remark_of(level: f64, unit: f64, offset: f64) -> Option<Remark> {
         let height = |x: f64| level + 0.1 * x;
-        #[expect(clippy::cast_possible_truncation, reason = "tests")]
-        let node = |i: usize| (height((i % 30) as f64 * 10.0) / unit + offset) as f32;
+        let node = |i: usize| to_f32(height((i % 30) as f64 * 10.0) / unit + offset);
         let heights = Raster::from_values(30, 30, (0..900).map(node).collect()).unwrap();
         let grid = ElevationGrid::new(heights, [0.0, 290.0], [10.0, 10.0]).unwrap();
         let place = |i: usize| {

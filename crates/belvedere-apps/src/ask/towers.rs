@@ -16,6 +16,7 @@ use crate::viewshed::{OBSERVER_HEIGHT, Observer, SightLimits, far_targets, terra
 use crate::wireline::{Wireline, wireline};
 use belvedere_core::ground::GroundPoints;
 use belvedere_core::query::{EarthParams, MedialScene, UnprovenAs, VerticalLine};
+use belvedere_data::cast::to_index;
 use belvedere_data::control::Control;
 use belvedere_data::report::{percent, rounded};
 use belvedere_data::vector::to_f32;
@@ -181,8 +182,7 @@ impl TowersQuestion {
         let mut eyes = vec![[f32::NAN; 3]; size[0] * size[1]];
         let ([west, north], cell) = (terrain.north_west(), terrain.cell());
         for [x, y, z] in far_targets(blockers, &terrain) {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a node of the terrain")]
-            let [column, row] = [(x - west) / cell[0], (north - y) / cell[1]].map(|v| v.round() as usize);
+            let [column, row] = [(x - west) / cell[0], (north - y) / cell[1]].map(|v| to_index(v.round()));
             eyes[row * size[0] + column] = [x, y, z + height].map(to_f32);
         }
         // no pulse tells of terrain

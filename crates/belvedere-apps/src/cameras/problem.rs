@@ -1,6 +1,7 @@
 //! Targets to cover, and the part that a selection of cameras covers.
 
 use super::table::{CoverageTable, ones};
+use belvedere_data::error::check_length;
 use belvedere_data::{Error, Parameter, Result};
 
 /// Shares of all weight that differ by less are equal: sums of a million rounded terms are this exact.
@@ -20,10 +21,7 @@ pub(super) struct Problem<'a> {
 
 impl<'a> Problem<'a> {
     pub(super) fn new(table: &'a CoverageTable, weights: &[f64], required: u32) -> Result<Self> {
-        let (expected, found) = (table.target_count(), weights.len());
-        if expected != found {
-            return Err(Error::LengthMismatch { what: "weights of targets", expected, found });
-        }
+        check_length("weights of targets", table.target_count(), weights.len())?;
         if required == 0 {
             return Err(Error::invalid(Parameter::RequiredCameras, required, "1 or more"));
         }

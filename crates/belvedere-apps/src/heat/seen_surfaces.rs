@@ -8,6 +8,7 @@ use crate::window_views::SeenKind;
 use belvedere_core::medial::MedialBalls;
 use belvedere_core::query::{Blocker, MedialScene};
 use belvedere_data::control::Control;
+use belvedere_data::error::check_length;
 use belvedere_data::vector::{sub, to_f32, unit};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
@@ -85,10 +86,7 @@ impl SceneSurfaces<'_> {
             let found = self.points.len();
             return Err(Error::LengthMismatch { what: "points of balls", expected: points, found });
         }
-        let (expected, found) = (self.balls.len(), self.kinds.len());
-        if expected != found {
-            return Err(Error::LengthMismatch { what: "kinds of balls", expected, found });
-        }
+        check_length("kinds of balls", self.balls.len(), self.kinds.len())?;
         Ok(())
     }
 

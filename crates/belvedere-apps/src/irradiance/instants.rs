@@ -5,6 +5,7 @@ use super::clear_sky::ClearSky;
 use super::erbs::complete;
 use super::period::Instant;
 use crate::sun::{Site, SunPosition, Zone, sun_position};
+use belvedere_data::cast::to_index;
 use belvedere_data::weather::{Irradiance, Weather, WeatherStep};
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
@@ -104,8 +105,7 @@ pub fn clear_instants(
         let expected = "1 to 11 million steps";
         return Err(Error::invalid(Parameter::Period, format!("{from} to {to} in steps of {step} s"), expected));
     }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "tested to be a small count")]
-    let count = count as usize;
+    let count = to_index(count);
     let instants: Vec<Instant> = (0..count)
         .into_par_iter()
         .with_min_len(256)

@@ -3,9 +3,10 @@
 use super::period::{PeriodRadiation, Surroundings};
 use crate::rows::{RowBlock, check_normals, fold_rows, normals_of};
 use belvedere_core::query::{MedialScene, VisibilityMatrix};
+use belvedere_data::Result;
 use belvedere_data::control::Control;
+use belvedere_data::error::check_length;
 use belvedere_data::vector::dot;
-use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 
 /// Targets handed to a thread at once.
@@ -138,16 +139,13 @@ fn each_target(
     radiation: &PeriodRadiation,
     sum: impl Fn(usize, [f64; 3], &mut [Irradiation]) + Sync,
 ) -> Result<Vec<Irradiation>> {
-    let expected = radiation.sun_directions.len() + radiation.sky.directions.len();
-    if matrix.direction_count() != expected {
-        let found = matrix.direction_count();
-        return Err(Error::LengthMismatch { what: "directions of sun and sky", expected, found });
-    }
-    let expected = matrix.target_count();
-    if let Some(found) = normals.map(<[_]>::len).filter(|&found| found != expected) {
-        return Err(Error::LengthMismatch { what: "normals of targets", expected, found });
-    }
-    let mut sums = vec![Irradiation::default(); expected * radiation.group_count()];
+    check_length(
+        "directions of sun and sky",
+        radiation.sun_directions.len() + radiation.sky.directions.len(),
+        matrix.direction_count(),
+    )?;
+    check_normals(normals, matrix.target_count())?;
+    let mut sums = vec![Irradiation::default(); matrix.target_count() * radiation.group_count()];
     sums.par_chunks_mut(radiation.group_count()).enumerate().with_min_len(CHUNK).for_each(|(target, groups)| {
         let normal = normals.map_or([0.0, 0.0, 1.0], |normals| normals[target].map(f64::from));
         sum(target, normal, groups);

@@ -4,6 +4,7 @@
 use super::diffuse::{SkyModel, diffuse_parts};
 use super::patch_sky::patch_radiation;
 use crate::sky_view::SkyDirections;
+use belvedere_data::cast::to_u32;
 use belvedere_data::vector::unit;
 use belvedere_data::weather::Irradiance;
 use belvedere_data::{Error, Parameter, Result};
@@ -335,7 +336,6 @@ fn check(instant: &Instant) -> Result<()> {
 }
 
 /// The cell of a direction: rows of equal height from the horizon up, each in columns of about the same width.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "validated to be below a million cells")]
 fn sun_cell([x, y, z]: [f64; 3], side: f64) -> (u32, u32) {
     let row_count = (FRAC_PI_2 / side).ceil();
     let height = FRAC_PI_2 / row_count;
@@ -343,7 +343,7 @@ fn sun_cell([x, y, z]: [f64; 3], side: f64) -> (u32, u32) {
     let column_count = (TAU * ((row + 0.5) * height).cos() / side).ceil().max(1.0);
     let azimuth = x.atan2(y).rem_euclid(TAU);
     let column = (azimuth / TAU * column_count).floor().min(column_count - 1.0);
-    (row as u32, column as u32)
+    (to_u32(row), to_u32(column))
 }
 
 #[cfg(test)]

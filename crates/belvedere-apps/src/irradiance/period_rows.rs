@@ -7,10 +7,11 @@ use super::pvwatts::cover_transmission;
 use super::seasons::{RadiationSource, season_instants};
 use crate::sun::{Date, Site, Zone};
 use crate::tree_light::CrownLight;
+use belvedere_data::Result;
 use belvedere_data::control::Control;
+use belvedere_data::error::check_length;
 use belvedere_data::vector::{dot, length};
 use belvedere_data::weather::{RowsHold, Weather, WeatherStep};
-use belvedere_data::{Error, Result};
 
 /// A row of weather of an hour or more, an hour of shorter rows, or an hour of a clear sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -171,16 +172,11 @@ impl PeriodRows {
     /// [`Error::LengthMismatch`] for shares of other seasons or directions.
     pub fn on_plane(&self, normal: [f64; 3], light: Option<&[&[f32]]>) -> Result<Vec<RowRadiation>> {
         let mut found = vec![RowRadiation::default(); self.rows.len()];
-        if let Some(light) = light.filter(|light| light.len() != self.seasons.len()) {
-            let (expected, found) = (self.seasons.len(), light.len());
-            return Err(Error::LengthMismatch { what: "seasons of a plane", expected, found });
-        }
+        check_length("seasons of a plane", self.seasons.len(), light.map_or(self.seasons.len(), <[_]>::len))?;
         for (season, SeasonRows { radiation, numbers }) in self.seasons.iter().enumerate() {
             let own = light.and_then(|light| light.get(season).copied());
             let expected = radiation.sun_directions.len() + radiation.sky.directions.len();
-            if let Some(found) = own.map(<[f32]>::len).filter(|&found| found != expected) {
-                return Err(Error::LengthMismatch { what: "directions of sun and sky", expected, found });
-            }
+            check_length("directions of sun and sky", expected, own.map_or(expected, <[_]>::len))?;
             let share = |direction: usize| own.map_or(1.0, |own| own.get(direction).copied().map_or(0.0, f64::from));
             let mut groups = vec![Irradiation::default(); numbers.len()];
             on_plane(radiation, normal, share, &mut groups);

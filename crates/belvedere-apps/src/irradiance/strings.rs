@@ -4,6 +4,7 @@ use super::irradiation::{Irradiation, on_plane};
 use super::period::PeriodRadiation;
 use crate::rows::RowBlock;
 use belvedere_core::query::VisibilityMatrix;
+use belvedere_data::error::check_length;
 use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Result};
 
@@ -46,11 +47,7 @@ pub fn plane_irradiation(
     factor: f64,
 ) -> Result<PlaneIrradiation> {
     let matrix = &block.matrix;
-    let expected = radiation.directions().len();
-    if matrix.direction_count() != expected {
-        let found = matrix.direction_count();
-        return Err(Error::LengthMismatch { what: "directions of sun and sky", expected, found });
-    }
+    check_length("directions of sun and sky", radiation.directions().len(), matrix.direction_count())?;
     let found = matrix.target_count();
     if found < first + strings.len() {
         return Err(Error::LengthMismatch { what: "cells of a plane", expected: first + strings.len(), found });

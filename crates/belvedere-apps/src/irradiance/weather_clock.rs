@@ -80,6 +80,7 @@ fn middle_of_light(day: &[&WeatherStep]) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::sun::sun_position;
+    use belvedere_data::cast::to_u32;
     use belvedere_data::weather::{RowsHold, WeatherAir};
 
     /// Rows of so many hours on every fifth day of a year, under a clear sky and every third afternoon overcast, whose
@@ -92,8 +93,7 @@ mod tests {
             convergence: 0.0,
         };
         let start = 1_704_067_200.0;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows of a year")]
-        let count = (365.0 * 24.0 / hours) as u32;
+        let count = to_u32(365.0 * 24.0 / hours);
         let middle = |i: u32| start + (f64::from(i) + 0.5) * hours * 3600.0;
         // by the sun, whose days begin up to half a day earlier or later
         let day = |i: &u32| (middle(*i) / DAY_S + site.longitude / std::f64::consts::TAU).floor();

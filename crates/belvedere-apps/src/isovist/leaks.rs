@@ -1,5 +1,6 @@
 //! Rays that leave a room between the points of its surface: they are left out of the isovist.
 
+use belvedere_data::cast::to_index;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Thresholds for closed rooms and for gaps in their surface. Neighbouring values were not measured.
@@ -89,8 +90,7 @@ impl ClosedSurface {
     /// Range of the surface in the cell of a direction.
     pub(super) fn range_at(&self, [x, y, z]: [f64; 3]) -> Option<f64> {
         let step = TAU / self.width as f64;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "angles of a panorama")]
-        let cell = |angle: f64| (angle.max(0.0) / step) as usize;
+        let cell = |angle: f64| to_index(angle / step);
         let column = cell(x.atan2(y) + PI) % self.width;
         let row = cell(FRAC_PI_2 - z.clamp(-1.0, 1.0).asin()).min(self.width / 2 - 1);
         let range = self.ranges.get(row * self.width + column).copied().flatten();

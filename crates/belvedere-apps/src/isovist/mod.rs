@@ -14,6 +14,7 @@ pub use plan::PlanIsovist;
 pub use ranges::RadialStatistics;
 
 use belvedere_core::query::MedialScene;
+use belvedere_data::cast::to_index;
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::to_f32;
@@ -97,8 +98,7 @@ pub fn isovist_of(
 ) -> Result<Isovist> {
     params.validate()?;
     let reach = params.max_range;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "validated: 4 to 62 832")]
-    let width = ((TAU / params.step).round() as usize).next_multiple_of(4);
+    let width = to_index((TAU / params.step).round()).next_multiple_of(4);
     let height = width / 2;
     let step = TAU / width as f64;
     let within = |direction: [f64; 3]| range(direction).filter(|range| *range < reach);

@@ -1,6 +1,7 @@
 //! The cells of a plane: where it is, and where panels would lie.
 
 use super::fit::{PlaneFit, axes};
+use belvedere_data::cast::to_index;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::{dot, sub};
 
@@ -122,12 +123,10 @@ fn filled(flat: &[[f64; 2]], cell: f64, shift: f64) -> (Raster<bool>, [f64; 2], 
     let span = [0, 1].map(|axis| max(axis) - min(axis));
     let cell = cell.max(span[0].max(span[1]) / MAX_CELLS);
     let low = [0, 1].map(|axis| min(axis) - shift * cell);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "20 000 cells at most")]
-    let [width, height] = span.map(|span| (span / cell + shift).floor() as usize + 1);
+    let [width, height] = span.map(|span| to_index((span / cell + shift).floor()) + 1);
     let mut filled = Raster::filled(width, height, false);
     for [u, v] in flat {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not below zero, 20 000 at most")]
-        let (column, row) = (((u - low[0]) / cell) as usize, ((v - low[1]) / cell) as usize);
+        let (column, row) = (to_index((u - low[0]) / cell), to_index((v - low[1]) / cell));
         if let Some(value) = filled.values_mut().get_mut(row.min(height - 1) * width + column.min(width - 1)) {
             *value = true;
         }

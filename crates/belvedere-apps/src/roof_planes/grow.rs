@@ -5,6 +5,7 @@ use super::fit::{PlaneFit, fit};
 use belvedere_core::neighbors::NeighborIndex;
 use belvedere_core::normals::Normals;
 use belvedere_data::Result;
+use belvedere_data::cast::to_row;
 use belvedere_data::control::Control;
 use belvedere_data::vector::{dot, sub, to_f32};
 
@@ -38,8 +39,7 @@ pub(super) fn regions(
             continue;
         }
         control.check()?;
-        #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
-        let number = regions.len() as u32;
+        let number = to_row(regions.len());
         let Some(normal) = upward(normals.vectors[seed as usize]) else { continue };
         let start = PlaneFit { middle: points[seed as usize].map(f64::from), normal, roughness: 0.0 };
         let mut region = Region { points, index, normals, params, owner: &mut owner, number };
@@ -97,8 +97,7 @@ fn absorb(
 
 /// Rows from the flattest surroundings on.
 fn seeds(normals: &Normals) -> Vec<u32> {
-    #[expect(clippy::cast_possible_truncation, reason = "points are numbered with 32 bits")]
-    let mut seeds: Vec<u32> = (0..normals.vectors.len() as u32).collect();
+    let mut seeds: Vec<u32> = (0..to_row(normals.vectors.len())).collect();
     let quality = |row: u32| normals.quality.get(row as usize).copied().unwrap_or(0.0);
     seeds.sort_by(|&a, &b| quality(b).total_cmp(&quality(a)).then(a.cmp(&b)));
     seeds

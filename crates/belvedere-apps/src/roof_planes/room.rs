@@ -4,6 +4,7 @@ use super::RoofPlaneParams;
 use super::cells::PlaneCells;
 use super::fit::PlaneFit;
 use belvedere_core::neighbors::NeighborIndex;
+use belvedere_data::cast::{to_f32, to_f32s};
 use belvedere_data::vector::{dot, sub};
 use std::f64::consts::{PI, TAU};
 
@@ -47,9 +48,8 @@ impl<'a> Room<'a> {
             let offset = sub(self.points[row].map(f64::from), middle);
             [cells.along, cells.up, normal].map(|axis| dot(offset, axis))
         };
-        #[expect(clippy::cast_possible_truncation, reason = "local metres")]
         let near = |center: [f64; 3], radius: f64, visit: &mut dyn FnMut(usize)| {
-            self.index.within_radius(center.map(|v| v as f32), radius as f32, |found| visit(found.index as usize));
+            self.index.within_radius(to_f32s(center), to_f32(radius), |found| visit(found.index as usize));
         };
         let mut around = Vec::new();
         near(middle, self.reach, &mut |row| {

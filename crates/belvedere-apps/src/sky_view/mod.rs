@@ -8,9 +8,10 @@ use crate::rows::{RowBlock, SkyObstacles, check_normals, fold_rows, normals_of};
 use crate::sum_errors::{Intervals, Outlines, SumKind, expected_measures};
 use crate::targets::{Measure, Targets};
 use belvedere_core::query::VisibilityMatrix;
+use belvedere_data::Result;
 use belvedere_data::control::Control;
+use belvedere_data::error::check_length;
 use belvedere_data::vector::{dot, to_f32};
-use belvedere_data::{Error, Result};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
@@ -123,14 +124,8 @@ fn sky_shares(
     normals: Option<&[[f32; 3]]>,
     light: impl Fn(usize, usize) -> f64 + Sync,
 ) -> Result<SkyView> {
-    let expected = matrix.direction_count();
-    if sky.directions.len() != expected {
-        return Err(Error::LengthMismatch { what: "directions of the sky", expected, found: sky.directions.len() });
-    }
-    let expected = matrix.target_count();
-    if let Some(found) = normals.map(<[_]>::len).filter(|&found| found != expected) {
-        return Err(Error::LengthMismatch { what: "normals of targets", expected, found });
-    }
+    check_length("directions of the sky", matrix.direction_count(), sky.directions.len())?;
+    check_normals(normals, matrix.target_count())?;
     let shares: Vec<[f64; 2]> = (0..matrix.target_count())
         .into_par_iter()
         .with_min_len(CHUNK)

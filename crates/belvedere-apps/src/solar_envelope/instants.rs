@@ -1,6 +1,7 @@
 //! The suns that an envelope keeps: days and the hours between which they count.
 
 use crate::sun::{Date, DayParams, Site, Zone, sun_position_with};
+use belvedere_data::cast::to_index;
 use belvedere_data::{Error, Parameter, Result};
 
 /// Maximum number of instants: three years at 10 minutes.
@@ -34,8 +35,7 @@ pub fn envelope_suns(
     if !(10.0..=3600.0).contains(&params.step) {
         return Err(Error::invalid(Parameter::TimeStep, params.step, "10 to 3600 seconds"));
     }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "8640 at most")]
-    let count = ((between[1] - between[0]) * 3600.0 / params.step - 1e-9).ceil() as usize;
+    let count = to_index(((between[1] - between[0]) * 3600.0 / params.step - 1e-9).ceil());
     if dates.len().saturating_mul(count + 1) > MAX_INSTANTS {
         let expected = "at most 200 000";
         return Err(Error::invalid(Parameter::InstantCount, format!("{} x {}", dates.len(), count + 1), expected));

@@ -22,6 +22,7 @@ pub use protected::{ProtectedPiece, protected_faces, protected_line};
 use belvedere_core::ground::{Ground, MapGrid};
 use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
+use belvedere_data::error::check_length;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::{dot, length, to_f32};
 use belvedere_data::{Error, Parameter, Result};
@@ -287,14 +288,8 @@ fn check(
     params.validate()?;
     check_pairs(protected.len(), suns.len())?;
     let Some(free) = free else { return Ok(()) };
-    let sizes = [
-        ("shade of protected pieces", protected.len(), free.target_count()),
-        ("shade at suns", suns.len(), free.direction_count()),
-    ];
-    match sizes.into_iter().find(|(_, expected, found)| expected != found) {
-        Some((what, expected, found)) => Err(Error::LengthMismatch { what, expected, found }),
-        None => Ok(()),
-    }
+    check_length("shade of protected pieces", protected.len(), free.target_count())?;
+    check_length("shade at suns", suns.len(), free.direction_count())
 }
 
 impl SolarEnvelope {

@@ -2,6 +2,7 @@
 
 use super::convex::ConvexPolygon;
 use belvedere_core::ground::MapGrid;
+use belvedere_data::cast::to_index;
 use belvedere_data::polygon::simple_rings;
 use belvedere_data::{Error, Parameter, Result};
 
@@ -93,8 +94,7 @@ impl Parcel {
             let mut cells: Vec<Vec<ConvexPolygon>> = vec![Vec::new(); grid.width];
             for trapezoid in self.trapezoids(south, north) {
                 let [west, east] = trapezoid.span(0).map(|x| (x - grid.corner[0]) / grid.cell);
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates at the grid")]
-                let [first, last] = [west.floor().max(0.0) as usize, east.ceil().max(0.0) as usize];
+                let [first, last] = [west.floor(), east.ceil()].map(to_index);
                 for (column, cell) in cells.iter_mut().enumerate().take(last).skip(first) {
                     let [west, _] = grid.corner_at([column, row]);
                     let [east, _] = grid.corner_at([column + 1, row]);

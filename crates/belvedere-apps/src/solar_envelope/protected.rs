@@ -3,6 +3,7 @@
 use crate::targets::TARGET_LIFT;
 use belvedere_core::ground::Ground;
 use belvedere_core::query::SurfacePieces;
+use belvedere_data::cast::to_u32;
 use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Parameter, Result};
 
@@ -69,8 +70,7 @@ pub fn protected_line(
             return Err(Error::invalid(Parameter::Spacing, spacing, "enough for at most a million pieces"));
         }
         let at = |share: f64| [0, 1, 2].map(|i| a[i] + share * (b[i] - a[i]));
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most a million")]
-        for i in 0..count as u32 {
+        for i in 0..to_u32(count) {
             let [from, to] = [i, i + 1].map(|i| at(f64::from(i) / count));
             match (top(from), top(to)) {
                 (Some(from), Some(to)) => {

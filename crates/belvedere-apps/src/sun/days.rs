@@ -2,6 +2,7 @@
 
 use super::position::{SunTrack, transit};
 use super::{Date, Refraction, Site, Zone};
+use belvedere_data::cast::to_u32;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -102,8 +103,7 @@ pub fn sun_day(site: &Site, zone: &Zone, date: Date, within: Option<[f64; 2]>, p
     let [before, noon, after] = [-DAY, 0.0, DAY].map(|offset| transit(&site, mean_noon + offset));
     let (before, noon, after) = (before?, noon?, after?);
     let [start, end] = [f64::midpoint(before, noon), f64::midpoint(noon, after)];
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "24 to 8640")]
-    let count = (DAY / params.step - 1e-9).ceil() as u32;
+    let count = to_u32((DAY / params.step - 1e-9).ceil());
     let track = SunTrack::new(&site, [start, end], params.refraction)?;
     let edge = |number: u32| start + (end - start) * f64::from(number) / f64::from(count);
     let mut steps = Vec::new();
@@ -177,8 +177,7 @@ impl DayParams {
 /// The parts of a span of time during which the sun is up.
 fn light(track: &SunTrack, [start, end]: [f64; 2], min_elevation: f64) -> Vec<[f64; 2]> {
     let above = |t: f64| track.at(t).elevation > min_elevation;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an hour of samples at most")]
-    let count = ((end - start) / SAMPLING - 1e-9).ceil().max(1.0) as u32;
+    let count = to_u32(((end - start) / SAMPLING - 1e-9).ceil().max(1.0));
     let mut parts: Vec<[f64; 2]> = Vec::new();
     let mut from = (start, above(start));
     for sample in 1..=count {

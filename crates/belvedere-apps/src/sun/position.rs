@@ -1,6 +1,7 @@
 //! Position of the sun by the algorithm of NREL, from the crate `solar-positioning`.
 
 use super::Site;
+use belvedere_data::cast::{to_index, to_u32};
 use belvedere_data::view::to_sun;
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
@@ -126,8 +127,7 @@ impl SunTrack {
         let site = site.validate()?;
         let latitude_sin_cos = site.latitude.sin_cos();
         let first = (from / TRACK_STEP).floor();
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "49 half hours of a day")]
-        let count = ((to / TRACK_STEP).ceil() - first).max(1.0) as u32;
+        let count = to_u32(((to / TRACK_STEP).ceil() - first).max(1.0));
         let at = |number| {
             let sun = sun_position_with(&site, (first + f64::from(number)) * TRACK_STEP, Refraction::Without)?;
             Ok(equatorial(to_sun(sun.azimuth, sun.elevation), latitude_sin_cos))
@@ -140,8 +140,7 @@ impl SunTrack {
     /// Position at an instant of the span.
     pub(super) fn at(&self, unix_s: f64) -> SunPosition {
         let half_hours = unix_s / TRACK_STEP - self.first;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "49 half hours of a day")]
-        let number = (half_hours as usize).min(self.ends.len() - 1);
+        let number = to_index(half_hours).min(self.ends.len() - 1);
         let after = half_hours - number as f64;
         let [from, to] = self.ends[number];
         let mean = [0, 1, 2].map(|axis| from[axis] + after * (to[axis] - from[axis]));

@@ -1,6 +1,7 @@
 //! Directions that represent the suns of many days: the cost grows with the directions, not with the instants.
 
 use super::{Date, SunDay, declination};
+use belvedere_data::cast::{to_row, to_u32};
 use belvedere_data::vector::{dot, to_f32, unit};
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
@@ -109,7 +110,7 @@ impl SunSchedule {
             None => {
                 for (day, light) in days.iter().zip(&mut schedule.days) {
                     for (step, light) in day.steps.iter().zip(&mut light.steps) {
-                        light.direction = row(schedule.directions.len());
+                        light.direction = to_row(schedule.directions.len());
                         schedule.directions.push(step.direction);
                     }
                 }
@@ -162,8 +163,7 @@ impl SunSchedule {
         let mut members: Vec<((u32, u32), Member)> = Vec::new();
         for (day, (light, declination)) in days.iter().zip(&declinations).enumerate() {
             let share = if high > low { (declination - low) / (high - low) } else { 0.0 };
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to some thousand rows")]
-            let strip = (share * row_count).min(row_count - 1.0) as u32;
+            let strip = to_u32((share * row_count).min(row_count - 1.0));
             members.extend(light.steps.iter().enumerate().map(|(step, sun)| {
                 let hours = (sun.end - sun.start) / 3600.0;
                 ((strip, sun.number), Member { day, step, direction: sun.direction, hours })
@@ -183,7 +183,7 @@ impl SunSchedule {
                 if !left.iter().any(|member| angle_between(member.direction, direction) <= angle) {
                     direction = first.direction;
                 }
-                let number = row(self.directions.len());
+                let number = to_row(self.directions.len());
                 self.directions.push(direction);
                 let (strip, step) = shared[0].0;
                 places.push((strip, turn, step));
@@ -208,7 +208,7 @@ impl SunSchedule {
         self.directions = order.iter().map(|&number| self.directions[number]).collect();
         let mut renumbered = vec![0; order.len()];
         for (new, &old) in order.iter().enumerate() {
-            renumbered[old] = row(new);
+            renumbered[old] = to_row(new);
         }
         for step in self.days.iter_mut().flat_map(|day| &mut day.steps) {
             step.direction = renumbered[step.direction as usize];
@@ -244,9 +244,4 @@ fn checked(angle: f64) -> Result<f64> {
 fn angle_between(a: [f64; 3], b: [f64; 3]) -> f64 {
     let apart = belvedere_data::vector::sub(a, b);
     2.0 * (0.5 * dot(apart, apart).sqrt()).min(1.0).asin()
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "far fewer than 4 billion directions fit a day of steps")]
-fn row(count: usize) -> u32 {
-    count as u32
 }

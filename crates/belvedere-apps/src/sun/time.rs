@@ -2,6 +2,7 @@
 //! read.
 
 use super::Site;
+use belvedere_data::cast::{to_i32, to_i64};
 use belvedere_data::{Error, Parameter, Result};
 use jiff::civil::DateTime;
 use jiff::fmt::temporal::{Pieces, PiecesOffset};
@@ -54,8 +55,7 @@ impl Zone {
     /// The mean solar time of a site: 4 minutes a degree of longitude from UTC, to the second.
     #[must_use]
     pub fn mean_solar(site: &Site) -> Self {
-        #[expect(clippy::cast_possible_truncation, reason = "a saturated cast of at most a day of seconds")]
-        let seconds = (site.longitude.to_degrees() * 240.0).round() as i32;
+        let seconds = to_i32((site.longitude.to_degrees() * 240.0).round());
         let offset = Offset::from_seconds(seconds).unwrap_or(Offset::UTC);
         Self { zone: TimeZone::fixed(offset), name: MEAN_SOLAR.to_owned() }
     }
@@ -114,8 +114,7 @@ impl Zone {
         if !(hour.abs() <= 48.0) {
             return Err(failed());
         }
-        #[expect(clippy::cast_possible_truncation, reason = "two days of milliseconds at most")]
-        let milliseconds = (hour * 3.6e6).round() as i64;
+        let milliseconds = to_i64((hour * 3.6e6).round());
         let shown = date.0.to_datetime(jiff::civil::Time::midnight()).checked_add(milliseconds.milliseconds());
         let instant = shown.and_then(|shown| self.zone.to_ambiguous_timestamp(shown).compatible());
         instant.map(seconds).map_err(|_| failed())
@@ -295,9 +294,7 @@ fn offset(text: &str) -> Option<Offset> {
 }
 
 fn timestamp(unix_s: f64) -> Option<Timestamp> {
-    #[expect(clippy::cast_possible_truncation, reason = "a saturated cast, which no calendar holds")]
-    let milliseconds = (unix_s * 1e3).round() as i64;
-    Timestamp::from_millisecond(milliseconds).ok().filter(|_| unix_s.is_finite())
+    Timestamp::from_millisecond(to_i64((unix_s * 1e3).round())).ok().filter(|_| unix_s.is_finite())
 }
 
 fn seconds(t: Timestamp) -> f64 {

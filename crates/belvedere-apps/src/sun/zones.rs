@@ -4,6 +4,7 @@
 //! tz_world (Eric Muller, 2013, public domain), as cells of a quarter of a degree.
 
 use super::{Site, Zone};
+use belvedere_data::cast::to_index;
 
 const CELLS: &str = include_str!("zones.txt");
 /// Cells a degree.
@@ -45,8 +46,7 @@ fn cell(angle: f64, limit: f64) -> Option<usize> {
     let degrees = angle.to_degrees();
     let last = 2.0 * limit * CELLS_PER_DEGREE - 1.0;
     let index = ((degrees + limit) * CELLS_PER_DEGREE).floor().min(last);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1439")]
-    (degrees.abs() <= limit).then_some(index as usize)
+    (degrees.abs() <= limit).then_some(to_index(index))
 }
 
 #[cfg(test)]

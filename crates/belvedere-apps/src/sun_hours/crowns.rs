@@ -2,9 +2,12 @@
 
 use super::stretches::{DayStretch, runs_of};
 use super::{CHUNK, Counted, ROUNDING, SunHours, SunHoursParams, sun_hours};
+use crate::rows::check_normals;
 use crate::rows::{LineLight, RowBlock};
 use crate::sun::SunSchedule;
 use belvedere_core::query::VisibilityMatrix;
+use belvedere_data::cast::to_row;
+use belvedere_data::error::check_length;
 use belvedere_data::vector::{dot, to_f32};
 use belvedere_data::{Error, Result};
 use rayon::prelude::*;
@@ -27,18 +30,12 @@ pub fn sun_hours_through_crowns(
     params: &SunHoursParams,
     factors: &[f64],
 ) -> Result<SunHours> {
-    let (expected, found) = (schedule.days.len(), factors.len());
-    if expected != found {
-        return Err(Error::LengthMismatch { what: "factors of crowns of days", expected, found });
-    }
+    check_length("factors of crowns of days", schedule.days.len(), factors.len())?;
     let (expected, found) = (params.first_direction + schedule.directions.len(), block.matrix.direction_count());
     if expected > found {
         return Err(Error::LengthMismatch { what: "directions of the matrix", expected, found });
     }
-    if let Some(found) = normals.map(<[_]>::len).filter(|&found| found != block.matrix.target_count()) {
-        let expected = block.matrix.target_count();
-        return Err(Error::LengthMismatch { what: "normals of targets", expected, found });
-    }
+    check_normals(normals, block.matrix.target_count())?;
     let by_factor = DaysByFactor::new(schedule, factors);
     let (direction_count, column_count) = (schedule.directions.len(), by_factor.schedule.directions.len());
     let width = column_count.div_ceil(WORD);
@@ -96,8 +93,7 @@ impl DaysByFactor {
             if kind == kinds.len() {
                 kinds.push(factor);
             }
-            #[expect(clippy::cast_possible_truncation, reason = "rows of a schedule, for two factors or so")]
-            let first = (kind * schedule.directions.len()) as u32;
+            let first = to_row(kind * schedule.directions.len());
             day.steps.iter_mut().for_each(|step| step.direction += first);
         }
         by_factor.directions = schedule.directions.repeat(kinds.len());

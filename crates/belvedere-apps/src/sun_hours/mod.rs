@@ -9,6 +9,7 @@ pub use crowns::sun_hours_through_crowns;
 pub use plan::{PlannedRule, SunPlan, SunSums, scene_sun_hours};
 pub use rules::{Counted, NeededDays, RuleDays, RuleWindow, SunRule, WindowClock};
 
+use crate::rows::check_normals;
 use crate::sun::SunSchedule;
 use belvedere_core::query::VisibilityMatrix;
 use belvedere_data::vector::{dot, to_f32};
@@ -104,10 +105,7 @@ pub fn sun_hours(
         let (expected, found) = (columns.end, matrix.direction_count());
         return Err(Error::LengthMismatch { what: "directions of the matrix", expected, found });
     }
-    let expected = matrix.target_count();
-    if let Some(found) = normals.map(<[_]>::len).filter(|&found| found != expected) {
-        return Err(Error::LengthMismatch { what: "normals of targets", expected, found });
-    }
+    check_normals(normals, matrix.target_count())?;
     if !(0.0..=24.0).contains(&params.sufficient_hours) {
         let value = params.sufficient_hours.to_string();
         return Err(Error::invalid(Parameter::SufficientHours, value, "0 to 24"));

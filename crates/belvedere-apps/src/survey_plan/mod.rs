@@ -15,6 +15,7 @@ pub use scanner::{STATION_HEIGHT, ScannerParams};
 use crate::cameras::{CoverageTable, Goal, Placement, PlacementParams, place_cameras};
 use belvedere_core::ground::Ground;
 use belvedere_core::query::{MedialScene, Proof};
+use belvedere_data::cast::to_i64;
 use belvedere_data::control::Control;
 use belvedere_data::vector::{length, sub};
 use belvedere_data::{Error, Result};
@@ -109,8 +110,7 @@ impl OpenSpace {
                 let middles = (0..).map(f64::from).take_while(|number| *number < count);
                 for at in middles.map(|number| (number + 0.5) / count) {
                     let place: [f64; 3] = std::array::from_fn(|i| from[i] + at * along[i]);
-                    #[expect(clippy::cast_possible_truncation, reason = "`as` saturates")]
-                    let cell = place.map(|v| (v / side).floor() as i64);
+                    let cell = place.map(|v| to_i64((v / side).floor()));
                     let number = *by_cell.entry(cell).or_insert_with(|| {
                         places.push(place);
                         places.len() - 1

@@ -4,6 +4,7 @@ use super::scanner::{STATION_HEIGHT, ScannerParams};
 use belvedere_core::ground::Ground;
 use belvedere_core::pulses::FreeSegmentParams;
 use belvedere_core::query::{MedialScene, Proof};
+use belvedere_data::cast::to_index;
 use belvedere_data::vector::{cross, dot, length, sub, to_f32, unit};
 use belvedere_data::view::panorama_direction;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI, TAU};
@@ -47,8 +48,7 @@ impl<'a> SeenCells<'a> {
         let extent = [0, 1, 2].map(|i| (high[i] - low[i]).max(0.0));
         let side = extent.iter().map(|extent| extent + CELL).product::<f64>() / MAX_CELLS;
         let side = side.cbrt().max(CELL);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most some 64 million together")]
-        let size = extent.map(|extent| (extent / side) as usize + 1);
+        let size = extent.map(|extent| to_index(extent / side) + 1);
         let cells = (0..size.iter().product()).map(|_| AtomicU8::new(UNKNOWN)).collect();
         Self { proof, low, side, size, cells }
     }
@@ -58,8 +58,7 @@ impl<'a> SeenCells<'a> {
         let mut cell = [0; 3];
         for axis in 0..3 {
             let at = (place[axis] - self.low[axis]) / self.side;
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
-            let index = at as usize;
+            let index = to_index(at);
             if !(at >= 0.0) || index >= self.size[axis] {
                 return false;
             }
@@ -178,8 +177,7 @@ impl<'a> VirtualScan<'a> {
     fn way(&mut self, towards: [f64; 3]) -> ([f64; 3], [f32; LEVELS.len()]) {
         let [x, y, z] = towards;
         let step = TAU / COLUMNS as f64;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a pixel; `as` saturates")]
-        let cell = |angle: f64, count: usize| ((angle / step) as usize).min(count - 1);
+        let cell = |angle: f64, count: usize| to_index(angle / step).min(count - 1);
         let column = cell(x.atan2(y) + PI, COLUMNS);
         let row = cell(FRAC_PI_2 - z.atan2(x.hypot(y)), ROWS);
         let direction = panorama_direction(COLUMNS, [column, row]);

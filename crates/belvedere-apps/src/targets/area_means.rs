@@ -2,6 +2,7 @@
 
 use super::{Measure, Targets};
 use belvedere_core::ground::MapGrid;
+use belvedere_data::cast::to_index;
 use belvedere_data::polygon::PolygonIndex;
 use belvedere_data::{Error, Result};
 use std::ops::Range;
@@ -78,7 +79,6 @@ fn cells_in(area: &[Vec<Vec<[f64; 2]>>], grid: &MapGrid) -> Vec<usize> {
 
 /// Returns the columns or rows that a range touches, of `count`; none for NaN.
 fn whole_range([low, high]: [f64; 2], count: usize) -> Range<usize> {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturated casts within a grid")]
-    let [low, high] = [low.floor().max(0.0) as usize, high.ceil().max(0.0) as usize].map(|end| end.min(count));
+    let [low, high] = [low.floor(), high.ceil()].map(|end| to_index(end).min(count));
     low..high
 }

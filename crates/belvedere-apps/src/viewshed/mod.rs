@@ -13,7 +13,9 @@ use crate::targets::Measure;
 use belvedere_core::ground::Ground;
 use belvedere_core::query::target_tree::TargetTree;
 use belvedere_core::query::{Answer, EarthParams, MedialScene, UnprovenAs, Viewer};
+use belvedere_data::cast::to_row;
 use belvedere_data::control::Control;
+use belvedere_data::error::check_length;
 use belvedere_data::raster::Raster;
 use belvedere_data::vector::to_f32;
 use belvedere_data::{Error, Parameter, Result};
@@ -204,10 +206,7 @@ pub fn viewshed_among(
     control: &Control<'_>,
 ) -> Result<Viewshed> {
     check(observers, &params.earth)?;
-    let (expected, found) = (targets.len(), tree.len());
-    if expected != found {
-        return Err(Error::LengthMismatch { what: "tree of targets", expected, found });
-    }
+    check_length("tree of targets", targets.len(), tree.len())?;
     let queried = ViewshedTree { scene, tree, targets, params };
     let mut result = Viewshed {
         answers: queried.before_anybody_sees(observers),
@@ -295,8 +294,7 @@ impl ViewshedTree<'_> {
                 seen[row] |= 1 << number;
                 seen_counts[number] += 1;
             }
-            #[expect(clippy::cast_possible_truncation, reason = "targets are numbered with 32 bits")]
-            Answer::Unproven => unproven.push(row as u32),
+            Answer::Unproven => unproven.push(to_row(row)),
             _ => {}
         };
         let can_look = |observer: &Observer| observer.eye.iter().all(|v| v.is_finite());

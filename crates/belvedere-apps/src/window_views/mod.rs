@@ -86,10 +86,7 @@ pub fn window_views(
         return Err(Error::UnsupportedTargets { method: "window views", what });
     };
     check_normals(Some(normals), targets.len())?;
-    let expected = scene.tree().rows().iter().map(|&row| row as usize + 1).max().unwrap_or(0);
-    if kinds.balls.len() < expected {
-        return Err(Error::LengthMismatch { what: "kinds of balls", expected, found: kinds.balls.len() });
-    }
+    check_kinds(scene, kinds.balls)?;
     let of_group = |group: &std::ops::Range<usize>| {
         let mut sums = Sums::default();
         for row in group.clone() {
@@ -244,4 +241,10 @@ impl Sums {
             unproven: self.unproven / whole,
         }
     }
+}
+
+/// Checks that each ball of a scene has a kind.
+pub(crate) fn check_kinds(scene: &MedialScene, kinds: &[SeenKind]) -> Result<()> {
+    let (expected, found) = (scene.tree().rows().iter().map(|&row| row as usize + 1).max().unwrap_or(0), kinds.len());
+    if found < expected { Err(Error::LengthMismatch { what: "kinds of balls", expected, found }) } else { Ok(()) }
 }

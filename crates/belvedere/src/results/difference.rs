@@ -1,5 +1,6 @@
 //! Changes of cells as maps.
 
+use crate::cast::to_index;
 use crate::figures::{MapLegend, MapPicture, Picture, map_picture};
 use crate::io::Georeference;
 use crate::raster::Raster;
@@ -32,8 +33,7 @@ pub fn relief_of(cloud: &PointCloud, place: &Georeference, [width, height]: [usi
         if !(column >= 0.0 && row >= 0.0 && column < width as f64 && row < height as f64) {
             continue;
         }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the raster")]
-        let at = row as usize * width + column as usize;
+        let at = to_index(row) * width + to_index(column);
         if let Some(highest) = heights.get_mut(at) {
             *highest = highest.max(position[2]);
         }
@@ -55,12 +55,10 @@ pub fn difference_map(
 ) -> Result<Picture> {
     let mut sizes: Vec<f32> = change.values().iter().map(|v| v.abs()).filter(|v| *v > 0.0).collect();
     sizes.sort_by(f32::total_cmp);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place in the list")]
     let large =
-        sizes.get((sizes.len() as f64 * (1.0 - DARKEST)) as usize).or(sizes.last()).map_or(1.0, |v| f64::from(*v));
+        sizes.get(to_index(sizes.len() as f64 * (1.0 - DARKEST))).or(sizes.last()).map_or(1.0, |v| f64::from(*v));
     let step = round_step(large / 2.0);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 2")]
-    let grade = |size: f64| ((size / step) as usize).min(2);
+    let grade = |size: f64| to_index(size / step).min(2);
     let color = |&value: &f32| match f64::from(value) {
         value if value > 0.0 => Some(GAIN[grade(value)]),
         value if value < 0.0 => Some(LOSS[grade(-value)]),

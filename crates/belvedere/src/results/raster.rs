@@ -4,6 +4,8 @@
 use crate::apps::difference::described;
 use crate::apps::targets::{Measure, ResultKind};
 use crate::apps::viewshed::{SEEN, SEEN_BY, Viewshed};
+use crate::cast::to_u32;
+use crate::error::check_length;
 use crate::io::{
     BandLabel, BandValues, Bands, Georeference, MetadataTag, ReadBands, Source, read_tif_bands, write_cog,
     write_tif_bands,
@@ -73,8 +75,7 @@ impl Pixels {
     pub fn of_measures(measures: &[Measure], [width, height]: [usize; 2]) -> Result<Self> {
         let kind = measures.first().map_or(ResultKind::Number, |measure| measure.kind);
         let bands = measures.iter().map(|measure| measure.values.clone());
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts")]
-        let count = |value: f32| ResultKind::count(value.is_finite().then_some(value as u32));
+        let count = |value: f32| ResultKind::count(value.is_finite().then(|| to_u32(value.into())));
         let answer = |value: f32| ResultKind::answer(value.is_finite().then_some(value > 0.0));
         match kind {
             ResultKind::Answer if measures.iter().all(|measure| measure.kind == kind) => {
@@ -280,9 +281,7 @@ fn in_f32<T: Copy + PartialEq + Into<f32>>(raster: &Raster<T>, nothing: T) -> Re
 }
 
 fn put<T: Copy>(all: &mut [Raster<T>], tile: &[Raster<T>], [column, row]: [i64; 2], side: usize) -> Result<()> {
-    if all.len() != tile.len() {
-        return Err(Error::LengthMismatch { what: "bands of a tile", expected: all.len(), found: tile.len() });
-    }
+    check_length("bands of a tile", all.len(), tile.len())?;
     let count = |number: i64| usize::try_from(number).unwrap_or(0);
     for (all, tile) in all.iter_mut().zip(tile) {
         if tile.width() != side || tile.height() != side {

@@ -1,10 +1,10 @@
 //! Charts of a report as SVG: strips of days, and the sky before a window with the paths of the sun.
 
 use super::SunlightReport;
-use super::numbers::whole;
 use super::words::Words;
 use crate::apps::sun_calendar::{CalendarDay, SunLine, SunObstacle};
 use crate::apps::window_views::SeenKind;
+use crate::cast::to_index;
 use crate::report::clock_time;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write as _;
@@ -71,7 +71,7 @@ impl SkyView {
     /// Looks with `lines` from a window that faces `azimuth` from grid north, radians; south where it faces up.
     pub(super) fn new(azimuth: f64, lines: impl Fn(&[[f64; 3]]) -> Vec<SunLine>) -> Self {
         let azimuth = if azimuth.is_finite() { azimuth } else { PI };
-        let count = |reach: f64, step: f64| whole((reach / step).round());
+        let count = |reach: f64, step: f64| to_index((reach / step).round());
         let [across, up] = [count(2.0 * SKY_REACH[0], SKY_STEP[0]), count(SKY_REACH[1], SKY_STEP[1])];
         let column = |number: usize| {
             let from_middle = (number as f64 + 0.5) * SKY_STEP[0] - SKY_REACH[0];

@@ -1,10 +1,6 @@
 //! Numbers of a report as its reader wants them.
 
-/// A number of things that is small and not negative.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
-pub(super) fn whole(value: f64) -> usize {
-    value as usize
-}
+use crate::cast::to_index;
 
 /// Hours as hours and minutes: 3:12.
 pub(super) fn hm(hours: f64) -> String {
@@ -13,7 +9,7 @@ pub(super) fn hm(hours: f64) -> String {
     }
     let minutes = (hours.abs() * 60.0).round();
     let sign = if hours < 0.0 && minutes > 0.0 { "−" } else { "" };
-    format!("{sign}{}:{:02}", whole(minutes) / 60, whole(minutes) % 60)
+    format!("{sign}{}:{:02}", to_index(minutes) / 60, to_index(minutes) % 60)
 }
 
 /// A change of hours in minutes, with its sign.
@@ -29,7 +25,7 @@ pub(super) fn change(before: f64, after: f64) -> String {
 
 /// Hours in a sentence: 3 h 12 min.
 pub(super) fn hours_in_words(hours: f64) -> String {
-    let minutes = whole((hours * 60.0).round());
+    let minutes = to_index((hours * 60.0).round());
     match (minutes / 60, minutes % 60) {
         (0, minutes) => format!("{minutes} min"),
         (hours, 0) => format!("{hours} h"),

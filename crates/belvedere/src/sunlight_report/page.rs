@@ -2,7 +2,7 @@
 
 use super::area_tables::area_table;
 use super::charts::{LEGEND, color, name_of, sky, strips};
-use super::numbers::{change, hm, hours_in_words, whole};
+use super::numbers::{change, hm, hours_in_words};
 use super::sentences::{rule_in_words, sentences, verdict_words};
 use super::verdict::RuleFinding;
 use super::words::{Words, escaped};
@@ -12,6 +12,7 @@ use crate::apps::sun::Date;
 use crate::apps::sun_calendar::{CalendarDay, SunObstacle};
 use crate::apps::sun_hours::NeededDays;
 use crate::apps::targets::Window;
+use crate::cast::to_index;
 use crate::figures::{MapLegend, MapMark, MapPicture, map_image, png_bytes};
 use crate::report::clock_time;
 use base64::Engine as _;
@@ -143,7 +144,7 @@ fn compass(azimuth: f64, words: &Words) -> String {
     if !azimuth.is_finite() {
         return "–".to_owned();
     }
-    let eighth = whole((azimuth / 45.0).round()) % 8;
+    let eighth = to_index((azimuth / 45.0).round()) % 8;
     format!("{} ({azimuth:.0}°)", words.get("compass").split('|').nth(eighth).unwrap_or_default())
 }
 
@@ -227,7 +228,7 @@ fn maps(report: &SunlightReport, words: &Words) -> Result<String> {
         MapMark { place, view: None, label: (number + 1).to_string() }
     };
     let marks: Vec<MapMark> = report.before.calendar.windows.iter().enumerate().map(mark).collect();
-    let factor = whole(PICTURE_SIDE / relief.width().max(relief.height()).max(1) as f64).clamp(1, 8);
+    let factor = to_index(PICTURE_SIDE / relief.width().max(relief.height()).max(1) as f64).clamp(1, 8);
     let mut pictures = String::new();
     for (was, will) in before.lit.iter().zip(&last.lit) {
         let after = report.after.as_ref().map(|_| (&will.cells[..], &last.is_plan[..]));

@@ -9,6 +9,7 @@ use crate::cameras::{CAMERA_TARGET_HEIGHT, WeightedArea, keep_within};
 use crate::targets::{Targets, set_on_ground};
 use belvedere_core::ground::GroundPoints;
 use belvedere_data::control::Control;
+use belvedere_data::error::check_length;
 use belvedere_data::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 
@@ -91,10 +92,7 @@ impl CameraTargets {
             _ => Targets::clone(&*places.targets(site.scene, context, control)?),
         };
         if !self.weights.is_empty() {
-            let (expected, found) = (targets.len(), self.weights.len());
-            if found != expected {
-                return Err(Error::LengthMismatch { what: "weights of targets", expected, found });
-            }
+            check_length("weights of targets", targets.len(), self.weights.len())?;
             targets.weights.clone_from(&self.weights);
         }
         if targets.target_count() == 0 {
