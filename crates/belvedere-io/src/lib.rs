@@ -38,7 +38,7 @@ mod weather;
 mod write_cloud;
 
 #[cfg(feature = "npy")]
-pub use arrays::write_masbcpp::{MasbcppFolder, write_masbcpp};
+pub use arrays::masbcpp::{MasbcppFolder, write_masbcpp};
 #[cfg(feature = "npy")]
 pub use arrays::write_npy::{write_npy_f32, write_npy_f32_2d, write_npy_u8, write_npy_u32_2d, write_npy_u32_bands};
 pub use balls::files::{is_ball_file, read_balls, write_balls};
@@ -79,8 +79,7 @@ pub use map_features::{
 pub use mesh::cityjson::{LevelOfDetail, read_cityjson};
 pub use mesh::footprints::read_footprints;
 pub use mesh::polygons::MeshReport;
-pub use mesh::write_faces::write_mesh;
-pub use mesh::write_values::write_mesh_values;
+pub use mesh::write::{write_mesh, write_mesh_values};
 pub use mesh::{is_mesh, read_mesh, read_mesh_in};
 pub use points::columns::{ExtraColumn, ExtraValues, WriteReport};
 pub use points::read_options::{DistantFiles, Insistence, ReadOptions, RowNumbers, UpAxis, Within};

@@ -46,11 +46,10 @@ pub fn write_cloud<'a>(
             .map(|report| of_attributes(report, cloud)),
         "csv" => write_table::write(output, cloud, &columns, ',').map(|report| of_attributes(report, cloud)),
         "xyz" | "txt" => write_table::write(output, cloud, &columns, ' ').map(|report| of_attributes(report, cloud)),
-        "npy" if !columns.is_empty() => Err(Error::invalid(
-            Parameter::ResultColumns,
-            "written as .npy",
-            "written as one of .las .laz .ply .csv .xyz .txt",
-        )),
+        "npy" if !columns.is_empty() => {
+            let expected = "written as one of .las .laz .ply .csv .xyz .txt";
+            Err(Error::invalid(Parameter::ResultColumns, "written as .npy", expected))
+        }
         #[cfg(feature = "npy")]
         "npy" => write_npy::write_coordinates(output, cloud),
         _ => Err(unusable(output.name(), "point cloud output", SUPPORTED)),
@@ -66,12 +65,7 @@ fn of_attributes(mut report: WriteReport, cloud: &PointCloud) -> WriteReport {
 /// Names go into text headers of several formats: a blank or a comma in one would shift all later columns.
 fn check_names(columns: &[Column<'_>]) -> Result<()> {
     let usable = |name: &str| !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c));
-    match columns.iter().find(|c| !usable(&c.name)) {
-        Some(c) => Err(Error::invalid(
-            Parameter::ResultColumns,
-            format!("named {:?}", c.name),
-            "named by ASCII letters, digits, '_', '-' and '.'",
-        )),
-        None => Ok(()),
-    }
+    let expected = "named by ASCII letters, digits, '_', '-' and '.'";
+    let refused = |c: &Column<'_>| Error::invalid(Parameter::ResultColumns, format!("named {:?}", c.name), expected);
+    columns.iter().find(|c| !usable(&c.name)).map_or(Ok(()), |c| Err(refused(c)))
 }

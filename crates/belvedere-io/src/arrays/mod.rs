@@ -4,5 +4,4 @@ pub(crate) mod header;
 pub(crate) mod masbcpp;
 pub(crate) mod npy;
 pub(crate) mod npz;
-pub(crate) mod write_masbcpp;
 pub(crate) mod write_npy;

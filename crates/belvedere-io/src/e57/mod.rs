@@ -11,7 +11,7 @@ use crate::e57::counts::records_in_section;
 use crate::files::source::{Input, web_address};
 use crate::points::file_part::{COARSE_STEP, FilePart, single_step};
 use crate::points::read_options::Reading;
-use crate::points::rows::{Role, Row, Rows, role_of};
+use crate::points::rows::{NORMAL, POSITION, Role, Row, Rows, role_of};
 use crate::points::sky::ScanGrid;
 use belvedere_data::cast::to_i64;
 use belvedere_data::contradiction::POINTS_NOT_COUNTED;
@@ -217,15 +217,16 @@ fn bits(kind: &RecordDataType) -> u64 {
 
 fn meaning(record: &Record, scan: &Scan, cartesian: bool) -> Meaning {
     let plain = |role: Role| Meaning::Value(role, 0.0, 1.0);
-    let limits = |low: Option<RecordValue>, high: Option<RecordValue>| {
+    let scaled = |role: Role, ends: Option<[Option<RecordValue>; 2]>| {
+        let [low, high] = ends.unwrap_or_default();
         let (kind_low, kind_high) = type_limits(&record.data_type);
         let number = |value: Option<RecordValue>| value.and_then(|v| v.to_f64(&record.data_type).ok());
-        let (low, high) = (number(low).or(kind_low)?, number(high).or(kind_high)?);
-        (high > low && (high - low).is_finite()).then(|| (low, 65535.0 / (high - low)))
-    };
-    let scaled = |role: Role, limits: Option<(f64, f64)>| match limits {
-        Some((low, factor)) => Meaning::Value(role, low, factor),
-        None => plain(role),
+        match number(low).or(kind_low).zip(number(high).or(kind_high)) {
+            Some((low, high)) if high > low && (high - low).is_finite() => {
+                Meaning::Value(role, low, 65535.0 / (high - low))
+            }
+            _ => plain(role),
+        }
     };
     let colors = scan.color_limits.clone();
     let intensities = scan.intensity_limits.clone();
@@ -240,22 +241,10 @@ fn meaning(record: &Record, scan: &Scan, cartesian: bool) -> Meaning {
         RecordName::SphericalInvalidState if !cartesian => Meaning::Invalid,
         RecordName::RowIndex => Meaning::Row,
         RecordName::ColumnIndex => Meaning::Column,
-        RecordName::Intensity => {
-            let found = intensities.map_or((None, None), |l| (l.intensity_min, l.intensity_max));
-            scaled(Role::Intensity, limits(found.0, found.1))
-        }
-        RecordName::ColorRed => {
-            let found = colors.map_or((None, None), |l| (l.red_min, l.red_max));
-            scaled(Role::Red, limits(found.0, found.1))
-        }
-        RecordName::ColorGreen => {
-            let found = colors.map_or((None, None), |l| (l.green_min, l.green_max));
-            scaled(Role::Green, limits(found.0, found.1))
-        }
-        RecordName::ColorBlue => {
-            let found = colors.map_or((None, None), |l| (l.blue_min, l.blue_max));
-            scaled(Role::Blue, limits(found.0, found.1))
-        }
+        RecordName::Intensity => scaled(Role::Intensity, intensities.map(|l| [l.intensity_min, l.intensity_max])),
+        RecordName::ColorRed => scaled(Role::Red, colors.map(|l| [l.red_min, l.red_max])),
+        RecordName::ColorGreen => scaled(Role::Green, colors.map(|l| [l.green_min, l.green_max])),
+        RecordName::ColorBlue => scaled(Role::Blue, colors.map(|l| [l.blue_min, l.blue_max])),
         RecordName::ReturnCount => plain(Role::ReturnCount),
         // E57 counts returns from zero.
         RecordName::ReturnIndex => Meaning::Value(Role::ReturnNumber, -1.0, 1.0),
@@ -338,9 +327,9 @@ fn read_scan<R: Read + Seek>(
             row.set(Role::Z, range * elevation.sin());
         }
         if let (Some(grid), Some(cell)) = (&mut *grid, cell) {
-            grid.add_return(cell, row.three(crate::points::rows::POSITION));
+            grid.add_return(cell, row.three(POSITION));
         }
-        let own = row.three(crate::points::rows::POSITION).map(f64::abs);
+        let own = row.three(POSITION).map(f64::abs);
         points.farthest = own.into_iter().filter(|v| v.is_finite()).fold(points.farthest, f64::max);
         plan.pose.apply(&mut row);
         points.rows.push(&row);
@@ -439,12 +428,12 @@ impl ScanPose {
     }
 
     fn apply(&self, row: &mut Row) {
-        let position = self.turn(row.three(crate::points::rows::POSITION));
-        for (i, role) in crate::points::rows::POSITION.into_iter().enumerate() {
+        let position = self.turn(row.three(POSITION));
+        for (i, role) in POSITION.into_iter().enumerate() {
             row.set(role, position[i] + self.translation[i]);
         }
-        let normal = self.turn(row.three(crate::points::rows::NORMAL));
-        for (i, role) in crate::points::rows::NORMAL.into_iter().enumerate() {
+        let normal = self.turn(row.three(NORMAL));
+        for (i, role) in NORMAL.into_iter().enumerate() {
             row.set(role, normal[i]);
         }
     }

@@ -135,11 +135,8 @@ fn finished(
     builder.point_format.extra_bytes = u16::try_from(extra_bytes).unwrap_or(u16::MAX);
     // a record has its fields too
     if extra_bytes + fields > usize::from(u16::MAX) {
-        return Err(Error::invalid(
-            Parameter::ResultColumns,
-            format!("{} in number", columns.len()),
-            "few enough for 65535 bytes per point",
-        ));
+        let value = format!("{} in number", columns.len());
+        return Err(Error::invalid(Parameter::ResultColumns, value, "few enough for 65535 bytes per point"));
     }
     if extra_bytes > 0 {
         builder.vlrs.push(Vlr {

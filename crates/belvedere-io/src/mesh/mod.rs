@@ -7,8 +7,7 @@ pub(crate) mod obj;
 pub(crate) mod ply;
 pub(crate) mod polygons;
 pub(crate) mod simple_faces;
-pub(crate) mod write_faces;
-pub(crate) mod write_values;
+pub(crate) mod write;
 
 use crate::files::source::{Source, SystemBeside, unusable};
 use crate::mesh::cityjson::{LevelOfDetail, read_cityjson};

@@ -122,11 +122,8 @@ impl SurveyArea {
         if self.radius_m <= MAX_CLOUD_RADIUS {
             return Ok(());
         }
-        Err(Error::invalid(
-            Parameter::SurveyRadius,
-            format!("{} m", self.radius_m),
-            "at most 1000 m for a single cloud; larger areas come as whole tiles",
-        ))
+        let expected = "at most 1000 m for a single cloud; larger areas come as whole tiles";
+        Err(Error::invalid(Parameter::SurveyRadius, format!("{} m", self.radius_m), expected))
     }
 
     /// West, south, east and north, degrees.

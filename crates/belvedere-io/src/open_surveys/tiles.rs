@@ -69,11 +69,8 @@ pub fn surveys_at(mut surveys: Vec<OpenSurvey>, name: Option<&str>, area: &Surve
         let names: Vec<String> = surveys.iter().map(|survey| survey.name.clone()).collect();
         surveys.retain(|survey| survey.name == name);
         if surveys.is_empty() {
-            return Err(Error::invalid(
-                Parameter::OpenSurvey,
-                format!("{name:?}, which is none of {}", names.join(", ")),
-                "a survey of the table",
-            ));
+            let value = format!("{name:?}, which is none of {}", names.join(", "));
+            return Err(Error::invalid(Parameter::OpenSurvey, value, "a survey of the table"));
         }
     }
     surveys.retain(|survey| survey.may_cover(area));

@@ -100,6 +100,14 @@ pub enum RowNumbers {
     Kept,
 }
 
+belvedere_data::setters!(ReadOptions {
+    with_frame(frame: Frame),
+    with_points_within(within: Within),
+    with_flown(flown: CalendarDay),
+    with_dates(dates: [CalendarDay; 2]),
+    with_up(up: UpAxis),
+});
+
 impl ReadOptions {
     /// Every point, in the reference system that the files name.
     #[must_use]
@@ -121,20 +129,6 @@ impl ReadOptions {
         self
     }
 
-    /// The same with a fixed frame.
-    #[must_use]
-    pub fn with_frame(mut self, frame: Frame) -> Self {
-        self.frame = Some(frame);
-        self
-    }
-
-    /// The same for the points in a box only.
-    #[must_use]
-    pub fn with_points_within(mut self, within: Within) -> Self {
-        self.within = Some(within);
-        self
-    }
-
     /// The same for the points of some ASPRS classes only.
     #[must_use]
     pub fn with_classes(mut self, classes: impl Into<Vec<u8>>) -> Self {
@@ -146,27 +140,6 @@ impl ReadOptions {
     #[must_use]
     pub fn with_lines(mut self, lines: impl Into<Vec<u16>>) -> Self {
         self.lines = Some(lines.into());
-        self
-    }
-
-    /// Sets the day of the flight of files whose GPS times are seconds of a week.
-    #[must_use]
-    pub fn with_flown(mut self, day: CalendarDay) -> Self {
-        self.flown = Some(day);
-        self
-    }
-
-    /// Limits reading to the points of some days, the first and the last included, in UTC.
-    #[must_use]
-    pub fn with_dates(mut self, dates: [CalendarDay; 2]) -> Self {
-        self.dates = Some(dates);
-        self
-    }
-
-    /// The same for files with another axis up.
-    #[must_use]
-    pub fn with_up(mut self, up: UpAxis) -> Self {
-        self.up = up;
         self
     }
 

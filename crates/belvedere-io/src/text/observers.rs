@@ -145,7 +145,7 @@ pub fn read_observers<'a>(source: impl Into<Source<'a>>, crs: &Crs, rows_are: Ro
 fn of_table(source: Source<'_>, path: &Path, crs: &Crs, rows_are: RowsAre) -> Result<ObserverRows> {
     let table = read_table(source)?;
     let scale = crs.metres_per_unit_xyz();
-    let (x, y) = (table.full_column(path, "x")?, table.full_column(path, "y")?);
+    let [x, y] = table.full_columns(path, ["x", "y"])?;
     let mut columns: [Option<(&[f64], usize)>; MEANINGS.len()] = [None; MEANINGS.len()];
     let mut used: Vec<(&str, usize)> = Vec::new();
     for (index, (column, meaning)) in columns.iter_mut().zip(&MEANINGS).enumerate() {

@@ -1,6 +1,7 @@
 //! Stations of a scanner from tables.
 
 use crate::files::source::{Source, refuse_other_shapes};
+use crate::points::rows::to_u16;
 use crate::text::table::read_table;
 use belvedere_data::crs::Crs;
 use belvedere_data::{Error, Result};
@@ -21,14 +22,11 @@ pub fn read_stations<'a>(source: impl Into<Source<'a>>, crs: &Crs) -> Result<Vec
         return Err(Error::UnknownFormat { path: path.to_owned(), kind: "stations", supported: ".csv .txt" });
     }
     let table = read_table(source)?;
-    let columns = ["x", "y", "z"].map(|axis| table.full_column(path, axis));
-    let [x, y, z] = columns;
-    let (x, y, z) = (x?, y?, z?);
+    let [x, y, z] = table.full_columns(path, ["x", "y", "z"])?;
     let scale = crs.metres_per_unit_xyz();
     let mut stations: Vec<(u16, [f64; 3])> = Vec::new();
     for (row, &number) in table.full_column(path, "station")?.iter().enumerate() {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "compared with what it was")]
-        let id = number as u16;
+        let id = to_u16(number);
         if f64::from(id) != number {
             let what = format!("row {}: station {number} is not a point source id, 0 to 65535", row + 1);
             return Err(Error::malformed(path, what));

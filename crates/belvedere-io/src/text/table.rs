@@ -84,6 +84,15 @@ impl Table {
         Ok(column)
     }
 
+    /// Columns of several names, as [`Table::full_column`].
+    pub(crate) fn full_columns<const N: usize>(&self, path: &Path, names: [&str; N]) -> Result<[&[f64]; N]> {
+        let mut columns = [&[][..]; N];
+        for (column, name) in columns.iter_mut().zip(names) {
+            *column = self.full_column(path, name)?;
+        }
+        Ok(columns)
+    }
+
     /// Texts of the column of that name, upper or lower case, (rows); `None` where there is none.
     #[must_use]
     pub fn words(&self, name: &str) -> Option<Vec<&str>> {

@@ -77,8 +77,7 @@ fn of_points(source: Source<'_>, path: &Path, crs: &Crs) -> Result<Vec<TowerRow>
 
 fn of_table(source: Source<'_>, path: &Path) -> Result<Vec<TowerRow>> {
     let table = read_table(source)?;
-    let [x, y, tip] = ["x", "y", "tip"].map(|column| table.full_column(path, column));
-    let (x, y, tip) = (x?, y?, tip?);
+    let [x, y, tip] = table.full_columns(path, ["x", "y", "tip"])?;
     let (base, hub) = (table.column(path, "base")?, table.column(path, "hub")?);
     let (names, schemes) = (table.words("name"), table.words("scheme"));
     let words = |column: &Option<Vec<&str>>, row: usize| {

@@ -24,7 +24,7 @@ use belvedere::apps::sum_errors::Intervals;
 use belvedere::apps::sun_hours::scene_sun_hours;
 use belvedere::apps::targets::{Measure, TargetLayout, Targets};
 use belvedere::apps::viewshed::{Masks, Observer, Viewshed, ViewshedParams, viewshed};
-use belvedere::cast::{to_f32, to_f32s, to_index, to_row};
+use belvedere::cast::{to_f32, to_f32s, to_row};
 use belvedere::clean::clean;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid, SurfaceParams, top_surface};
@@ -434,8 +434,8 @@ fn cells(
 ) -> Result<Targets> {
     let (kept, _) = clean(cloud, &plan.statistics.cleaning(&plan.model().clean), control)?;
     let core = plan.grid().core(tile);
-    let count = to_index((plan.tile_size / cell).round());
-    let grid = MapGrid { corner: [core.low[0], core.high[1]], cell, width: count, height: count };
+    let grid = plan.cells_of_tile(tile, cell);
+    let count = grid.width;
     let places = (0..count).flat_map(|row| (0..count).map(move |column| (column, row)));
     let middles: Vec<[f64; 2]> = places.clone().map(|(column, row)| grid.center(column, row)).collect();
     let points = classed(cloud, kept.iter().map(|&row| row as usize));

@@ -10,7 +10,7 @@ use belvedere::PointCloud;
 use belvedere::Result;
 use belvedere::apps::targets::{TargetLayout, Targets};
 use belvedere::apps::viewshed::cell_targets;
-use belvedere::cast::{to_f32s, to_index};
+use belvedere::cast::to_f32s;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid};
 use belvedere::io::{atomic, read_kept_rasters, write_kept_rasters};
@@ -164,14 +164,13 @@ pub(crate) fn ground_cells(
     control: &Control<'_>,
 ) -> Result<(Targets, [usize; 2])> {
     let core = plan.grid().core(tile);
-    let count = to_index((plan.tile_size / cell).round());
-    let grid = MapGrid { corner: [core.low[0], core.high[1]], cell, width: count, height: count };
+    let grid = plan.cells_of_tile(tile, cell);
+    let count = grid.width;
     let mut positions = vec![[f32::NAN; 3]; count * count];
     let mut heights = Raster::filled(count, count, f32::NAN);
     let (mut covered, mut points) = (0, 0);
     // A cell with a part inside the survey.
-    let (low, high) = plan.bounds().on_map();
-    let survey = MapArea { low, high }.widened(cell / 2.0);
+    let survey = plan.area().widened(cell / 2.0);
     for square in squares(&core) {
         control.check()?;
         let (found, read) = known.of_square(plan, (&square, cell), added, control)?;

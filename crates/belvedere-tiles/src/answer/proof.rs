@@ -98,8 +98,7 @@ fn unseen_steps(
     control: &Control<'_>,
 ) -> Result<Vec<u32>> {
     let params = ProofParams { nearness: Some(plan.nearness), ..ProofParams::default() };
-    let (low, high) = plan.bounds().on_map();
-    let survey = MapArea { low, high };
+    let survey = plan.area();
     let top = top(plan);
     // Only the part below the top and over the survey.
     let piece = |line: &Line| {

@@ -25,9 +25,10 @@ use belvedere::apps::ask::{Context, GridCells, Remark, density_at, remark_on_lea
 use belvedere::apps::targets::{CellLevel, CellParams};
 use belvedere::apps::tree_light::CrownLight;
 use belvedere::apps::viewshed::cell_for;
+use belvedere::cast::to_index;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
-use belvedere::ground::GroundPoints;
+use belvedere::ground::{GroundPoints, MapGrid};
 use belvedere::io::{Insistence, atomic};
 use belvedere::model::{ClearedArea, ModelParams, SurveyStatistics};
 use belvedere::query::Coverage;
@@ -291,6 +292,19 @@ impl Plan {
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         Bounds { low: self.low, high: self.high }
+    }
+
+    /// Returns the rectangle around the survey.
+    pub(crate) fn area(&self) -> MapArea {
+        let (low, high) = self.bounds().on_map();
+        MapArea { low, high }
+    }
+
+    /// Returns the cells of side `cell` of a tile.
+    pub(crate) fn cells_of_tile(&self, tile: TileId, cell: f64) -> MapGrid {
+        let core = self.grid().core(tile);
+        let count = to_index((self.tile_size / cell).round());
+        MapGrid { corner: [core.low[0], core.high[1]], cell, width: count, height: count }
     }
 
     /// Returns the grid of tiles.

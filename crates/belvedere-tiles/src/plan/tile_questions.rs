@@ -27,11 +27,8 @@ impl TileQuestion {
     ) -> Result<Vec<Self>> {
         question.check()?;
         if let Some(what) = Self::not_in_tiles(question) {
-            return Err(Error::invalid(
-                Parameter::Questions,
-                format!("with {what}"),
-                "without: runs in tiles do not give them",
-            ));
+            let value = format!("with {what}");
+            return Err(Error::invalid(Parameter::Questions, value, "without: runs in tiles do not give them"));
         }
         match question {
             ask::Question::Shadow(shadow) => {

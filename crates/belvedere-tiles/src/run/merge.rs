@@ -86,9 +86,8 @@ fn area_of(plan: &Plan, tiles: &[TileId]) -> Result<MapArea> {
 /// Returns the part of the area of `tiles`, up to the reach of points, in which cells of a question may have a value.
 fn area_with_cells(plan: &Plan, question: &TileQuestion, tiles: &[TileId]) -> Result<MapArea> {
     let (whole, cell) = (area_of(plan, tiles)?, plan.cells.of(question));
-    let (low, high) = plan.bounds().on_map();
     // Ground beside the points is no part of the survey.
-    let near = MapArea { low, high }.widened(if plan.is_on_ground() { 0.0 } else { plan.reach(cell) });
+    let near = plan.area().widened(if plan.is_on_ground() { 0.0 } else { plan.reach(cell) });
     let edge =
         |axis: usize, v: f64, round: fn(f64) -> f64| whole.low[axis] + round((v - whole.low[axis]) / cell) * cell;
     Ok(MapArea {
@@ -226,13 +225,8 @@ impl Plan {
     /// Those of reading the files.
     pub fn highest_points(&self, grid: &MapGrid, control: &Control<'_>) -> Result<Raster<f32>> {
         let mut highest = HighestPoints::new(*grid);
-        window::each_batch(self, &self.bounds_on_map(), control, |cloud| highest.add(&cloud.positions))?;
+        window::each_batch(self, &self.area().widened(1.0), control, |cloud| highest.add(&cloud.positions))?;
         Ok(highest.filled(|_| f32::NAN))
-    }
-
-    fn bounds_on_map(&self) -> MapArea {
-        let (low, high) = self.bounds().on_map();
-        MapArea { low, high }.widened(1.0)
     }
 }
 

@@ -2,7 +2,6 @@
 
 pub(crate) mod any_size;
 pub(crate) mod merge;
-mod report;
 pub(crate) mod status;
 
 use crate::answer::cell_answers::{SharedSurfaces, TileTask, answer};
@@ -14,7 +13,7 @@ use crate::plan::record::{TileOutcome, TileRecord};
 use crate::plan::side_files::Others;
 use crate::plan::stage::Stage;
 use crate::run::merge::write_catalogue;
-use crate::run::report::write_report;
+use crate::run::status::write_report;
 use belvedere::apps::ask::{Context, Remark, remark_on_edge};
 use belvedere::control::Control;
 use belvedere::{Error, Parameter, Result};
