@@ -2,6 +2,7 @@
 
 use crate::arguments::Global;
 use belvedere::apps::ask::{Remark, remark_on_left_out};
+use belvedere::cast::to_i64;
 use belvedere::io::WriteReport;
 use belvedere::report;
 use belvedere::shown::{is_command, printable};
@@ -223,9 +224,8 @@ pub(crate) fn rounded(value: f64, digits: i32) -> Value {
 }
 
 /// A number without decimals.
-#[expect(clippy::cast_possible_truncation, reason = "`as` saturates; counts and rates are far from 2^63")]
 pub(crate) fn whole(value: f64) -> Value {
-    Value::from(value.round() as i64)
+    Value::from(to_i64(value.round()))
 }
 
 /// A share as a percentage with two decimals.

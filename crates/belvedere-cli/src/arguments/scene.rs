@@ -1,6 +1,7 @@
 //! Flags of the scene that a command works on: clouds to build balls from, or a ball file.
 
 use super::{Numbers, Rectangle, known_crs, rectangle};
+use belvedere::cast::to_index;
 use belvedere::io::{ReadOptions, Within};
 use belvedere::medial::Trees;
 use belvedere::weather::CalendarDay;
@@ -346,8 +347,8 @@ impl FromStr for MemoryAmount {
             _ => return Err(wrong()),
         };
         let number: f64 = text.get(..text.len() - 1).and_then(|number| number.parse().ok()).ok_or_else(wrong)?;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
-        if number > 0.0 && number.is_finite() { Ok(Self((number * scale) as u64)) } else { Err(wrong()) }
+        let is_size = number > 0.0 && number.is_finite();
+        if is_size { Ok(Self(to_index(number * scale) as u64)) } else { Err(wrong()) }
     }
 }
 

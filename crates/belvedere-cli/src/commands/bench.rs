@@ -56,7 +56,6 @@ pub(crate) fn run(arguments: &BenchArguments, global: &Global, run_command: RunC
         run.summary.add("processor_us_per_point", rounded(1e6 * processor / points, 2));
     }
     if let Some(bytes) = memory::peak_bytes() {
-        #[expect(clippy::cast_precision_loss, reason = "printed in whole megabytes")]
         run.summary.add("peak_megabytes", rounded(bytes as f64 / 1e6, 0));
     }
     run.summary.add("stage", sections(&stages));

@@ -48,7 +48,6 @@ impl Row {
     }
 }
 
-#[expect(clippy::cast_precision_loss, reason = "printed with one decimal")]
 fn megabytes(bytes: u64) -> serde_json::Value {
     rounded(bytes as f64 / 1e6, 1)
 }

@@ -2,7 +2,7 @@
 
 use crate::arguments::{CalibrateArguments, CloudInput, Global, MethodChoice, refuse};
 use crate::outputs::balls::with_program;
-use crate::outputs::formats::{check_output, extension};
+use crate::outputs::formats::{check_outputs, extension};
 use crate::outputs::text::write_text;
 use crate::pipeline::{self, is_file, params};
 use crate::run::CommandContext;
@@ -17,9 +17,7 @@ use std::path::Path;
 
 pub(crate) fn run(arguments: &CalibrateArguments, global: &Global) -> Result<Summary> {
     let CalibrateArguments { share, output, input, .. } = arguments;
-    for output in output {
-        check_output("-o", output, &["json", "npz"])?;
-    }
+    check_outputs("-o", output, &["json", "npz"])?;
     let reliability = ReliabilityParams { share: *share, seed: global.seed };
     reliability.check()?;
     refuse_balls(input)?;

@@ -6,7 +6,7 @@ mod results;
 use crate::arguments::{CamerasArguments, Global, refuse};
 use crate::inputs::camera_places::{self, candidates_on_path};
 use crate::inputs::observers::ObserverUse;
-use crate::outputs::formats::{check_output, extension, warn_of_geojson};
+use crate::outputs::formats::{check_output, check_outputs, extension, warn_of_geojson};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -97,9 +97,7 @@ fn check(arguments: &CamerasArguments) -> Result<()> {
             return refuse(format!("{output}: rasters and maps need cells as targets; use .csv or .geojson"));
         }
     }
-    if let Some(output) = &arguments.curve {
-        check_output("--curve", output, &["csv"])?;
-    }
+    check_outputs("--curve", &arguments.curve, &["csv"])?;
     if let Some(output) = &arguments.footprints {
         check_output("--footprints", output, &["geojson", "gpkg"])?;
         if !are_cells {

@@ -1,7 +1,7 @@
 //! `belvedere depth-map`.
 
 use crate::arguments::{DepthMapArguments, Global, refuse};
-use crate::outputs::formats::{check_output, extension};
+use crate::outputs::formats::{check_outputs, extension};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -18,12 +18,8 @@ use belvedere::view::View;
 const NOTHING_HIT: f32 = -9999.0;
 
 pub(crate) fn run(arguments: &DepthMapArguments, global: &Global) -> Result<Summary> {
-    for output in &arguments.output {
-        check_output("-o", output, &["tif", "tiff", "npy", "png"])?;
-    }
-    if let Some(path) = &arguments.balls_id {
-        check_output("--ball-ids", path, &["tif", "tiff", "npy"])?;
-    }
+    check_outputs("-o", &arguments.output, &["tif", "tiff", "npy", "png"])?;
+    check_outputs("--ball-ids", &arguments.balls_id, &["tif", "tiff", "npy"])?;
     if !arguments.scene.plan.add.is_empty() {
         return refuse("--add: depth maps show only balls; use `belvedere query`");
     }

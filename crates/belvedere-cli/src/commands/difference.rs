@@ -3,7 +3,7 @@
 mod tables;
 
 use crate::arguments::{DifferenceArguments, Global};
-use crate::outputs::formats::{check_output, extension};
+use crate::outputs::formats::{check_outputs, extension};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
@@ -23,9 +23,7 @@ use std::path::Path;
 const SAME_PLACE: f64 = 1e-3;
 
 pub(crate) fn run(arguments: &DifferenceArguments, global: &Global) -> Result<Summary> {
-    for output in &arguments.output {
-        check_output("-o", output, &["tif", "tiff", "png", "csv"])?;
-    }
+    check_outputs("-o", &arguments.output, &["tif", "tiff", "png", "csv"])?;
     let mut run = CommandContext::new(global);
     if [&arguments.before, &arguments.after].iter().all(|path| extension(path) == "csv") {
         tables::run(arguments, &mut run)?;

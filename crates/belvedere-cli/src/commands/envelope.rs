@@ -2,7 +2,7 @@
 
 use crate::arguments::{CornersArgument, EnvelopeArguments, Global, refuse};
 use crate::inputs::map_shapes::{NamedShape, TypedAre, shapes, wrong_shape};
-use crate::outputs::formats::{check_output, extension};
+use crate::outputs::formats::{check_outputs, extension};
 use crate::outputs::heights::write_heights;
 use crate::pipeline::{self, KeepPoints, LoadedScene, is_file, mesh_in};
 use crate::run::CommandContext;
@@ -25,7 +25,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 pub(crate) fn run(arguments: &EnvelopeArguments, global: &Global) -> Result<Summary> {
-    check_outputs(arguments)?;
+    check_formats(arguments)?;
     let mut question = question(arguments, global)?;
     question.check()?;
     let mut run = CommandContext::new(global);
@@ -57,13 +57,9 @@ fn in_unit(height: f32, metres_per_unit: f64) -> f32 {
     to_f32(f64::from(height) / metres_per_unit)
 }
 
-fn check_outputs(arguments: &EnvelopeArguments) -> Result<()> {
-    for output in &arguments.output {
-        check_output("-o", output, &["tif", "tiff", "npy", "png", "ply", "obj"])?;
-    }
-    if let Some(output) = &arguments.tops {
-        check_output("--tops", output, &["tif", "tiff", "npy"])?;
-    }
+fn check_formats(arguments: &EnvelopeArguments) -> Result<()> {
+    check_outputs("-o", &arguments.output, &["tif", "tiff", "npy", "png", "ply", "obj"])?;
+    check_outputs("--tops", &arguments.tops, &["tif", "tiff", "npy"])?;
     if arguments.sun.is_empty() && !arguments.when.is_given() {
         return refuse("protected suns are missing: give --date DAY, --from and --to, or --sun AZ,EL");
     }

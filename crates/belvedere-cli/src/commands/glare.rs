@@ -1,9 +1,8 @@
 //! `belvedere glare`.
 
 use crate::arguments::{GlareArguments, Global, refuse};
-use crate::inputs::observers::min_count;
 use crate::inputs::windows::{FaceChoice, WindowFile};
-use crate::outputs::formats::{check_output, extension};
+use crate::outputs::formats::{check_outputs, extension};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -21,16 +20,12 @@ const STRONG: [u8; 3] = [217, 95, 2];
 const MONTHS: [&str; 12] = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
 
 pub(crate) fn run(arguments: &GlareArguments, global: &Global) -> Result<Summary> {
-    for output in &arguments.output {
-        check_output("-o", output, &["csv", "png"])?;
-    }
-    if let Some(output) = &arguments.by_hour {
-        check_output("--by-hour", output, &["csv"])?;
-    }
+    check_outputs("-o", &arguments.output, &["csv", "png"])?;
+    check_outputs("--by-hour", &arguments.by_hour, &["csv"])?;
     if is_mesh(&arguments.reflectors) {
         return refuse("--reflectors: give a table (.csv) of rectangles, not a mesh");
     }
-    check_charts(arguments, min_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
+    check_charts(arguments, arguments.eyes.min_count()?)?;
     let mut run = CommandContext::new(global);
     // wrong reflectors must not be found out after the balls were made
     let mut question = question(arguments, read(arguments, &Frame::default(), &mut run)?.0)?;

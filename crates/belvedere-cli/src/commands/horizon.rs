@@ -1,8 +1,7 @@
 //! `belvedere horizon`.
 
 use crate::arguments::{BelowChoice, Global, HorizonArguments, refuse};
-use crate::inputs::observers::min_count;
-use crate::outputs::formats::{check_output, extension};
+use crate::outputs::formats::{check_outputs, extension};
 use crate::outputs::text::write_lines;
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -12,9 +11,7 @@ use belvedere::figures::{horizon_picture, write_png};
 use std::path::Path;
 
 pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summary> {
-    for output in &arguments.output {
-        check_output("-o", output, &["csv", "txt", "hor", "png"])?;
-    }
+    check_outputs("-o", &arguments.output, &["csv", "txt", "hor", "png"])?;
     let question = ask::HorizonQuestion {
         observer_height: arguments.eyes.height,
         ground: arguments.eyes.ground.points(),
@@ -25,7 +22,7 @@ pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summa
         interval: arguments.interval.interval,
     };
     question.check()?;
-    check_formats(arguments, min_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
+    check_formats(arguments, arguments.eyes.min_count()?)?;
     let mut run = CommandContext::new(global);
     let scene = arguments.eyes.scene(&arguments.scene, Some(&arguments.far), &mut run)?;
     let standing = arguments.eyes.standing((scene.frame(), &scene.model().bounds()), &mut run)?;

@@ -1,8 +1,8 @@
 //! `belvedere isovist`.
 
 use crate::arguments::{Global, IsovistArguments, refuse};
-use crate::inputs::observers::{min_count, rows_as_given};
-use crate::outputs::formats::{check_output, extension};
+use crate::inputs::observers::rows_as_given;
+use crate::outputs::formats::{check_outputs, extension};
 use crate::pipeline::scene_in_reach;
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -17,9 +17,7 @@ use std::io::Write;
 use std::path::Path;
 
 pub(crate) fn run(arguments: &IsovistArguments, global: &Global) -> Result<Summary> {
-    for output in &arguments.output {
-        check_output("-o", output, &["csv", "json", "png"])?;
-    }
+    check_outputs("-o", &arguments.output, &["csv", "json", "png"])?;
     let question = ask::IsovistsQuestion {
         observer_height: arguments.eyes.height,
         ground: arguments.eyes.ground.points(),
@@ -30,7 +28,7 @@ pub(crate) fn run(arguments: &IsovistArguments, global: &Global) -> Result<Summa
         interval: arguments.interval.interval,
     };
     question.check()?;
-    check_pictures(arguments, min_count(arguments.eyes.eye.len(), arguments.eyes.eyes.as_deref())?)?;
+    check_pictures(arguments, arguments.eyes.min_count()?)?;
     let mut run = CommandContext::new(global);
     let usual = IsovistParams::default().max_range;
     let is_typed = arguments.eyes.eyes.is_none();

@@ -4,20 +4,19 @@ mod results;
 
 use crate::arguments::{Global, LandmarkArguments, refuse};
 use crate::inputs::landmark_shape;
-use crate::inputs::observers::{ObserverUse, observer_rows, rows_as_given};
+use crate::inputs::observers::{rows_as_given, standing_rows};
 use crate::outputs::formats::{check_output, extension};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::Frame;
-use belvedere::apps::ask::{self, LandmarkShape, Places, Standing};
+use belvedere::apps::ask::{self, LandmarkShape, Places};
 use belvedere::control::Control;
-use belvedere::io::RowsAre;
 use belvedere::query::{BackFaces, UnprovenAs};
 
 pub(crate) fn run(arguments: &LandmarkArguments, global: &Global) -> Result<Summary> {
-    check_outputs(arguments)?;
+    check_formats(arguments)?;
     // refused before a scene is read
     arguments.earth.params()?;
     let mut run = CommandContext::new(global);
@@ -53,7 +52,7 @@ fn question(
 ) -> Result<ask::LandmarkQuestion> {
     Ok(ask::LandmarkQuestion {
         shape,
-        observers: observers(arguments, frame, run)?,
+        observers: arguments.observers.as_ref().map(|path| standing_rows(path, frame, run)).transpose()?,
         observer_height: arguments.observer_height,
         cell: arguments.cell,
         ground: arguments.ground.points(),
@@ -65,7 +64,7 @@ fn question(
     })
 }
 
-fn check_outputs(arguments: &LandmarkArguments) -> Result<()> {
+fn check_formats(arguments: &LandmarkArguments) -> Result<()> {
     for output in &arguments.output {
         check_output("-o", output, &["csv", "tif", "tiff", "png"])?;
         if arguments.observers.is_some() && extension(output) != "csv" {
@@ -74,15 +73,4 @@ fn check_outputs(arguments: &LandmarkArguments) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// Observers of a file, if one was named.
-fn observers(arguments: &LandmarkArguments, frame: &Frame, run: &mut CommandContext) -> Result<Option<Vec<Standing>>> {
-    let Some(path) = &arguments.observers else { return Ok(None) };
-    let mut observers = Vec::new();
-    for row in observer_rows(path, frame, RowsAre::Places, ObserverUse::Places, run)? {
-        let place = |corner: &[f64; 3]| std::array::from_fn(|i| corner[i] - frame.origin[i]);
-        observers.extend(row.corners.iter().map(|corner| Standing { place: place(corner), height: row.height }));
-    }
-    Ok(Some(observers))
 }

@@ -4,8 +4,8 @@ use crate::arguments::{Global, LineOfSightArguments, MapPosition, refuse};
 use crate::inputs::far_terrain::set_terrain;
 use crate::inputs::line_pairs::{ENDS, pairs};
 use crate::inputs::observers::{ObserverUse, observer_rows};
-use crate::outputs::formats::warn_of_geojson;
 use crate::outputs::formats::{check_output, extension};
+use crate::outputs::formats::{check_outputs, warn_of_geojson};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -90,9 +90,7 @@ fn check(arguments: &LineOfSightArguments, question: &LinesOfSightQuestion) -> R
             ));
         }
     }
-    if let Some(profile) = &arguments.profile_out {
-        check_output("--profile-out", profile, &["csv", "png"])?;
-    }
+    check_outputs("--profile-out", &arguments.profile_out, &["csv", "png"])?;
     question.check()?;
     Ok(())
 }
@@ -105,7 +103,6 @@ fn network(path: &Path, max_distance: Option<f64>, scene: &Scene, run: &mut Comm
         let &[place] = &row.corners[..] else {
             bail!("{}: a line or an area is no place of a network; give points", path.display());
         };
-        let place = std::array::from_fn(|axis| place[axis] - frame.origin[axis]);
         network.places.push(Standing { place, height: row.height });
         network.names.push(row.name);
     }

@@ -2,7 +2,7 @@
 
 use crate::arguments::{Global, ProtectedViewArguments};
 use crate::inputs::landmark_shape;
-use crate::outputs::formats::{check_output, extension};
+use crate::outputs::formats::{check_outputs, extension};
 use crate::outputs::heights::write_heights;
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
@@ -19,12 +19,8 @@ use std::path::Path;
 const NO_LIMIT_COLOR: [u8; 3] = [226; 3];
 
 pub(crate) fn run(arguments: &ProtectedViewArguments, global: &Global) -> Result<Summary> {
-    for output in &arguments.output {
-        check_output("-o", output, &["tif", "tiff", "npy", "png"])?;
-    }
-    if let Some(output) = &arguments.tops {
-        check_output("--tops", output, &["tif", "tiff", "npy"])?;
-    }
+    check_outputs("-o", &arguments.output, &["tif", "tiff", "npy", "png"])?;
+    check_outputs("--tops", &arguments.tops, &["tif", "tiff", "npy"])?;
     let usual = ask::ProtectedViewQuestion::default();
     let mut question = ask::ProtectedViewQuestion {
         observer_height: arguments.eyes.height.unwrap_or(usual.observer_height),

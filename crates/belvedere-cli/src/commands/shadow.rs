@@ -2,8 +2,8 @@
 
 use crate::arguments::{Global, ShadowArguments, refuse};
 use crate::in_tiles::TypedCells;
-use crate::outputs::fading::{UNPROVEN_COLOR, fade, faded};
-use crate::outputs::formats::{check_output, extension, warn_of_geojson};
+use crate::outputs::fading::{UNPROVEN_COLOR, fade, faded, mixed};
+use crate::outputs::formats::{check_output, check_outputs, extension, warn_of_geojson};
 use crate::outputs::targets::{HighestPoints, TargetOutput};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -167,9 +167,7 @@ fn check(arguments: &ShadowArguments, question: &ask::ShadowQuestion) -> Result<
         return refuse("suns are missing: give --time TIME, --date DAY, --from and --to, or --sun AZ,EL");
     }
     ask::Ask::check(question)?;
-    if let Some(film) = &arguments.film {
-        check_output("--film", film, &["png", "apng"])?;
-    }
+    check_outputs("--film", &arguments.film, &["png", "apng"])?;
     if let Some(output) = &arguments.outlines {
         check_output("--outlines", output, &["geojson", "gpkg"])?;
     }
@@ -216,13 +214,7 @@ impl<'a> Maps<'a> {
         let doubts = self.doubts.filter(|_| number == 0);
         let color = |(row, &share): (usize, &f32)| match share {
             _ if doubts.and_then(|doubts| doubts.get(row)).is_some_and(|&doubt| doubt > 0.0) => Some(UNPROVEN_COLOR),
-            share if share.is_finite() => {
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between two colours")]
-                let mixed = |i: usize| {
-                    (f32::from(SHADE_COLOR[i]) * (1.0 - share) + f32::from(LIT_COLOR[i]) * share).round() as u8
-                };
-                Some(std::array::from_fn(mixed))
-            }
+            share if share.is_finite() => Some(mixed(SHADE_COLOR, LIT_COLOR.map(f32::from), share)),
             _ => None,
         };
         let lit = self.measures.get(number).map_or(&[][..], |measure| &measure.values[..]);

@@ -3,7 +3,7 @@
 use crate::arguments::{Global, MapPosition, SunCalendarArguments, refuse};
 use crate::inputs::typed_places::on_map;
 use crate::inputs::windows::{FaceChoice, WindowFile, refuse_mesh};
-use crate::outputs::formats::check_output;
+use crate::outputs::formats::check_outputs;
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -12,9 +12,7 @@ use belvedere::apps::ask::{self, Ask, Places, Reach, position_on_map, standing_o
 use belvedere::results::write_calendar;
 
 pub(crate) fn run(arguments: &SunCalendarArguments, global: &Global) -> Result<Summary> {
-    for output in &arguments.output {
-        check_output("-o", output, &["csv", "ics"])?;
-    }
+    check_outputs("-o", &arguments.output, &["csv", "ics"])?;
     let typed = &arguments.places.at;
     MapPosition::refuse_twice("--at", typed)?;
     if arguments.rule.is_none() && !arguments.when.is_given() {

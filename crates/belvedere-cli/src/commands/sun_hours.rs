@@ -2,6 +2,7 @@
 
 use crate::arguments::{Global, SunHoursArguments, refuse};
 use crate::in_tiles::TypedCells;
+use crate::outputs::formats::refuse_files_of;
 use crate::outputs::targets::TargetOutput;
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -28,8 +29,9 @@ pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summ
         if !arguments.places.is_grid() {
             return refuse("--hourly-sun applies only to a grid");
         }
+        let months: Vec<PathBuf> = (1..=12).map(|month| month_file(folder, month)).collect();
         let others = arguments.outputs.output.iter().chain(&arguments.places.edge_mask);
-        check_months(folder, &others.map(PathBuf::as_path).collect::<Vec<_>>())?;
+        refuse_files_of("--hourly-sun", &months, others)?;
     }
     let mut run = CommandContext::new(global);
     let cells = TypedCells::of_sky(
@@ -96,15 +98,3 @@ fn month_file(folder: &Path, month: i8) -> PathBuf {
     folder.join(format!("{month:02}.tif"))
 }
 
-/// Refuses files of other results among those of the months.
-fn check_months(folder: &Path, others: &[&Path]) -> Result<()> {
-    let real = |path: &Path| path.canonicalize().or_else(|_| std::path::absolute(path)).ok();
-    let is_month = |path: &&&Path| {
-        path.parent().and_then(real) == real(folder)
-            && (1..=12).any(|month| path.file_name() == month_file(folder, month).file_name())
-    };
-    match others.iter().find(is_month) {
-        Some(path) => refuse(format!("{}: a file of --hourly-sun has this name; choose another", path.display())),
-        None => Ok(()),
-    }
-}

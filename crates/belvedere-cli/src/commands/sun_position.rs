@@ -1,7 +1,7 @@
 //! `belvedere sun-position`.
 
 use crate::arguments::{Global, SunPositionArguments};
-use crate::outputs::formats::check_output;
+use crate::outputs::formats::check_outputs;
 use crate::outputs::text::write_lines;
 use crate::pipeline;
 use crate::run::CommandContext;
@@ -13,9 +13,7 @@ use belvedere::{Bounds, PointCloud};
 use std::sync::Arc;
 
 pub(crate) fn run(arguments: &SunPositionArguments, global: &Global) -> Result<Summary> {
-    if let Some(output) = &arguments.output {
-        check_output("-o", output, &["csv"])?;
-    }
+    check_outputs("-o", &arguments.output, &["csv"])?;
     let place = arguments.sun.place_from_true_north()?;
     let question = ask::SunPositionQuestion { times: arguments.times.clone(), place };
     question.check()?;

@@ -1,7 +1,7 @@
 //! `belvedere surfaces`.
 
 use crate::arguments::{Global, SurfacesArguments};
-use crate::outputs::formats::{check_output, extension, warn_of_geojson};
+use crate::outputs::formats::{check_outputs, extension, warn_of_geojson};
 use crate::pipeline::{self, params};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -19,9 +19,7 @@ use serde_json::{Map, Value};
 use std::path::Path;
 
 pub(crate) fn run(arguments: &SurfacesArguments, global: &Global) -> Result<Summary> {
-    for output in &arguments.output {
-        check_output("-o", output, &["geojson", "gpkg", "json", "laz", "las", "ply", "csv"])?;
-    }
+    check_outputs("-o", &arguments.output, &["geojson", "gpkg", "json", "laz", "las", "ply", "csv"])?;
     let parameters = arguments.points.parameters()?;
     let mut run = CommandContext::new(global);
     let cloud = pipeline::read(&arguments.points.input, &mut run)?;

@@ -3,25 +3,22 @@
 use crate::arguments::{Global, SurveyPlanArguments};
 use crate::inputs::camera_places::candidates_on_path;
 use crate::inputs::line_pairs::pairs;
-use crate::inputs::observers::{ObserverUse, observer_rows};
-use crate::outputs::formats::{check_output, extension, warn_of_geojson};
+use crate::inputs::observers::{ObserverUse, standing_rows};
+use crate::outputs::formats::{check_outputs, extension, warn_of_geojson};
 use crate::pipeline::{self, KeepPoints};
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::Error;
 use belvedere::apps::ask::{
-    Ask, Candidates, GridCells, Places, PlannedStation, Scene, Standing, SunPlace, Suns, SurveyPlanQuestion,
-    SurveyPlanResults,
+    Ask, Candidates, GridCells, Places, PlannedStation, Scene, SunPlace, Suns, SurveyPlanQuestion, SurveyPlanResults,
 };
 use belvedere::apps::result_columns::ResultColumn;
-use belvedere::io::{RowsAre, Spot, row_properties, write_places, write_table};
+use belvedere::io::{Spot, row_properties, write_places, write_table};
 use std::path::Path;
 
 pub(crate) fn run(arguments: &SurveyPlanArguments, global: &Global) -> Result<Summary> {
-    for output in &arguments.output {
-        check_output("-o", output, &["geojson", "gpkg", "csv"])?;
-    }
+    check_outputs("-o", &arguments.output, &["geojson", "gpkg", "csv"])?;
     let mut question = question(arguments);
     question.check()?;
     let mut run = CommandContext::new(global);
@@ -35,11 +32,7 @@ pub(crate) fn run(arguments: &SurveyPlanArguments, global: &Global) -> Result<Su
         None if question.suns.is_some() => Places::Cells(cells),
         None => Places::Pairs(pairs(&arguments.lines, &scene, &run)?.0),
         Some(path) => {
-            for row in observer_rows(path, &frame, RowsAre::Places, ObserverUse::Places, &mut run)? {
-                let place = |corner: &[f64; 3]| std::array::from_fn(|i| corner[i] - frame.origin[i]);
-                let standing = |corner| Standing { place: place(corner), height: row.height };
-                question.observers.extend(row.corners.iter().map(standing));
-            }
+            question.observers.extend(standing_rows(path, &frame, &mut run)?);
             Places::Cells(cells)
         }
     };

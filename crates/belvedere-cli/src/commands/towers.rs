@@ -1,7 +1,7 @@
 //! `belvedere towers`.
 
 use crate::arguments::{Global, SkyPlaces, TowersArguments, refuse};
-use crate::outputs::formats::{check_folder, check_output, extension};
+use crate::outputs::formats::{check_folder, check_outputs, extension, refuse_files_of};
 use crate::outputs::sheet::Sheet;
 use crate::outputs::targets::{TargetOutput, remark_on_first};
 use crate::pipeline::{self, KeepPoints};
@@ -19,9 +19,7 @@ use std::path::Path;
 pub(crate) fn run(arguments: &TowersArguments, global: &Global) -> Result<Summary> {
     let places = arguments.places();
     places.check(&arguments.outputs)?;
-    for output in &arguments.far_output {
-        check_output("--far-output", output, &["tif", "tiff", "png"])?;
-    }
+    check_outputs("--far-output", &arguments.far_output, &["tif", "tiff", "png"])?;
     if let Some(folder) = &arguments.wirelines {
         check_wirelines(folder, &places, arguments)?;
     }
@@ -87,16 +85,9 @@ fn check_wirelines(folder: &Path, places: &SkyPlaces, arguments: &TowersArgument
         return refuse("--wirelines needs places: --at X,Y or --targets FILE");
     }
     check_folder(folder)?;
-    let real = |path: &Path| path.canonicalize().or_else(|_| std::path::absolute(path)).ok();
-    let own = wireline_files(folder, MAX_WIRELINES);
     let inputs = std::iter::once(&arguments.towers).chain(&places.places.targets).chain(&places.far.terrain);
-    let mut others = arguments.outputs.output.iter().chain(&arguments.far_output).chain(inputs);
-    match others.find(|other| own.iter().any(|file| real(file) == real(other))) {
-        Some(other) => {
-            refuse(format!("{}: a file of --wirelines has this name; choose another folder", other.display()))
-        }
-        None => Ok(()),
-    }
+    let others = arguments.outputs.output.iter().chain(&arguments.far_output).chain(inputs);
+    refuse_files_of("--wirelines", &wireline_files(folder, MAX_WIRELINES), others)
 }
 
 /// Writes the views from far terrain as a raster or a map.

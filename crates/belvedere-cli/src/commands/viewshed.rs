@@ -6,7 +6,7 @@ mod viewshed_observers;
 use crate::arguments::{Global, GroundChoice, MapPosition, ViewshedArguments};
 use crate::in_tiles::TypedCells;
 use crate::inputs::far_terrain::set_terrain;
-use crate::outputs::formats::{check_output, extension, warn_of_geojson};
+use crate::outputs::formats::{check_output, check_outputs, extension, warn_of_geojson};
 use crate::outputs::heights::write_heights;
 use crate::outputs::targets::HighestPoints;
 use crate::pipeline::{self, KeepPoints};
@@ -15,6 +15,7 @@ use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Answers, Ask, Places, Scene, UNCERTAIN, ViewshedResults, ViewshedTargets};
 use belvedere::apps::viewshed::answers_of_bands;
+use belvedere::cast::{to_index, to_row};
 use belvedere::figures::Picture;
 use belvedere::query::UnprovenAs;
 use belvedere::results::UNPROVEN_BAND;
@@ -28,7 +29,7 @@ const OF_POINTS: [&str; 4] = ["laz", "las", "ply", "csv"];
 const VISIBLE_HEIGHTS: &str = "minimum visible height above the ground in metres; -9999: none, or nodata";
 
 pub(crate) fn run(arguments: &ViewshedArguments, global: &Global) -> Result<Summary> {
-    check_outputs(arguments)?;
+    check_formats(arguments)?;
     viewshed_observers::check(arguments)?;
     let mut question = question(arguments)?;
     question.check()?;
@@ -133,8 +134,8 @@ fn map_of_survey(
     let SurveyCells { grid, eyes, .. } = &answers.found;
     let band = |name: &str| answers.measures.iter().find(|band| band.name == name).map(|band| &band.values[..]);
     let unproven = band(UNPROVEN_BAND).unwrap_or_default();
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most as many as observers")]
-    let count = |(cell, &free): (usize, &f32)| (free - unproven.get(cell).unwrap_or(&0.0)) as u32;
+    let count =
+        |(cell, &free): (usize, &f32)| to_row(to_index(f64::from(free - unproven.get(cell).unwrap_or(&0.0))));
     let counts: Vec<u32> = answers.measures[0].values.iter().enumerate().map(count).collect();
     let map = SeenMap {
         answers: &answers_of_bands(&answers.measures[..answers.measures.len().min(2)]),
@@ -151,16 +152,12 @@ fn is_of_points(path: &Path) -> bool {
     OF_POINTS.contains(&extension(path).as_str())
 }
 
-fn check_outputs(arguments: &ViewshedArguments) -> Result<()> {
-    for output in &arguments.output {
-        check_output("-o", output, &["tif", "tiff", "png", "geojson", "gpkg", "laz", "las", "ply", "csv"])?;
-    }
+fn check_formats(arguments: &ViewshedArguments) -> Result<()> {
+    check_outputs("-o", &arguments.output, &["tif", "tiff", "png", "geojson", "gpkg", "laz", "las", "ply", "csv"])?;
     for output in &arguments.far_output {
         check_output("--far-output", output, &["tif", "tiff", "png", "geojson", "gpkg"])?;
     }
-    if let Some(output) = &arguments.heights {
-        check_output("--heights", output, &["tif", "tiff", "npy"])?;
-    }
+    check_outputs("--heights", &arguments.heights, &["tif", "tiff", "npy"])?;
     if let Some(output) = &arguments.masks {
         check_output("--masks", output, &["tif", "tiff", "npy"])?;
     }

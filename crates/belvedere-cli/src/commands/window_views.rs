@@ -5,7 +5,7 @@ mod results;
 use crate::arguments::{Global, WindowViewsArguments, refuse};
 use crate::inputs::points::points_of_file;
 use crate::inputs::windows::{FaceChoice, WindowFile};
-use crate::outputs::formats::{check_output, extension, warn_of_geojson};
+use crate::outputs::formats::{check_outputs, extension, warn_of_geojson};
 use crate::pipeline::{self, KeepPoints, LoadedScene};
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -78,12 +78,8 @@ pub(crate) fn run(arguments: &WindowViewsArguments, global: &Global) -> Result<S
 }
 
 fn check(arguments: &WindowViewsArguments) -> Result<()> {
-    for output in &arguments.output {
-        check_output("-o", output, &["csv", "geojson", "gpkg", "laz", "las", "ply", "png"])?;
-    }
-    if let Some(output) = &arguments.buildings {
-        check_output("--buildings", output, &["csv"])?;
-    }
+    check_outputs("-o", &arguments.output, &["csv", "geojson", "gpkg", "laz", "las", "ply", "png"])?;
+    check_outputs("--buildings", &arguments.buildings, &["csv"])?;
     if arguments.map_of.is_some() && !arguments.output.iter().any(|output| extension(output) == "png") {
         return refuse("--map-of needs a map: -o FILE.png");
     }

@@ -39,11 +39,9 @@ pub(crate) fn candidates_on_path(
     let step = step.unwrap_or(STEP);
     let mut cameras = Vec::new();
     for (number, row) in observer_rows(path, frame, RowsAre::Places, needed, run)?.into_iter().enumerate() {
-        let corners: Vec<[f64; 3]> =
-            row.corners.iter().map(|c| std::array::from_fn(|i| c[i] - frame.origin[i])).collect();
-        let line = (corners.len() > 1).then_some(number);
+        let line = (row.corners.len() > 1).then_some(number);
         let on_line = |place| GivenCamera { line, ..camera(place, &row) };
-        cameras.extend(places_along(&corners, step)?.into_iter().map(on_line));
+        cameras.extend(places_along(&row.corners, step)?.into_iter().map(on_line));
     }
     Ok(cameras)
 }

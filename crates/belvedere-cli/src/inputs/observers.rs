@@ -11,6 +11,11 @@ use belvedere::{Bounds, Frame};
 use std::path::Path;
 
 impl EyesArguments {
+    /// Returns the minimum number of observers.
+    pub(crate) fn min_count(&self) -> Result<usize> {
+        min_count(self.eye.len(), self.eyes.as_deref())
+    }
+
     /// The observers that were typed or are in the file named.
     pub(crate) fn standing(
         &self,
@@ -20,11 +25,7 @@ impl EyesArguments {
         let typed = |&MapPosition(place, z): &MapPosition| Standing::on_map(place, z, frame, bounds);
         let mut standing: Vec<Standing> = self.eye.iter().map(typed).collect::<belvedere::Result<_>>()?;
         if let Some(path) = &self.eyes {
-            for row in observer_rows(path, frame, RowsAre::Places, ObserverUse::Places, run)? {
-                let place = |corner: &[f64; 3]| std::array::from_fn(|i| corner[i] - frame.origin[i]);
-                let height = row.height;
-                standing.extend(row.corners.iter().map(|corner| Standing { place: place(corner), height }));
-            }
+            standing.extend(standing_rows(path, frame, run)?);
         }
         Ok(standing)
     }
@@ -55,7 +56,7 @@ pub(crate) enum ObserverUse {
     Limits,
 }
 
-/// The observers of a file, with a remark on what of it is not used.
+/// The observers of a file in local metres, with a remark on what of it is not used.
 pub(crate) fn observer_rows(
     path: &Path,
     frame: &Frame,
@@ -63,10 +64,19 @@ pub(crate) fn observer_rows(
     needed: ObserverUse,
     run: &mut CommandContext,
 ) -> Result<Vec<ObserverRow>> {
-    let ObserverRows { rows, unused, limits } = read_observers(path, &frame.crs, rows_are)?;
+    let ObserverRows { mut rows, unused, limits } = read_observers(path, &frame.crs, rows_are)?;
     let limits = if needed == ObserverUse::Places { &limits[..] } else { &[] };
     run.summary.remarks(remark_on_unused(&path.display().to_string(), &unused, limits));
+    let corners = rows.iter_mut().flat_map(|row| &mut row.corners);
+    corners.for_each(|corner| *corner = std::array::from_fn(|axis| corner[axis] - frame.origin[axis]));
     Ok(rows)
+}
+
+/// The observers of a file, at each corner of its shapes.
+pub(crate) fn standing_rows(path: &Path, frame: &Frame, run: &mut CommandContext) -> Result<Vec<Standing>> {
+    let rows = observer_rows(path, frame, RowsAre::Places, ObserverUse::Places, run)?;
+    let standing = |row: ObserverRow| row.corners.into_iter().map(move |place| Standing { place, height: row.height });
+    Ok(rows.into_iter().flat_map(standing).collect())
 }
 
 /// Returns the minimum number of observers: those typed, or the rows of a table; one for other files.

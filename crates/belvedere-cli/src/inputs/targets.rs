@@ -6,7 +6,7 @@ use crate::arguments::{
 use crate::inputs::observers::{ObserverUse, observer_rows, rows_as_given};
 use crate::inputs::points::points_of_file;
 use crate::inputs::typed_places::on_map;
-use crate::outputs::formats::{check_output, extension};
+use crate::outputs::formats::{check_output, check_outputs, extension};
 use crate::outputs::targets::TargetSource;
 use crate::pipeline::{self, KeepPoints, mesh_in};
 use crate::run::CommandContext;
@@ -49,12 +49,8 @@ impl SkyPlaces {
             (_, true) => &["laz", "las", "ply", "csv"],
             _ => &["tif", "tiff", "png", "laz", "las", "ply", "csv"],
         };
-        for output in &outputs.output {
-            check_output("-o", output, known)?;
-        }
-        if let Some(output) = &outputs.by_area.by_area {
-            check_output("--by-area", output, &["csv", "geojson", "gpkg"])?;
-        }
+        check_outputs("-o", &outputs.output, known)?;
+        check_outputs("--by-area", &outputs.by_area.by_area, &["csv", "geojson", "gpkg"])?;
         if let Some(mask) = &self.edge_mask {
             check_output("--edge-mask", mask, &["tif", "tiff"])?;
         }
@@ -185,14 +181,12 @@ impl SkyPlaces {
         let names = ["name", "distance_m", "x", "y"].map(str::to_owned).into();
         let (mut places, mut listed) = (Vec::new(), TextRows::new(names));
         for row in &rows {
-            let local = |corner: &[f64; 3]| [0, 1, 2].map(|axis| corner[axis] - frame.origin[axis]);
-            let corners: Vec<[f64; 3]> = row.corners.iter().map(local).collect();
             let height = row.height.or(self.height.map(f64::from));
-            let along = places_along(&corners, self.spacing.unwrap_or(ALONG_LINES))?;
+            let along = places_along(&row.corners, self.spacing.unwrap_or(ALONG_LINES))?;
             let distances = Route { places: along.clone() }.distances();
             for (place, distance) in along.into_iter().zip(distances) {
                 let [x, y, _] = frame.file_from_local(place).map(|v| format!("{v:.3}"));
-                let distance = if corners.len() > 1 { format!("{distance:.2}") } else { String::new() };
+                let distance = if row.corners.len() > 1 { format!("{distance:.2}") } else { String::new() };
                 listed.push([&row.name, &distance, &x, &y]);
                 places.push(Standing { place, height });
             }

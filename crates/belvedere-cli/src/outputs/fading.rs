@@ -1,15 +1,21 @@
 //! Colours of what is uncertain.
 
+use belvedere::cast::to_u8;
+
 /// Colour of unproven answers, which are always uncertain.
 pub(crate) const UNPROVEN_COLOR: [u8; 3] = [90, 150, 240];
 /// Colour that others fade to, and the share of fading.
 const PALE: [f32; 3] = [236.0, 236.0, 236.0];
 const SHARE: f32 = 0.45;
 
+/// The mixture of two colours, with a share of the second.
+pub(crate) fn mixed(first: [u8; 3], second: [f32; 3], share: f32) -> [u8; 3] {
+    std::array::from_fn(|i| to_u8((f32::from(first[i]) * (1.0 - share) + second[i] * share).round().into()))
+}
+
 /// The colour of an answer that is uncertain.
 pub(crate) fn faded(color: [u8; 3]) -> [u8; 3] {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between two colours")]
-    std::array::from_fn(|i| (f32::from(color[i]) * (1.0 - SHARE) + PALE[i] * SHARE).round() as u8)
+    mixed(color, PALE, SHARE)
 }
 
 /// Fades the colours of what is uncertain, but for what is unproven.

@@ -50,6 +50,15 @@ pub(crate) fn check_output(flag: &str, path: &Path, known: &[&str]) -> Result<()
     check_parent(path)
 }
 
+/// Refuses outputs as [`check_output`] does.
+pub(crate) fn check_outputs(
+    flag: &str,
+    paths: impl IntoIterator<Item = impl AsRef<Path>>,
+    known: &[&str],
+) -> Result<()> {
+    paths.into_iter().try_for_each(|path| check_output(flag, path.as_ref(), known))
+}
+
 /// Warns of GeoJSON whose coordinates are not those that its standard promises.
 pub(crate) fn warn_of_geojson(outputs: &[PathBuf], crs: &Crs, summary: &mut Summary) {
     if !outputs.iter().any(|output| extension(output) == "geojson") || crs.geographic_projection().is_ok() {
@@ -87,6 +96,23 @@ pub(crate) fn check_folder(path: &Path) -> Result<()> {
         std::fs::remove_dir(path).with_context(|| path.display().to_string())?;
     }
     Ok(())
+}
+
+/// Refuses other files that are among `own`, the files of the folder that a flag names.
+pub(crate) fn refuse_files_of<'a>(
+    flag: &str,
+    own: &[PathBuf],
+    others: impl IntoIterator<Item = &'a PathBuf>,
+) -> Result<()> {
+    let real = |path: &Path| path.canonicalize().or_else(|_| std::path::absolute(path)).ok();
+    let place = |path: &Path| Some((real(path.parent()?)?, path.file_name()?.to_owned()));
+    let is_same = |a: &Path, b: &Path| real(a) == real(b) || place(a).is_some_and(|a| Some(a) == place(b));
+    match others.into_iter().find(|other| own.iter().any(|file| is_same(file, other))) {
+        Some(other) => {
+            refuse(format!("{}: a file of {flag} has this name; choose another, or another folder", other.display()))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Returns true if a folder in the layout of masbcpp is written where it was read. Its coordinates then stay unchanged:

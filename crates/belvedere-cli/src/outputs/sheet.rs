@@ -1,5 +1,6 @@
 //! Maps of terrain beyond a cloud, and marks on them.
 
+use belvedere::cast::to_index;
 use belvedere::figures::MapMark;
 use belvedere::io::Georeference;
 use belvedere::raster::Raster;
@@ -31,11 +32,9 @@ impl Sheet {
         let extent = [0, 1].map(|i| size[i] as f64 * sides[i]);
         let usual = sides[0].max(sides[1]);
         let cell = usual.max((extent[0] * extent[1] / MAX_PIXELS).sqrt());
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most as many as nodes")]
-        let [width, height] = extent.map(|extent| (extent / cell).round().max(1.0) as usize);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the nodes")]
+        let [width, height] = extent.map(|extent| to_index((extent / cell).round().max(1.0)));
         let node = |pixel: usize, axis: usize| {
-            (((pixel as f64 + 0.5) * cell / sides[axis]) as usize).min(size[axis].saturating_sub(1))
+            to_index((pixel as f64 + 0.5) * cell / sides[axis]).min(size[axis].saturating_sub(1))
         };
         let nodes = (0..width * height).map(|i| [node(i % width, 0), node(i / width, 1)]);
         let relief = nodes.clone().map(|[column, row]| terrain.heights().get(column, row).unwrap_or(f32::NAN));

@@ -1,16 +1,10 @@
 //! Refused answers: places outside the cloud, and observers that cannot look.
 
-use crate::common::{EAST, NORTH, Workplace, at, column, house, remarks};
+use crate::common::{EAST, NORTH, Workplace, at, column, remarks};
 
 const HOUSE: &str = "house.laz --scene-config ../tau.json --orient given --ground found";
 /// Three kilometres beside the house.
 const FAR: f64 = 3_000.0;
-
-fn place() -> Workplace {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
-    place
-}
 
 fn table(header: &str, rows: &[Vec<f64>]) -> String {
     let line = |row: &Vec<f64>| row.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
@@ -19,7 +13,7 @@ fn table(header: &str, rows: &[Vec<f64>]) -> String {
 
 #[test]
 fn places_outside_the_cloud_have_an_answer_of_their_own_in_all_ways_of_asking() {
-    let place = place();
+    let place = Workplace::with_house();
     let places = [at(-12.0, 0.0, 2.0), at(FAR, 0.0, 2.0), at(0.0, 0.0, -50.0), at(-12.0, 0.0, 100.0)];
     place.write("targets.csv", table("x,y,z", &places.map(Vec::from)));
     let targets = "--targets targets.csv -o out.csv";
@@ -64,7 +58,7 @@ fn places_outside_the_cloud_have_an_answer_of_their_own_in_all_ways_of_asking() 
 
 #[test]
 fn without_json_warnings_go_to_standard_error() {
-    let place = place();
+    let place = Workplace::with_house();
     place.write("targets.csv", table("x,y,z", &[at(FAR, 0.0, 2.0).to_vec()]));
     let run = place
         .run("query house.laz --scene-config ../tau.json --orient given --sun 180,60 --targets targets.csv -o out.csv");
@@ -74,7 +68,7 @@ fn without_json_warnings_go_to_standard_error() {
 
 #[test]
 fn observers_that_cannot_look_are_named_skipped_and_counted() {
-    let place = place();
+    let place = Workplace::with_house();
     // before the house, half a metre deep in its west wall, below the ground, and three kilometres away
     let eyes = [at(-12.0, 0.0, 1.7), at(-4.6, 0.25, 2.25), at(-12.0, 5.0, -0.7), at(FAR, 0.0, 1.7)];
     place.write("observers.csv", table("x,y,z", &eyes.map(Vec::from)));
@@ -117,7 +111,7 @@ fn observers_that_cannot_look_are_named_skipped_and_counted() {
 
 #[test]
 fn a_run_fails_only_when_no_observer_is_left() {
-    let place = place();
+    let place = Workplace::with_house();
     let inside = format!("--observer {},{},2.25", EAST - 4.6, NORTH + 0.25);
     for command in ["viewshed -o a.tif --ground found", "isovist -o a.csv", "horizon -o a.csv"] {
         let arguments = format!("{command} house.laz --scene-config ../tau.json --orient given {inside}");
@@ -132,7 +126,7 @@ fn a_run_fails_only_when_no_observer_is_left() {
 
 #[test]
 fn places_near_the_edge_of_the_cloud_are_counted_and_mapped() {
-    let place = place();
+    let place = Workplace::with_house();
     // the ridge is 8.8 m above the ground: at 30° a shadow is up to 15 m long, and the sun stands in the south
     let summary =
         place.summary(&format!("shadow {HOUSE} --sun 180,30 --grid-north --cell 1 -o lit.tif --edge-mask edge.tif"));

@@ -1,6 +1,6 @@
 //! `belvedere calibrate`: how reliable answers on a survey are, and the scene that keeps it.
 
-use crate::common::{Workplace, house, remarks};
+use crate::common::{Workplace, remarks};
 use serde_json::Value;
 
 #[test]
@@ -41,8 +41,7 @@ fn a_survey_is_measured_and_its_scene_quotes_the_figures() {
 
 #[test]
 fn what_cannot_be_measured_is_refused_with_what_to_do() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     place.refusal(1, "calibrate house.laz", &["house.laz", "scanner positions", "--orient trajectory=FILE"]);
     place.refusal(1, "calibrate house.xyz", &["house.xyz"]);
     place.summary("balls house.laz --orient given --method tau -o balls.npz");

@@ -1,14 +1,13 @@
 //! Camera placement on the command line.
 
-use crate::common::{Workplace, at, column, house_in_a_field, is_hidden};
+use crate::common::{Workplace, at, column, is_hidden};
 use serde_json::Value;
 
 const HOUSE: &str = "cameras house.laz --orient given --scene-config ../tau.json";
 
 /// A house in a field, and three posts beside it: in the west, in the east, and next to the one in the east.
 fn place() -> Workplace {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house_in_a_field());
+    let place = Workplace::with_field();
     let posts = POSTS.map(|[x, y]| {
         let [x, y, _] = at(x, y, 0.0);
         format!("{x},{y}\n")

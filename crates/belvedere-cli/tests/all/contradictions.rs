@@ -49,8 +49,7 @@ fn a_scene_is_another_one_where_only_the_system_beside_its_file_changed() {
 
 #[test]
 fn ground_of_another_place_is_refused_and_of_another_level_is_said() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let moved = |by: [f64; 3]| {
         let mut cloud = house();
         (0..3).for_each(|axis| cloud.frame.origin[axis] += by[axis]);
@@ -99,8 +98,7 @@ fn a_building_that_floats_or_sinks_is_said() {
 
 #[test]
 fn suns_that_cannot_be_are_refused_and_shadows_of_two_suns_are_not_one_change() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let hours = "sun-hours house.laz --date 2026-12-21 --cell 4 -o a.tif --min-sun-elevation";
     // on the shortest day at 52° north the sun is 14.6° high
     for elevation in ["89", "20"] {
@@ -215,8 +213,7 @@ fn info_says_what_answers_say_of_the_survey() {
 
 #[test]
 fn clocks_of_another_continent_are_said() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     // at 5 degrees east the sun is 0.4 hours ahead of UTC
     let times = [
         ("2026-06-21T12:00 --zone Europe/Amsterdam", false),

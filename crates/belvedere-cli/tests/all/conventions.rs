@@ -8,8 +8,7 @@ const CONVERGENCE_DEG: f64 = -0.8042;
 
 #[test]
 fn azimuths_of_the_sun_are_from_true_north_unless_grid_north_is_wanted() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let made = "--orient given --scene-config ../tau.json --pixel 1 -o depth.npy";
     let along = |flags: &str| {
         let run = place.summary(&format!("depth-map house.laz {made} {flags}"));
@@ -36,8 +35,7 @@ fn azimuths_of_the_sun_are_from_true_north_unless_grid_north_is_wanted() {
 
 #[test]
 fn a_range_of_azimuths_turns_with_its_north() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let [x, y, _] = at(0.0, -14.0, 0.0);
     let observer =
         format!("house.laz --orient given --scene-config ../tau.json --ground found --observer {x},{y} --cell 0.5");
@@ -53,8 +51,7 @@ fn a_range_of_azimuths_turns_with_its_north() {
 
 #[test]
 fn a_file_of_ball_parameters_is_the_same_as_their_flags_and_flags_override_it() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     place.write("balls.json", r#"{"orient": "given", "method": "tau", "max_radius": 0.8, "keep_isolated": true}"#);
     let flags = "--orient given --method tau --keep-isolated";
     place.summary("balls house.laz --scene-config balls.json -o a.npz");
@@ -104,8 +101,7 @@ fn a_file_of_ball_parameters_is_the_same_as_their_flags_and_flags_override_it() 
 
 #[test]
 fn progress_as_json_follows_each_stage_from_its_beginning_to_its_end() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let run = place.run("balls house.laz --orient given --method tau --progress json -o a.npz");
     assert_eq!(run.status, 0);
     let lines: Vec<Value> = run.stderr.lines().map(|line| serde_json::from_str(line).unwrap()).collect();

@@ -10,12 +10,6 @@ use tiff::tags::Tag;
 const FROM_ABOVE: &str = "84985,446010,20 30,0,0 0,-20,0 4";
 const NO_BALL: u32 = u32::MAX;
 
-fn with_house() -> Workplace {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
-    place
-}
-
 struct Tif {
     size: (u32, u32),
     values: DecodingResult,
@@ -51,7 +45,7 @@ fn seen_at<T: Copy>(values: &[T], x: f64, y: f64) -> T {
 
 #[test]
 fn depths_from_above_are_heights_below_the_plane() {
-    let place = with_house();
+    let place = Workplace::with_house();
     let summary = place.summary_with("depth-map house.laz -o depth.npy --viewport", &[FROM_ABOVE]);
     assert_eq!((&summary["view"]["width_px"], &summary["view"]["height_px"]), (&120.into(), &80.into()));
     let (shape, depth) = place.npy::<f32>("depth.npy");
@@ -72,7 +66,7 @@ fn depths_from_above_are_heights_below_the_plane() {
 
 #[test]
 fn a_tif_of_a_view_straight_down_lies_on_the_map() {
-    let place = with_house();
+    let place = Workplace::with_house();
     place.summary_with("depth-map house.laz -o depth.npy --viewport", &[FROM_ABOVE]);
     place.summary_with("depth-map house.laz -o depth.tif --ball-ids ids.tif --viewport", &[FROM_ABOVE]);
     let depth = tif(&place, "depth.tif");
@@ -94,7 +88,7 @@ fn a_tif_of_a_view_straight_down_lies_on_the_map() {
 
 #[test]
 fn the_item_buffer_names_rows_of_the_ball_file() {
-    let place = with_house();
+    let place = Workplace::with_house();
     // but for the balls that rules add, every ball touches its point
     place.summary("balls house.laz --without relief,slender,crowns,planes -o balls.npz");
     let centers: Vec<f32> = place.npz("balls.npz", "centers");
@@ -151,7 +145,7 @@ fn the_rows_that_balls_come_from_are_rows_of_the_file() {
 
 #[test]
 fn a_picture_is_a_png_whether_something_is_hit_or_not() {
-    let place = with_house();
+    let place = Workplace::with_house();
     let summary = place.summary("depth-map house.laz -o sun.png --sun 160,35");
     let hit = summary["pixels_hit_percent"].as_f64().unwrap();
     assert!(hit > 30.0, "{hit}");
@@ -171,7 +165,7 @@ fn a_picture_is_a_png_whether_something_is_hit_or_not() {
 
 #[test]
 fn negative_numbers_are_numbers_and_not_flags() {
-    let place = with_house();
+    let place = Workplace::with_house();
     place.summary("depth-map house.laz -o a.npy --direction -1,-1,-1");
     place.summary("depth-map house.laz -o b.npy --direction=-1,-1,-1");
     place.summary("depth-map house.laz -o c.npy --sun -90,30");
@@ -186,7 +180,7 @@ fn negative_numbers_are_numbers_and_not_flags() {
 
 #[test]
 fn the_cone_of_the_paper_lies_behind_the_sphere() {
-    let place = with_house();
+    let place = Workplace::with_house();
     let depths = ["sphere", "paper-cone"].map(|profile| {
         place.summary_with(&format!("depth-map house.laz --ball-profile {profile} -o d.npy --viewport"), &[FROM_ABOVE]);
         place.npy::<f32>("d.npy").1
@@ -207,7 +201,7 @@ fn camera(size: &str) -> String {
 
 #[test]
 fn a_camera_sees_a_wall_at_its_depth_wherever_it_looks_at_it() {
-    let place = with_house();
+    let place = Workplace::with_house();
     // patches of walls have no balls
     place.summary("balls house.laz --without planes -o balls.npz");
     let summary = place.summary(&format!("depth-map balls.npz -o depth.npy --ball-ids ids.npy {}", camera("160x120")));
@@ -240,7 +234,7 @@ fn a_camera_sees_a_wall_at_its_depth_wherever_it_looks_at_it() {
 
 #[test]
 fn a_panorama_has_north_in_the_middle_and_the_horizon_half_way_down() {
-    let place = with_house();
+    let place = Workplace::with_house();
     let eye = format!("--panorama {EAST},{},3", NORTH - 20.0);
     let summary = place.summary(&format!("depth-map house.laz -o range.npy {eye} --size 360"));
     assert_eq!((&summary["view"]["width_px"], &summary["view"]["height_px"]), (&360.into(), &180.into()));
@@ -267,7 +261,7 @@ fn a_panorama_has_north_in_the_middle_and_the_horizon_half_way_down() {
 
 #[test]
 fn an_eye_within_a_ball_is_reported_and_sees() {
-    let place = with_house();
+    let place = Workplace::with_house();
     let inside = format!("--eye {EAST},{NORTH},3 --look-at {},{NORTH},3 --size 40x30", EAST + 1.0);
     place.summary("balls house.laz --method tau --max-radius 5 -o balls.npz");
     let summary = place.summary(&format!("depth-map balls.npz -o depth.npy {inside}"));
@@ -276,7 +270,7 @@ fn an_eye_within_a_ball_is_reported_and_sees() {
 
 #[test]
 fn views_from_an_eye_that_make_no_sense_are_wrong_usage() {
-    let place = with_house();
+    let place = Workplace::with_house();
     let eye = format!("--eye {EAST},{NORTH},30");
     let look = format!("{eye} --look-at {EAST},{NORTH},0");
     for (flags, words) in [

@@ -4,8 +4,7 @@ use crate::common::{Workplace, house};
 
 #[test]
 fn outputs_have_the_same_bytes_for_any_number_of_threads() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     place.write_folder("folder", &house());
     let folder =
         ["ma_coords_in.npy", "ma_coords_out.npy", "ma_qidx_in.npy", "ma_qidx_out.npy", "lfs.npy", "decimate_lfs.npy"];
@@ -46,8 +45,7 @@ fn outputs_have_the_same_bytes_for_any_number_of_threads() {
 
 #[test]
 fn outputs_have_the_same_bytes_without_avx2() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let run = |arguments: &str, avx2: &str| {
         let output = place.command(arguments).env("BELVEDERE_AVX2", avx2).output().unwrap();
         assert!(output.status.success(), "{arguments}: {output:?}");
@@ -72,8 +70,7 @@ fn outputs_have_the_same_bytes_without_avx2() {
 
 #[test]
 fn another_seed_gives_other_random_targets_and_the_same_seed_the_same() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     for (seed, name) in [("1", "a.csv"), ("2", "b.csv"), ("2", "c.csv")] {
         place.summary(&format!("query house.laz --sun 160,35 --random 1000 --seed {seed} -o {name}"));
     }

@@ -1,30 +1,13 @@
 //! Solar envelopes, routes and windows on the command line.
 
-use crate::common::{EAST, NORTH, Workplace, house};
+use crate::common::{EAST, NORTH, Workplace, column, corners};
 
 const HOUSE: &str = "house.laz --orient given --scene-config ../tau.json";
 
-fn place() -> Workplace {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
-    place
-}
-
 /// A column of a table by its name, NaN where a cell is empty.
-fn column(place: &Workplace, name: &str, column: &str) -> Vec<f64> {
-    let text = place.text(name);
-    let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
-    let at = lines.next().unwrap().iter().position(|own| own == column).unwrap();
-    lines.map(|row| row[at].parse().unwrap_or(f64::NAN)).collect()
-}
-
-fn corners(places: &[[f64; 2]]) -> String {
-    places.iter().map(|[x, y]| format!("{},{}", EAST + x, NORTH + y)).collect::<Vec<_>>().join(" ")
-}
-
 #[test]
 fn an_envelope_rises_from_the_fence_at_the_elevation_of_the_sun_and_its_solid_has_its_volume() {
-    let place = place();
+    let place = Workplace::with_house();
     // flat ground lies around the house; 10 m by 8 m south of a long fence, with the sun in the south
     let parcel = corners(&[[-5.0, -18.0], [5.0, -18.0], [5.0, -10.0], [-5.0, -10.0]]);
     let fence = corners(&[[-19.0, -10.0], [19.0, -10.0]]);
@@ -65,7 +48,7 @@ fn an_envelope_rises_from_the_fence_at_the_elevation_of_the_sun_and_its_solid_ha
 
 #[test]
 fn envelopes_refuse_what_is_no_parcel_and_suns_that_are_not_up() {
-    let place = place();
+    let place = Workplace::with_house();
     let parcel = corners(&[[-5.0, -18.0], [5.0, -18.0], [5.0, -10.0]]);
     let crossing = corners(&[[-5.0, -18.0], [5.0, -10.0], [5.0, -18.0], [-5.0, -10.0]]);
     let far = corners(&[[5000.0, 0.0], [5010.0, 0.0], [5010.0, 10.0]]);
@@ -88,7 +71,7 @@ fn envelopes_refuse_what_is_no_parcel_and_suns_that_are_not_up() {
 
 #[test]
 fn a_route_past_a_house_sees_less_sky_and_lies_in_its_shade_in_part() {
-    let place = place();
+    let place = Workplace::with_house();
     let route = corners(&[[-15.0, 7.0], [15.0, 7.0]]);
     let command = format!(
         "comfort {HOUSE} --date 2026-03-21 --time-step-min 60 --location 52,5 -o places.csv --routes routes.csv --times times.csv"
@@ -117,7 +100,7 @@ fn a_route_past_a_house_sees_less_sky_and_lies_in_its_shade_in_part() {
 
 #[test]
 fn windows_before_nothing_have_the_vertical_sky_component_of_a_free_wall() {
-    let place = place();
+    let place = Workplace::with_house();
     let row = |x: f64, y: f64, z: f64, rest: &str| format!("{},{},{z},{rest}\n", EAST + x, NORTH + y);
     // high above the house: a wall to the south, a skylight, a large window to the north
     let rows = [row(0.0, 0.0, 60.0, "180,,,"), row(0.0, 0.0, 60.0, "0,0,,"), row(0.0, 0.0, 60.0, "0,90,4,2")].concat();

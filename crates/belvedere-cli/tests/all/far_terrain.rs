@@ -1,6 +1,6 @@
 //! Elevation rasters around the house whose ground is level.
 
-use crate::common::{EAST, NORTH, Workplace, at, column, house};
+use crate::common::{EAST, NORTH, Workplace, at, column};
 use belvedere::crs::Crs;
 use belvedere::io::{Georeference, read_tif_u8, read_tif_u16, write_tif_f32};
 use belvedere::raster::Raster;
@@ -33,8 +33,7 @@ fn range(_: f64, y: f64) -> f32 {
 
 #[test]
 fn eyes_stand_on_the_terrain_beyond_the_cloud_and_nowhere_else() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     write_terrain(&place, "dtm.tif", 28992, 0.0, range);
     let [x, y, _] = at(0.0, -1800.0, 0.0);
     place.write("masts.csv", format!("x,y,base,tip\n{x},{y},400,100\n"));
@@ -61,8 +60,7 @@ fn eyes_stand_on_the_terrain_beyond_the_cloud_and_nowhere_else() {
 
 #[test]
 fn each_place_has_the_horizon_of_the_terrain() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     write_terrain(&place, "dtm.tif", 28992, 0.0, range);
     let [x, y, z] = at(0.0, 0.0, 12.0);
     place.write("places.csv", format!("x,y,z\n{x},{y},{z}\n"));
@@ -109,8 +107,7 @@ fn each_place_has_the_horizon_of_the_terrain() {
 
 #[test]
 fn terrain_beyond_the_cloud_is_visible_where_nothing_hides_it() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     // the crest of the range stands 1510 m in the south, and all behind it is as high
     write_terrain(&place, "dtm.tif", 28992, 0.0, range);
     let [x, y, z] = at(0.0, 0.0, 12.0);
@@ -162,8 +159,7 @@ fn terrain_beyond_the_cloud_is_visible_where_nothing_hides_it() {
 
 #[test]
 fn lines_of_sight_reach_the_terrain_beyond_the_cloud() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     write_terrain(&place, "dtm.tif", 28992, 0.0, range);
     let ([x, y, z], [_, mast, _]) = (at(0.0, 0.0, 12.0), at(0.0, -1800.0, 0.0));
     let flags = format!("line-of-sight {HOUSE} --terrain dtm.tif");
@@ -210,8 +206,7 @@ fn lines_of_sight_reach_the_terrain_beyond_the_cloud() {
 
 #[test]
 fn observers_and_targets_of_viewsheds_stand_on_the_terrain() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     write_terrain(&place, "dtm.tif", 28992, 0.0, range);
     let ([x, y, z], [_, hill, _]) = (at(0.0, 0.0, 12.0), at(0.0, -1800.0, 0.0));
     let flags = format!("viewshed {HOUSE} --terrain dtm.tif");
@@ -254,8 +249,7 @@ fn observers_and_targets_of_viewsheds_stand_on_the_terrain() {
 
 #[test]
 fn mountains_are_ground_in_the_view_of_a_window_and_maps_name_them() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     // a wall all around, 1 km away, and a plain that changes nothing
     write_terrain(&place, "wall.tif", 28992, 0.0, |x, y| if x.hypot(y) < 1000.0 { 0.0 } else { 400.0 });
     write_terrain(&place, "plain.tif", 28992, 0.0, |_, _| -20.0);
@@ -285,8 +279,7 @@ fn mountains_are_ground_in_the_view_of_a_window_and_maps_name_them() {
 
 #[test]
 fn terrain_that_does_not_fit_is_refused_by_name() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let shadow = format!("shadow {HOUSE} --sun 180,25 --cell 1 -o lit.csv --terrain");
     write_terrain(&place, "utm.tif", 25_831, 0.0, range);
     place.refusal(1, &format!("{shadow} utm.tif"), &["utm.tif", "EPSG:25831", "gdalwarp -t_srs EPSG:28992"]);

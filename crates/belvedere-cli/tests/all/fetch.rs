@@ -1,6 +1,6 @@
 //! Open surveys of a place, from a server of this test: no network is needed.
 
-use crate::common::{Workplace, house};
+use crate::common::Workplace;
 use crate::web_server::{Manner, WebServer};
 use std::fs;
 
@@ -9,8 +9,7 @@ const AT: &str = "--at 51.99796,4.36789";
 
 /// A folder with a table of two surveys: one that lists the house as a tile, and one for people only.
 fn place() -> (Workplace, WebServer, Vec<u8>) {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let tile = fs::read(place.path("house.laz")).unwrap();
     let files = WebServer::start([("house.laz", tile.clone())], Manner::Whole);
     let list = format!(r#"{{"features": [{{"properties": {{"url": "{}"}}}}]}}"#, files.address("house.laz"));

@@ -1,15 +1,9 @@
 //! Tables come back with every cell as it was given, and results behind.
 
-use crate::common::{EAST, NORTH, Workplace, house};
+use crate::common::{EAST, NORTH, Workplace};
 
 /// A place without balls around it, as text with fewer decimals than the program would print.
 const PLACE: [&str; 3] = ["85000.5", "446010.25", "3.87"];
-
-fn with_house() -> Workplace {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
-    place
-}
 
 /// Cells of a table that has no quotation marks.
 fn rows(text: &str) -> Vec<Vec<&str>> {
@@ -18,7 +12,7 @@ fn rows(text: &str) -> Vec<Vec<&str>> {
 
 #[test]
 fn targets_keep_their_columns_and_coordinates() {
-    let place = with_house();
+    let place = Workplace::with_house();
     let [x, y, z] = PLACE;
     let lines = [
         format!("7,\"Smith, John\",{x},{y},{z},1e-3"),
@@ -52,7 +46,7 @@ fn targets_keep_their_columns_and_coordinates() {
 
 #[test]
 fn a_cloud_that_is_a_table_keeps_its_rows_too() {
-    let place = with_house();
+    let place = Workplace::with_house();
     place.summary("query house.laz --sun 180,45 --self -o points.csv");
     let text = place.text("points.csv");
     let numbered = text
@@ -73,7 +67,7 @@ fn a_cloud_that_is_a_table_keeps_its_rows_too() {
 
 #[test]
 fn every_command_with_a_row_for_each_row_of_a_table_carries_it() {
-    let place = with_house();
+    let place = Workplace::with_house();
     let [x, y, z] = PLACE;
     place.write("places.csv", format!("name,x,y,z,azimuth,remark\nfirst,{x},{y},{z},0,\nsecond,{x},{y},,90,b c\n"));
     place.write("full.csv", format!("name,x,y,z,azimuth,remark\nfirst,{x},{y},{z},180.0,\nsecond,{x},{y},4,90,b c\n"));

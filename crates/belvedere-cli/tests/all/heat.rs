@@ -1,12 +1,11 @@
 //! Heat on the command line: sun and shade of a house on a hot day, clocks and days of weather, and what is refused.
 
-use crate::common::{Workplace, at, column, house, remarks};
+use crate::common::{Workplace, at, column, remarks};
 use std::fmt::Write;
 
 /// The days of a year of a place that is hot in summer, an hour a row, as PVGIS writes a typical year.
 fn place() -> Workplace {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let mut text = String::from(
         "Latitude (decimal degrees): 52.16\nLongitude (decimal degrees): 5.39\ntime(UTC),T2m,RH,G(h),Gb(n),Gd(h),IR(h),WS10m\n",
     );

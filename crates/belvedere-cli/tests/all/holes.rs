@@ -95,8 +95,7 @@ fn a_hole_of_the_survey_has_no_value_in_any_raster() {
 
 #[test]
 fn suns_and_counts_are_bands_with_names_in_the_type_of_their_kind() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let scene = "house.laz --scene-config ../tau.json --orient given --ground found --cell 1";
     place.summary(&format!("shadow {scene} --sun 180,30 --sun 240,20 -o lit.tif -o lit.csv --measures each"));
     let ReadBands::U8(bands) = read_tif_bands(place.path("lit.tif").as_path()).unwrap() else { panic!("bytes") };

@@ -44,8 +44,7 @@ fn web_mercator_is_refused_with_a_system_to_convert_to() {
 
 #[test]
 fn what_contradicts_the_file_is_refused_by_every_command_that_takes_it() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let words = ["--crs", "house.laz", "EPSG:2154", "EPSG:28992", "km apart", "override"];
     for command in [
         "info house.laz",
@@ -68,8 +67,7 @@ fn what_contradicts_the_file_is_refused_by_every_command_that_takes_it() {
 
 #[test]
 fn a_location_far_from_the_reference_system_is_refused_and_a_near_one_has_a_remark() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let shadow =
         |location: &str| format!("shadow {HOUSE} --time 2026-06-21T10:00Z --cell 4 --location {location} -o a.tif");
     place.refusal(2, &shadow("4.37,52"), &["--location", "swapped", "52.00° N 4.37° E"]);
@@ -156,8 +154,7 @@ fn walls_are_not_estimated_from_a_few_points() {
 
 #[test]
 fn decimal_commas_cells_without_end_and_angles_are_refused_in_the_words_of_the_user() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     place.write("commas.csv", "x,y,z\n119849,791,487012,500,3,25\n119850,791,487012,500,3,25\n");
     place.refusal(1, "info commas.csv", &["commas.csv", "6 cells", "the header has 3", "decimal commas"]);
     for command in ["shadow --sun 180,30", "viewshed --observer 85010,446010"] {

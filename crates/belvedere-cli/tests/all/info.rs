@@ -138,8 +138,7 @@ fn duplicates_and_left_out_points_are_counted() {
 
 #[test]
 fn info_of_a_ball_file_says_where_it_is_and_how_it_was_built() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let built = place.summary("balls house.laz --orient given --method tau -o balls.npz");
     let (info, cloud) = (place.summary("info balls.npz"), place.summary("info house.laz"));
     let counted = &built["interior_balls"];

@@ -1,26 +1,14 @@
 //! `belvedere irradiance` on a house, whose sunny and shaded sides are known.
-#![expect(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
-use crate::common::{EAST, NORTH, Workplace, house, remarks};
+use crate::common::{EAST, NORTH, Workplace, numbers, remarks};
 
 /// The house's flags: its normals are given and no pulses are known.
 const HOUSE: &str =
     "house.laz --scene-config ../tau.json --orient given --ground found --sun-cell-deg 4 --patch-division 1";
 
-fn place() -> Workplace {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
-    place
-}
-
-fn numbers(text: &str, name: &str) -> Vec<f64> {
-    let at = text.lines().next().unwrap().split(',').position(|own| own == name).unwrap();
-    text.lines().skip(1).map(|line| line.split(',').nth(at).unwrap().parse().unwrap_or(f64::NAN)).collect()
-}
-
 #[test]
 fn the_ground_north_of_a_house_gets_less() {
-    let place = place();
+    let place = Workplace::with_house();
     let outputs = "-o energy.tif -o energy.png -o energy.csv --measures measures";
     let summary = place.summary(&format!("irradiance {HOUSE} --clear-sky ineichen --cell 1 --months {outputs}"));
     assert_eq!(summary["location"]["source"], "reference system");
@@ -45,7 +33,7 @@ fn the_ground_north_of_a_house_gets_less() {
 
 #[test]
 fn roofs_are_planes_with_bounds_of_their_loss() {
-    let place = place();
+    let place = Workplace::with_house();
     let flags = "--planes roofs.csv --planes roofs.geojson --horizons horizons";
     let summary = place.summary(&format!("irradiance {HOUSE} --clear-sky haurwitz {flags}"));
     assert_eq!(summary["roofs"]["planes"], 2, "{summary}");
@@ -80,7 +68,7 @@ fn roofs_are_planes_with_bounds_of_their_loss() {
 
 #[test]
 fn roofs_yield_electricity_between_both_ends() {
-    let place = place();
+    let place = Workplace::with_house();
     let outline = |name: &str, west: f64, east: f64| {
         let corners = [[west, -8.0], [east, -8.0], [east, 8.0], [west, 8.0], [west, -8.0]]
             .map(|[x, y]| format!("[{},{}]", EAST + x, NORTH + y));
@@ -149,7 +137,7 @@ fn weather(latitude: f64, offset: f64) -> String {
 
 #[test]
 fn weather_comes_from_files() {
-    let place = place();
+    let place = Workplace::with_house();
     place.write("weather.csv", weather(52.0, 0.0));
     let summary =
         place.summary(&format!("irradiance {HOUSE} --weather weather.csv --cell 4 --sky-model perez -o out.csv"));
@@ -167,7 +155,7 @@ fn weather_comes_from_files() {
 
 #[test]
 fn what_cannot_be_is_refused_with_advice() {
-    let place = place();
+    let place = Workplace::with_house();
     let house = |flags: &str| format!("irradiance {HOUSE} {flags}");
     place.refusal(2, &house("-o out.csv"), &["--weather", "--clear-sky"]);
     place.refusal(2, &house("--clear-sky bird"), &["--output"]);

@@ -5,8 +5,7 @@ use std::fs;
 
 #[test]
 fn the_second_question_finds_the_scene_and_answers_the_same() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let question = "shadow house.laz --sun 180,40 --grid-north --cell 1 -o";
     let first = place.summary(&format!("{question} first.tif"));
     let second = place.summary(&format!("{question} second.tif"));
@@ -37,8 +36,7 @@ fn the_second_question_finds_the_scene_and_answers_the_same() {
 
 #[test]
 fn another_file_or_another_flag_is_another_scene_and_no_cache_leaves_nothing() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let scene = |more: &str| {
         place.summary(&format!("shadow house.laz --sun 180,40 --grid-north -o a.tif {more}"))["scene"].clone()
     };
@@ -60,8 +58,7 @@ fn another_file_or_another_flag_is_another_scene_and_no_cache_leaves_nothing() {
 
 #[test]
 fn a_cache_that_cannot_be_written_is_named_and_the_answer_is_there() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     place.write("file", "");
     let run = place.run("shadow house.laz --sun 180,40 --grid-north -o a.tif --cache file");
     assert_eq!(run.status, 0, "{run:?}");
@@ -71,8 +68,7 @@ fn a_cache_that_cannot_be_written_is_named_and_the_answer_is_there() {
 
 #[test]
 fn a_folder_of_others_is_no_cache_and_stays() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     fs::create_dir_all(place.path("mine/tiles/run/balls")).unwrap();
     for name in ["mine/anything_scene.npz", "mine/tiles/run/plan.json", "mine/tiles/run/balls/e1_n2.npz"] {
         place.write(name, "mine");

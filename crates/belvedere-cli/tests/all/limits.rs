@@ -1,6 +1,6 @@
 //! Options are checked before anything is read, and what would fill the memory or take hours is refused.
 
-use crate::common::{EAST, NORTH, Workplace, house};
+use crate::common::{EAST, NORTH, Workplace};
 
 #[test]
 fn options_are_refused_before_a_cloud_is_read() {
@@ -71,8 +71,7 @@ fn options_are_refused_before_a_cloud_is_read() {
 
 #[test]
 fn threads_of_the_environment_are_bounded_like_those_of_the_flag() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let run = |threads: &str| {
         let output = place.command("info house.laz").env("RAYON_NUM_THREADS", threads).output().unwrap();
         (output.status.code(), String::from_utf8(output.stderr).unwrap())
@@ -89,8 +88,7 @@ fn threads_of_the_environment_are_bounded_like_those_of_the_flag() {
 #[cfg(target_os = "linux")]
 #[test]
 fn limits_of_the_system_are_named() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let run = |limits: &str, arguments: &str| {
         let script = format!("{limits}; exec \"$BELVEDERE\" {arguments}");
         let mut shell = std::process::Command::new("bash");
@@ -134,8 +132,7 @@ fn missing_files_are_reported_before_a_cloud_is_read() {
 
 #[test]
 fn grids_and_pictures_beyond_memory_are_refused_before_they_are_made() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     place.summary("balls house.laz -o balls.npz");
     for (arguments, words) in [
         (format!("viewshed house.laz --observer {EAST},{NORTH} --cell 1e-3 -o o.tif"), ["--cell", "100 million"]),

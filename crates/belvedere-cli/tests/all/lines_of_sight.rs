@@ -1,34 +1,18 @@
 //! Lines of sight and viewsheds around a house, worked out by hand, in every kind of file.
-#![expect(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 #![expect(clippy::cast_possible_truncation, reason = "cells of a small grid")]
 
-use crate::common::{EAST, NORTH, ROUGHNESS, Workplace, at, house, is_hidden};
+use crate::common::{EAST, NORTH, ROUGHNESS, Workplace, at, cells, is_hidden, numbers};
 
 /// The house's flags: its normals are given and no pulses are known.
 const HOUSE: &str = "house.laz --scene-config ../tau.json --orient given --ground found";
-
-fn column(text: &str, name: &str) -> Vec<String> {
-    let at = text.lines().next().unwrap().split(',').position(|own| own == name).unwrap();
-    text.lines().skip(1).map(|line| line.split(',').nth(at).unwrap().to_owned()).collect()
-}
 
 fn words(words: &[&str]) -> Vec<String> {
     words.iter().map(|&word| word.to_owned()).collect()
 }
 
-fn numbers(text: &str, name: &str) -> Vec<f64> {
-    column(text, name).iter().map(|cell| cell.parse().unwrap_or(f64::NAN)).collect()
-}
-
-fn place() -> Workplace {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
-    place
-}
-
 #[test]
 fn pairs_around_a_house_are_blocked_where_its_walls_stand() {
-    let place = place();
+    let place = Workplace::with_house();
     let pairs = [
         (at(-12.0, 0.0, 2.0), at(12.0, 0.0, 2.0)),   // through both gables
         (at(12.0, 0.0, 2.0), at(-12.0, 0.0, 2.0)),   // and back
@@ -43,19 +27,19 @@ fn pairs_around_a_house_are_blocked_where_its_walls_stand() {
     let summary = place.summary(&format!("{line} --frequency-ghz 5.8"));
     assert_eq!(summary["lines_of_sight"]["blocked"], 2);
     let text = place.text("out.csv");
-    assert_eq!(column(&text, "answer"), ["0", "0", "1", "1", "3"]);
+    assert_eq!(cells(&text, "answer"), ["0", "0", "1", "1", "3"]);
     // a blocked link has no free zone; past the house 1.9 m are free, of a zone that is 0.6 m wide
-    assert_eq!(column(&text, "fresnel_free_percent")[..4], ["0.0", "0.0", "100.0", "100.0"]);
+    assert_eq!(cells(&text, "fresnel_free_percent")[..4], ["0.0", "0.0", "100.0", "100.0"]);
     // the wall is 7 m off, seen from either side; balls may bulge by what points half a metre apart allow
     let ranges = numbers(&text, "first_block_range_m");
     assert!((ranges[0] - 7.0).abs() < 0.3 && (ranges[1] - 7.0).abs() < 0.3, "{ranges:?}");
     assert!((numbers(&text, "block_x")[0] - (EAST - 5.0)).abs() < 0.3);
-    assert!(ranges[2].is_nan() && column(&text, "block_ball")[2].is_empty());
+    assert!(ranges[2].is_nan() && cells(&text, "block_ball")[2].is_empty());
 }
 
 #[test]
 fn lines_without_heights_run_from_the_eye_of_a_person_to_the_ground() {
-    let place = place();
+    let place = Workplace::with_house();
     // through the house, and past its north side; once as lines, and once as a table with the heights that follow from
     // the ground
     let lines = [[[-12.0, 0.0], [12.0, 0.0]], [[-12.0, 7.0], [12.0, 7.0]]];
@@ -73,7 +57,7 @@ fn lines_without_heights_run_from_the_eye_of_a_person_to_the_ground() {
         place.summary(&format!("line-of-sight {HOUSE} --pairs lines.geojson --target-height 0.5 -o lines.csv"));
     assert_eq!(summary["lines_of_sight"]["blocked"], 1);
     let text = place.text("lines.csv");
-    assert_eq!(column(&text, "answer"), ["0", "1"]);
+    assert_eq!(cells(&text, "answer"), ["0", "1"]);
     // the corner in the middle is no end; the ground lies at 0, as rough as its points
     for (name, expected) in [("az", 1.7), ("bz", 0.5)] {
         assert!(numbers(&text, name).iter().all(|z| (z - expected).abs() <= f64::from(ROUGHNESS)), "{text}");
@@ -104,7 +88,7 @@ fn lines_without_heights_run_from_the_eye_of_a_person_to_the_ground() {
 
 #[test]
 fn a_profile_shows_the_house_between() {
-    let place = place();
+    let place = Workplace::with_house();
     let line = format!("--observer {},{},2 --target {},{},2", EAST - 12.0, NORTH, EAST + 12.0, NORTH);
     place.summary(&format!("line-of-sight {HOUSE} {line} --profile-out profile.csv --distance-step-m 0.5"));
     let text = place.text("profile.csv");
@@ -128,7 +112,7 @@ fn a_profile_shows_the_house_between() {
 
 #[test]
 fn a_viewshed_hides_what_lies_behind_the_house() {
-    let place = place();
+    let place = Workplace::with_house();
     let observer = format!("--observer {},{}", EAST - 12.0, NORTH);
     let outputs = "-o seen.tif -o seen.png -o seen.geojson -o seen.csv --heights heights.npy --masks masks.npy";
     let summary = place.summary(&format!("viewshed {HOUSE} {observer} --cell 1 {outputs}"));
@@ -159,12 +143,12 @@ fn a_viewshed_hides_what_lies_behind_the_house() {
     assert_eq!(shape, [1, u64::from(height), u64::from(width)]);
     assert!(masks.iter().zip(&cells).all(|(bits, cell)| (*bits == 1) == (*cell == 1)));
     assert!(place.text("seen.geojson").contains("MultiPolygon"));
-    assert!(column(&place.text("seen.csv"), "answer").contains(&"0".to_owned()));
+    assert!(numbers(&place.text("seen.csv"), "answer").contains(&0.0));
 }
 
 #[test]
 fn a_target_is_seen_from_where_an_observer_there_would_see_the_eyes() {
-    let place = place();
+    let place = Workplace::with_house();
     let target = format!("--target {},{} --target-height 2 --observer-height 1.7", EAST + 12.0, NORTH);
     place.summary(&format!("viewshed {HOUSE} {target} --cell 1 -o reverse.csv -o reverse.tif"));
     let observer = format!("--observer {},{} --observer-height 2 --target-height 1.7", EAST + 12.0, NORTH);
@@ -174,7 +158,7 @@ fn a_target_is_seen_from_where_an_observer_there_would_see_the_eyes() {
 
 #[test]
 fn observers_come_from_tables_and_geojson_and_paths_have_a_step() {
-    let place = place();
+    let place = Workplace::with_house();
     place.write(
         "observers.csv",
         format!("x,y,z,height,max_distance,name\n{0},{1},,1.7,5,a\n{0},{2},3,,,b\n", EAST - 12.0, NORTH, NORTH + 10.0),
@@ -198,7 +182,7 @@ fn observers_come_from_tables_and_geojson_and_paths_have_a_step() {
 
 #[test]
 fn what_cannot_be_is_refused_with_advice() {
-    let place = place();
+    let place = Workplace::with_house();
     let observer = format!("--observer {EAST},{NORTH}");
     place.refusal(
         1,
@@ -273,7 +257,7 @@ fn what_cannot_be_is_refused_with_advice() {
 
 #[test]
 fn places_around_a_house_are_a_network_whatever_their_order() {
-    let place = place();
+    let place = Workplace::with_house();
     // west and east of the house, north of it, and north-west
     let places = [("west", -12.0, 0.0), ("east", 12.0, 0.0), ("north", 0.0, 10.0), ("north-west", -12.0, 7.0)];
     let row = |(name, x, y): &(&str, f64, f64)| format!("\"{name}\",{},{},2\n", EAST + x, NORTH + y);
@@ -286,7 +270,7 @@ fn places_around_a_house_are_a_network_whatever_their_order() {
     let network = &summary["network"];
     assert_eq!((&network["places"], &network["links"], &network["groups"]), (&4.into(), &4.into(), &1.into()));
     let text = place.text("net.csv");
-    assert_eq!(column(&text, "answer").iter().filter(|answer| *answer == "0").count(), 2, "{text}");
+    assert_eq!(cells(&text, "answer").iter().filter(|answer| *answer == "0").count(), 2, "{text}");
     assert!(text.lines().any(|line| line.starts_with("west,east,") && line.contains(",24.000,0,")), "{text}");
     let lines: serde_json::Value = serde_json::from_str(&place.text("net.geojson")).unwrap();
     let lines = lines["features"].as_array().unwrap();
@@ -308,7 +292,7 @@ fn places_around_a_house_are_a_network_whatever_their_order() {
 
 #[test]
 fn networks_name_what_cannot_see_and_refuse_what_is_no_network() {
-    let place = place();
+    let place = Workplace::with_house();
     let [outside, inside] = [EAST - 12.0, EAST - 4.6];
     let north = NORTH + 0.25;
     place.write("places.csv", format!("x,y,z\n{outside},{north},2.25\n{inside},{north},2.25\n"));
@@ -325,14 +309,14 @@ fn networks_name_what_cannot_see_and_refuse_what_is_no_network() {
     place.write("row.csv", format!("name,id,x,y,z\n{rows}"));
     place.summary(&format!("line-of-sight {HOUSE} --among row.csv --max-distance 5 -o net.csv"));
     let text = place.text("net.csv");
-    assert_eq!((column(&text, "a"), column(&text, "b")), (words(&["7", "8", "9"]), words(&["8", "9", "10"])), "{text}");
+    assert_eq!((cells(&text, "a"), cells(&text, "b")), (words(&["7", "8", "9"]), words(&["8", "9", "10"])), "{text}");
     place.refusal(2, &pairs, &["--among"]);
     place.refusal(2, &pairs.replace("graphml", "csv --max-distance 9"), &["--max-distance", "--among"]);
 }
 
 #[test]
 fn observers_of_a_total_viewshed_fill_the_map_and_stand_in_no_house() {
-    let place = place();
+    let place = Workplace::with_house();
     let spread = |count: usize, output: &str| {
         place.summary(&format!("viewshed {HOUSE} --spread {count} --target-height 1.7 --cell 2 -o {output}"))
     };

@@ -1,6 +1,6 @@
 //! Messages about positions of eyes, targets and the sun that contradict the cloud.
 
-use crate::common::{Workplace, at, column, house, remarks};
+use crate::common::{Workplace, at, column, remarks};
 use belvedere::random::uniform;
 use std::fmt::Write;
 
@@ -107,8 +107,7 @@ fn a_drone_beside_the_cloud_and_above_it_sees_it() {
 
 #[test]
 fn an_end_inside_an_obstacle_is_an_answer_of_its_own() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let (inside, free) = (at(0.0, 0.0, 3.0), at(-12.0, 0.0, 2.0));
     let row = |a: [f64; 3], b: [f64; 3]| a.iter().chain(&b).map(f64::to_string).collect::<Vec<_>>().join(",");
     let rows = [row(inside, free), row(free, inside), row(free, at(-12.0, 7.0, 2.0))];
@@ -182,8 +181,7 @@ fn the_sun_of_a_place_needs_no_cloud() {
 
 #[test]
 fn a_sun_that_cannot_stand_there_is_refused_or_said() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     for (sun, word) in
         [("400,30", "azimuth of 0 to 360"), ("30,135", "swapped"), ("180,-91", "elevation"), ("nan,30", "--sun")]
     {

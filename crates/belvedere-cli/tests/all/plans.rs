@@ -22,8 +22,7 @@ pub(crate) fn box_obj([x0, y0]: [f64; 2], [x1, y1]: [f64; 2], top: f64) -> Strin
 
 #[test]
 fn an_added_building_casts_its_shadow_and_carries_cells() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     place.write("plan.obj", box_obj([8.0, -2.0], [11.0, 2.0], 4.0));
     let run = place.summary(&format!(
         "shadow {HOUSE} --ground found --add plan.obj --sun 180,45 --grid-north --cell 0.5 -o lit.csv"
@@ -55,8 +54,7 @@ fn an_added_building_casts_its_shadow_and_carries_cells() {
 
 #[test]
 fn lines_of_sight_name_the_mesh_that_blocks_and_wrong_meshes_are_refused_by_name() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     place.write("plan.obj", box_obj([8.0, -2.0], [11.0, 2.0], 4.0));
     let row = |a: [f64; 3], b: [f64; 3]| format!("{},{},{},{},{},{}\n", a[0], a[1], a[2], b[0], b[1], b[2]);
     let pairs = row(at(13.0, 0.0, 2.0), at(6.5, 0.5, 2.0))
@@ -164,8 +162,7 @@ fn tables_are_compared_row_by_row_whatever_their_order() {
 
 #[test]
 fn differences_are_those_of_the_two_results_cell_by_cell() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     place.write("plan.obj", box_obj([8.0, -2.0], [11.0, 2.0], 4.0));
     let shadow = format!("shadow {HOUSE} --ground found --sun 180,45 --grid-north --cell 0.5");
     place.summary(&format!("{shadow} -o before.tif -o before.csv"));
@@ -206,8 +203,7 @@ fn differences_are_those_of_the_two_results_cell_by_cell() {
 
 #[test]
 fn the_top_of_what_is_added_is_no_gain_and_a_map_shows_relief() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     place.write("plan.obj", box_obj([8.0, -2.0], [11.0, 2.0], 9.0));
     let hours =
         format!("sun-hours {HOUSE} --ground found --date 2026-03-21 --zone Europe/Amsterdam --cell 1 --surface");
@@ -254,8 +250,7 @@ fn cells_that_become_unproven_are_neither_gain_nor_loss() {
 
 #[test]
 fn far_terrain_hides_what_lies_below_its_horizon() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let [x, y, z] = at(0.0, 0.0, 12.0);
     place.write("places.csv", format!("x,y,z\n{x},{y},{z}\n"));
     // 30 degrees all around: cos² 30 of the light of an even sky, half of its directions

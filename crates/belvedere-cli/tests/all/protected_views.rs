@@ -1,14 +1,13 @@
 //! Protected views on the command line.
 
-use crate::common::{Workplace, at, house_in_a_field};
+use crate::common::{Workplace, at};
 
 const BALLS: &str = "--orient given --scene-config ../tau.json";
 
 /// Creates a house in a field, and a wall of 10 m by 6 m as a mesh 30 m east of it that faces west, 3 m above the
 /// ground.
 fn place() -> Workplace {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house_in_a_field());
+    let place = Workplace::with_field();
     let corners = [[30.0, -5.0, 3.0], [30.0, 5.0, 3.0], [30.0, 5.0, 9.0], [30.0, -5.0, 9.0]];
     let vertex = |&[x, y, z]: &[f64; 3]| {
         let [x, y, z] = at(x, y, z);

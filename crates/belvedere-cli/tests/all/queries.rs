@@ -1,7 +1,7 @@
 //! Answers that can be worked out by hand, in every kind of file.
 #![expect(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
-use crate::common::{Workplace, at, house, house_in_a_field, remarks};
+use crate::common::{Workplace, at, cells, house, remarks};
 use belvedere::Frame;
 use belvedere::PointCloud;
 use belvedere::crs::Crs;
@@ -40,14 +40,12 @@ fn count(summary: &Value, name: &str) -> usize {
 
 /// The column `answer` of a table with a header row.
 fn answers_of_csv(text: &str) -> Vec<u8> {
-    let column = text.lines().next().unwrap().split(',').position(|name| name == "answer").unwrap();
-    text.lines().skip(1).map(|line| line.split(',').nth(column).unwrap().parse().unwrap()).collect()
+    cells(text, "answer").iter().map(|cell| cell.parse().unwrap()).collect()
 }
 
 #[test]
 fn array_targets_get_an_array_of_answers_in_their_order() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let (targets, expected) = split(&targets_seen_from_above());
     place.write_targets("targets.npy", &targets);
     let arguments = "query house.laz --targets targets.npy -o answers.npy --viewport";
@@ -65,8 +63,7 @@ fn array_targets_get_an_array_of_answers_in_their_order() {
 
 #[test]
 fn table_targets_get_a_table_with_answers_in_their_order() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let (targets, expected) = split(&targets_seen_from_above());
     let rows: Vec<String> = targets.iter().map(|[x, y, z]| format!("{x},{y},{z}\n")).collect();
     place.write("targets.csv", format!("x,y,z\n{}", rows.concat()));
@@ -82,8 +79,7 @@ fn table_targets_get_a_table_with_answers_in_their_order() {
 
 #[test]
 fn a_target_that_is_not_finite_is_refused_instead_of_shifting_the_answers() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     place.write_targets("targets.npy", &[at(0.0, 0.0, 3.0), [f64::NAN, 0.0, 0.0], at(10.0, 5.0, 1.0)]);
     place.write("targets.csv", "x,y,z\n85000,446000,3\n85000,inf,3\n85010,446005,1\n");
     place.write("gap.csv", "x,y,z\n85000,446000,3\n85000,,3\n85010,446005,1\n");
@@ -96,8 +92,7 @@ fn a_target_that_is_not_finite_is_refused_instead_of_shifting_the_answers() {
 
 #[test]
 fn a_low_southern_sun_lights_the_south_of_a_house_and_not_its_north() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let targets = [
         (at(0.0, -6.0, 0.5), VISIBLE),
         // a ray climbs 1.2 m on the 2 m to the north wall, which is 6 m high
@@ -211,8 +206,7 @@ fn the_same_scene_in_feet_gives_the_same_answers() {
 
 #[test]
 fn targets_in_another_reference_system_are_refused() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     place.write_cloud("belgian.laz", &house().with_crs(Crs::from_epsg(31370).unwrap()));
     let words = ["belgian.laz", "EPSG:31370", "EPSG:28992", "convert"];
     place.refusal(1, "query house.laz --sun 180,30 --targets belgian.laz -o out.laz", &words);
@@ -274,8 +268,7 @@ fn the_points_of_the_cloud_keep_number_order_and_attributes_beside_their_answer(
 
 #[test]
 fn the_bias_decides_about_targets_just_behind_the_surface() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     // 40 cm below the roof, whose height there is 7.5 m
     place.write_targets("targets.npy", &[at(0.0, 2.0, 7.1)]);
     let arguments = "query house.laz --scene-config ../balls_alone.json --targets targets.npy -o answers.npy";
@@ -292,8 +285,7 @@ fn the_bias_decides_about_targets_just_behind_the_surface() {
 
 #[test]
 fn the_cone_of_the_paper_blocks_less_than_the_sphere() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let arguments =
         "query house.laz --scene-config ../balls_alone.json --random 50000 --bias 0 -o answers.npy --viewport";
     let mut answers = |profile: &str| {
@@ -329,8 +321,7 @@ fn several_files_and_a_folder_of_files_are_one_cloud() {
 
 #[test]
 fn balls_in_free_space_are_not_taken_for_what_blocks() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     place.summary("balls house.laz --side exterior -o air.npz");
     place.refusal(1, "query air.npz --sun 180,45 --random 10 -o out.csv", &["air.npz", "--side exterior"]);
     place.refusal(1, "depth-map air.npz --sun 180,45 -o out.tif", &["air.npz", "--side exterior"]);
@@ -338,8 +329,7 @@ fn balls_in_free_space_are_not_taken_for_what_blocks() {
 
 #[test]
 fn a_camera_and_a_panorama_answer_by_exact_lines_of_sight() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house_in_a_field());
+    let place = Workplace::with_field();
     let targets = [
         (at(0.0, -5.0, 3.0), [VISIBLE, VISIBLE]),   // before the south wall
         (at(0.0, 0.0, 3.0), [INSIDE, INSIDE]),      // in the living room
@@ -371,8 +361,7 @@ fn a_camera_and_a_panorama_answer_by_exact_lines_of_sight() {
 
 #[test]
 fn many_targets_for_few_pixels_are_settled_by_a_certified_map_with_the_same_answers() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house_in_a_field());
+    let place = Workplace::with_field();
     place.summary("balls house.laz -o balls.npz");
     let [x, y, z] = at(-20.0, -25.0, 12.0);
     let [ahead_x, ahead_y, ahead_z] = at(0.0, 0.0, 3.0);
@@ -389,8 +378,7 @@ fn many_targets_for_few_pixels_are_settled_by_a_certified_map_with_the_same_answ
 
 #[test]
 fn what_the_input_has_and_the_output_has_not_is_one_remark() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let query = "--orient given --scene-config ../tau.json --direction 0,0,-1 --self";
     place.summary(&format!("query house.laz {query} -o first.laz"));
     // the records of the first result are copied, and its column is replaced

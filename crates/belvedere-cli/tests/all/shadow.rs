@@ -5,12 +5,6 @@ use belvedere::crs::Crs;
 
 const HOUSE: &str = "house.laz --orient given --scene-config ../tau.json --ground found";
 
-fn place() -> Workplace {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
-    place
-}
-
 fn write_places(place: &Workplace, name: &str, places: &[[f64; 3]]) {
     let rows: String = places.iter().map(|&[x, y, z]| at(x, y, z)).map(|[x, y, z]| format!("{x},{y},{z}\n")).collect();
     place.write(name, format!("x,y,z\n{rows}"));
@@ -30,7 +24,7 @@ fn to_sun(azimuth_deg: f64, elevation_deg: f64) -> [f64; 3] {
 
 #[test]
 fn the_shadow_of_a_house_is_the_exact_one() {
-    let place = place();
+    let place = Workplace::with_house();
     for (azimuth, elevation) in [(180.0, 45.0), (110.0, 30.0), (300.0, 55.0)] {
         let run = place.summary(&format!(
             "shadow {HOUSE} --sun {azimuth},{elevation} --cell 0.5 -o lit.csv -o lit.tif -o lit.png"
@@ -145,7 +139,7 @@ fn shadows_are_as_long_as_two_offices_say() {
 
 #[test]
 fn a_time_is_the_same_however_it_is_written_and_nothing_is_lit_at_night() {
-    let place = place();
+    let place = Workplace::with_house();
     write_places(&place, "places.csv", &[[0.0, 8.0, 0.5], [0.0, -9.0, 0.5], [9.0, 0.0, 0.5], [-9.0, 0.0, 0.5]]);
     let lit = |flags: &str| {
         let run = place.summary(&format!("shadow {HOUSE} {flags} --targets places.csv -o lit.csv"));
@@ -192,7 +186,7 @@ fn a_time_is_the_same_however_it_is_written_and_nothing_is_lit_at_night() {
 
 #[test]
 fn soft_edges_are_as_wide_as_the_sun_and_hard_ones_cut_them_in_half() {
-    let place = place();
+    let place = Workplace::with_house();
     // across the edge of the shadow of the eaves, 6 m high: it lies 10 m north of the middle under a sun of 45 degrees
     let places: Vec<[f64; 3]> = (0..200).map(|i| [0.25, 9.0 + 0.01 * f64::from(i), 0.1]).collect();
     write_places(&place, "line.csv", &places);
@@ -214,7 +208,7 @@ fn soft_edges_are_as_wide_as_the_sun_and_hard_ones_cut_them_in_half() {
 
 #[test]
 fn faces_that_are_turned_away_are_not_lit() {
-    let place = place();
+    let place = Workplace::with_house();
     // a cube of 1 m, far above everything, outward faces: top, bottom, south, north
     let mut obj = String::new();
     for [x, y, z] in (0..8).map(|i| [f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2 & 1)]) {
@@ -237,7 +231,7 @@ fn faces_that_are_turned_away_are_not_lit() {
 
 #[test]
 fn a_film_has_a_frame_for_each_sun() {
-    let place = place();
+    let place = Workplace::with_house();
     let run = place.summary(&format!(
         "shadow {HOUSE} --date 2026-12-21 --zone Europe/Amsterdam --time-step-min 60 --cell 1 -o day.csv --film day.png --frames frames --frame-duration-s 0.5"
     ));
@@ -262,7 +256,7 @@ fn a_film_has_a_frame_for_each_sun() {
 
 #[test]
 fn what_cannot_be_is_refused_with_advice() {
-    let place = place();
+    let place = Workplace::with_house();
     write_places(&place, "places.csv", &[[0.0, 8.0, 0.5]]);
     for (flags, words) in [
         ("-o no.csv", "--time"),
@@ -306,7 +300,7 @@ fn what_cannot_be_is_refused_with_advice() {
 
 #[test]
 fn a_raster_has_a_band_for_each_sun_named_by_its_time() {
-    let place = place();
+    let place = Workplace::with_house();
     let day = "--date 2026-06-21 --zone Europe/Amsterdam --time-step-min 60 --cell 2";
     let outputs = "-o day.tif -o day.csv -o day.png --outlines day.geojson";
     let run = place.summary(&format!("shadow {HOUSE} {day} {outputs}"));
@@ -334,7 +328,7 @@ fn a_raster_has_a_band_for_each_sun_named_by_its_time() {
 
 #[test]
 fn areas_have_the_means_of_their_cells() {
-    let place = place();
+    let place = Workplace::with_house();
     // behind the house, before it with a second part beside it, and far away
     let ring = |[west, south, east, north]: [f64; 4]| {
         let corner = |x: f64, y: f64| format!("[{},{}]", at(x, y, 0.0)[0], at(x, y, 0.0)[1]);

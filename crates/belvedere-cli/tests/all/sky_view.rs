@@ -1,15 +1,9 @@
 //! The view of the sky on the command line, around a house whose outline is known.
 
-use crate::common::{EAST, NORTH, Workplace, at, column, house, is_hidden};
+use crate::common::{EAST, NORTH, Workplace, at, column, is_hidden};
 use std::f64::consts::TAU;
 
 const HOUSE: &str = "house.laz --orient given --scene-config ../tau.json --ground found";
-
-fn place() -> Workplace {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
-    place
-}
 
 /// Sky view factor and openness of a level place beside the exact house, over a fine grid of azimuths and elevations.
 fn exact(spot: [f64; 3]) -> [f64; 2] {
@@ -32,7 +26,7 @@ fn exact(spot: [f64; 3]) -> [f64; 2] {
 
 #[test]
 fn cells_and_points_see_as_much_sky_as_beside_the_exact_house() {
-    let place = place();
+    let place = Workplace::with_house();
     let run = place.summary(&format!(
         "sky-view {HOUSE} --cell 2 --target-height 0.5 -o sky.csv -o sky.tif -o sky.png --measures all"
     ));
@@ -82,7 +76,7 @@ fn cells_and_points_see_as_much_sky_as_beside_the_exact_house() {
 
 #[test]
 fn faces_of_a_mesh_see_the_half_that_they_are_turned_to() {
-    let place = place();
+    let place = Workplace::with_house();
     // squares far above the house: up, south, down
     let corners =
         [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 1.0]];
@@ -109,7 +103,7 @@ fn faces_of_a_mesh_see_the_half_that_they_are_turned_to() {
 
 #[test]
 fn cells_of_the_surface_stand_on_the_roof() {
-    let place = place();
+    let place = Workplace::with_house();
     place.summary(&format!("sky-view {HOUSE} --surface --cell 1 --target-height 0 --directions 64 -o roof.csv"));
     let [x, y, z] = ["x", "y", "z"].map(|name| column(&place, "roof.csv", name));
     let mut on_roof = 0;
@@ -126,7 +120,7 @@ fn cells_of_the_surface_stand_on_the_roof() {
 
 #[test]
 fn what_cannot_be_is_refused_with_advice() {
-    let place = place();
+    let place = Workplace::with_house();
     place.write("places.csv", "x,y,z\n85000,446008,0.5\n");
     for (flags, words) in [
         ("--directions 0 -o no.csv", "--directions"),

@@ -1,17 +1,12 @@
 //! `belvedere sun-calendar` and `belvedere report`.
 
-use crate::common::{EAST, NORTH, Workplace, at, house};
+use crate::common::{EAST, NORTH, Workplace, at, corners};
 
 const HOUSE: &str = "house.laz --scene-config ../tau.json --orient given --location 52,5 --zone +01:00";
 
-fn corners(places: &[[f64; 2]]) -> String {
-    places.iter().map(|[x, y]| format!("{},{}", EAST + x, NORTH + y)).collect::<Vec<_>>().join(" ")
-}
-
 /// A house of 10 by 8 m, a window north of it and one high above it, and a planned wall south of both.
 fn place() -> Workplace {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let row =
         |x: f64, y: f64, z: f64, azimuth: u16, name: &str| format!("{},{},{z},{azimuth},{name}\n", EAST + x, NORTH + y);
     let rows = [row(0.0, 9.0, 1.5, 180, "garden room"), row(0.0, 9.0, 50.0, 180, "")].concat();

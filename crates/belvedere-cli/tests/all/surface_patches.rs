@@ -1,13 +1,12 @@
 //! Ball files with patches of surfaces: what `info` counts, and what a line of sight says that blocks it.
 
-use crate::common::{Workplace, at, house};
+use crate::common::{Workplace, at};
 use belvedere::io::{read_balls, write_balls};
 use belvedere::{PatchKind, SurfacePatches};
 
 #[test]
 fn patches_of_a_ball_file_are_counted_and_named_where_they_block() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     place.summary("balls house.laz --orient given --without planes -o bare.npz");
     // a wall of 20 by 5 m east of the house, which faces east
     let mut parts = read_balls(&place.path("bare.npz")).unwrap();

@@ -1,11 +1,10 @@
 //! Meshes as targets, landmarks, isovists and horizons on the command line.
 
-use crate::common::{EAST, NORTH, Workplace, at, house, house_in_a_field};
+use crate::common::{EAST, NORTH, Workplace, at, column, house_in_a_field};
 
 /// A house as a cloud, and a wall of 10 m by 6 m as a mesh 30 m east of it that faces west.
 fn place() -> Workplace {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let corners = [[30.0, -5.0, 0.5], [30.0, 5.0, 0.5], [30.0, 5.0, 6.5], [30.0, -5.0, 6.5]];
     let vertices: String = corners
         .iter()
@@ -32,12 +31,6 @@ fn rows(place: &Workplace, name: &str) -> (Vec<String>, Vec<Vec<String>>) {
     let text = place.text(name);
     let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
     (lines.next().unwrap(), lines.collect())
-}
-
-fn column(place: &Workplace, name: &str, column: &str) -> Vec<f64> {
-    let (names, rows) = rows(place, name);
-    let at = names.iter().position(|own| own == column).unwrap();
-    rows.iter().map(|row| row[at].parse().unwrap_or(f64::NAN)).collect()
 }
 
 #[test]

@@ -1,12 +1,11 @@
 //! Visible metres of masts behind a house, and what is refused.
 
-use crate::common::{Workplace, at, column, house, remarks};
+use crate::common::{Workplace, at, column, remarks};
 
 const TOWERS: &str = "towers house.laz --orient given --scene-config ../tau.json --towers masts.csv";
 
 fn place() -> Workplace {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let [x, y, _] = at(0.0, 200.0, 0.0);
     place.write(
         "masts.csv",

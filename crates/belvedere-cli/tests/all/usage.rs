@@ -6,15 +6,9 @@ use belvedere::PointCloud;
 use belvedere::crs::Crs;
 use std::process::Stdio;
 
-fn with_house() -> Workplace {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
-    place
-}
-
 #[test]
 fn a_run_that_succeeds_speaks_on_standard_output_alone_and_leaves_only_its_output() {
-    let place = with_house();
+    let place = Workplace::with_house();
     let run = place.run("balls house.laz -o balls.npz");
     assert_eq!((run.status, run.stderr.as_str()), (0, ""));
     assert!(run.stdout.ends_with("written: balls.npz\n"), "{}", run.stdout);
@@ -28,7 +22,7 @@ const SHORT: usize = 12;
 
 #[test]
 fn the_answer_comes_first_in_twelve_lines_and_all_figures_with_verbose() {
-    let place = with_house();
+    let place = Workplace::with_house();
     let outputs = |ending: &str| (0..6).map(|i| format!(" -o {i}.{ending}")).collect::<String>();
     let (maps, tables) = (outputs("tif"), outputs("csv"));
     for (command, answer) in [
@@ -69,7 +63,7 @@ fn the_answer_comes_first_in_twelve_lines_and_all_figures_with_verbose() {
 
 #[test]
 fn json_is_one_object_with_the_content_of_the_text() {
-    let place = with_house();
+    let place = Workplace::with_house();
     let text = place.run("info house.laz --verbose").stdout;
     let json = place.summary("info house.laz");
     let object = json.as_object().unwrap();
@@ -82,7 +76,7 @@ fn json_is_one_object_with_the_content_of_the_text() {
 
 #[test]
 fn quiet_prints_nothing_but_does_the_work() {
-    let place = with_house();
+    let place = Workplace::with_house();
     let run = place.run("balls house.laz -o balls.npz --quiet");
     assert_eq!((run.status, run.stdout.as_str(), run.stderr.as_str()), (0, "", ""));
     assert!(place.path("balls.npz").is_file());
@@ -91,7 +85,7 @@ fn quiet_prints_nothing_but_does_the_work() {
 
 #[test]
 fn verbose_prints_the_time_of_each_stage_on_standard_error() {
-    let place = with_house();
+    let place = Workplace::with_house();
     let run = place.run("balls house.laz -o balls.npz -v");
     assert!(run.stderr.contains("shrinking balls: ") && run.stderr.ends_with(" s\n"), "{}", run.stderr);
     assert!(!run.stderr.contains('\u{1b}'));
@@ -99,7 +93,7 @@ fn verbose_prints_the_time_of_each_stage_on_standard_error() {
 
 #[test]
 fn a_reader_that_stops_listening_is_no_failure() {
-    let place = with_house();
+    let place = Workplace::with_house();
     for arguments in ["completions bash", "man", "info house.laz", "--help", "help query"] {
         let mut command = place.command(arguments);
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -113,7 +107,7 @@ fn a_reader_that_stops_listening_is_no_failure() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_behind_standard_output_is_a_failure() {
-    let place = with_house();
+    let place = Workplace::with_house();
     for arguments in ["completions bash", "man", "info house.laz"] {
         let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
         let output = place.command(arguments).stdout(full).output().unwrap();
@@ -125,7 +119,7 @@ fn a_full_disk_behind_standard_output_is_a_failure() {
 
 #[test]
 fn files_that_cannot_be_used_are_named() {
-    let place = with_house();
+    let place = Workplace::with_house();
     let laz = place.bytes("house.laz");
     place.write("truncated.laz", &laz[..laz.len() * 6 / 10]);
     place.write("empty.laz", "");
@@ -165,7 +159,7 @@ fn files_that_cannot_be_used_are_named() {
 
 #[test]
 fn damaged_laz_files_give_one_line_or_a_result_whatever_happens_in_the_decoder() {
-    let place = with_house();
+    let place = Workplace::with_house();
     let laz = place.bytes("house.laz");
     let mut refused = 0;
     for at in (laz.len() / 3..laz.len()).step_by(laz.len() / 40) {
@@ -202,7 +196,7 @@ fn degrees_are_refused_with_the_conversion_to_run() {
 
 #[test]
 fn wrong_usage_names_the_flag_and_ends_with_status_2() {
-    let place = with_house();
+    let place = Workplace::with_house();
     place.write("targets.csv", "x,y,z\n85000,446000,1\n");
     place.summary("balls house.laz -o balls.npz");
     for (arguments, words) in [
@@ -278,7 +272,7 @@ fn wrong_usage_names_the_flag_and_ends_with_status_2() {
 
 #[test]
 fn flags_that_would_change_nothing_are_refused() {
-    let place = with_house();
+    let place = Workplace::with_house();
     place.write("w.epw", "");
     for arguments in [
         "sun-calendar a.laz --windows w.csv --date 2026-06-21 --target-height 5 -o c.csv",
@@ -308,7 +302,7 @@ fn flags_that_would_change_nothing_are_refused() {
 
 #[test]
 fn errors_about_parameters_name_the_flag_that_gave_them() {
-    let place = with_house();
+    let place = Workplace::with_house();
     let look = "depth-map house.laz -o out.png --eye 1,1,1 --look-at 2,1,1";
     for (arguments, message) in [
         ("balls house.laz -o out.npz --method tau --penetration -1", "--penetration: penetration is -1, but must be"),
@@ -328,7 +322,7 @@ fn errors_about_parameters_name_the_flag_that_gave_them() {
 
 #[test]
 fn sizes_beyond_reason_are_refused_before_memory_is_reserved() {
-    let place = with_house();
+    let place = Workplace::with_house();
     for flags in ["--sun 180,30 --pixel 1e-9", "--direction 0,0,-1 --pixel 1e-300"] {
         let words = ["error: --pixel: ", "268435456 pixels"];
         place.refusal(2, &format!("depth-map house.laz {flags} -o out.tif"), &words);
@@ -346,7 +340,7 @@ fn sizes_beyond_reason_are_refused_before_memory_is_reserved() {
 
 #[test]
 fn an_output_in_a_folder_that_is_not_there_is_refused_at_once() {
-    let place = with_house();
+    let place = Workplace::with_house();
     for arguments in [
         "normals house.laz -o nowhere/out.laz",
         "normals house.laz -o nowhere/out",
@@ -364,7 +358,7 @@ fn an_output_in_a_folder_that_is_not_there_is_refused_at_once() {
 
 #[test]
 fn a_run_that_fails_leaves_an_earlier_output_as_it_was() {
-    let place = with_house();
+    let place = Workplace::with_house();
     let laz = place.bytes("house.laz");
     place.write("truncated.laz", &laz[..laz.len() / 2]);
     place.write("far.csv", "x,y,z\n85000,446000,1\nnan,446000,1\n");
@@ -385,7 +379,7 @@ fn a_run_that_fails_leaves_an_earlier_output_as_it_was() {
 
 #[test]
 fn an_earlier_output_is_replaced_by_a_complete_one() {
-    let place = with_house();
+    let place = Workplace::with_house();
     place.write("balls.npz", "before");
     place.summary("balls house.laz -o balls.npz");
     assert!(place.npz::<f32>("balls.npz", "radii").len() > 1000);

@@ -1,6 +1,6 @@
 //! The view from windows on the command line.
 
-use crate::common::{Workplace, at, house_in_a_field};
+use crate::common::{Workplace, at, house_in_a_field, numbers};
 use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud};
 use serde_json::Value;
@@ -27,10 +27,7 @@ fn place() -> Workplace {
 
 /// A column of a table, NaN where a cell is empty.
 fn column(place: &Workplace, name: &str, column: &str) -> Vec<f64> {
-    let text = place.text(name).replace("\"no. 1, left\"", "note");
-    let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
-    let at = lines.next().unwrap().iter().position(|own| own == column).unwrap();
-    lines.map(|row| row[at].parse().unwrap_or(f64::NAN)).collect()
+    numbers(&place.text(name).replace("\"no. 1, left\"", "note"), column)
 }
 
 #[test]

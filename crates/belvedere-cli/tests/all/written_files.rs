@@ -4,8 +4,7 @@ use crate::common::{EAST, NORTH, Workplace, house};
 
 #[test]
 fn an_output_that_is_an_input_is_refused_before_anything_is_read() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     std::fs::create_dir(place.path("tiles")).unwrap();
     place.write_cloud("tiles/a.laz", &house());
     place.write("targets.csv", format!("x,y,z\n{EAST},{NORTH},20\n"));
@@ -106,8 +105,7 @@ const TOO_LARGE: &str =
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_leaves_one_clear_line_and_no_file() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     place.summary("balls house.laz -o balls.npz");
     for (arguments, file) in [
         ("balls house.laz -o out.npz", "out.npz"),
@@ -128,8 +126,7 @@ fn a_full_disk_leaves_one_clear_line_and_no_file() {
 
 #[test]
 fn a_depth_map_has_several_outputs() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     let run = place.summary("depth-map house.laz --sun 180,30 -o depth.tif -o depth.png -o depth.npy");
     assert_eq!(run["written"], serde_json::json!(["depth.tif", "depth.png", "depth.npy"]));
     assert_eq!(place.names(), ["depth.npy", "depth.png", "depth.tif", "house.laz"]);
@@ -151,8 +148,7 @@ fn geojson_without_a_reference_system_comes_with_a_warning() {
 
 #[test]
 fn shapes_of_other_formats_are_refused_with_the_conversion_to_run() {
-    let place = Workplace::new();
-    place.write_cloud("house.laz", &house());
+    let place = Workplace::with_house();
     place.write("targets.csv", format!("x,y\n{EAST},{NORTH}\n"));
     let parcel = "envelope house.laz -o out.tif --date 2024-03-21 --protect targets.csv --parcel";
     for (flags, name, words) in [

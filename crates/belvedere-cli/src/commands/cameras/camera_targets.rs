@@ -120,8 +120,7 @@ fn areas(path: &Path, frame: &Frame) -> Result<Vec<WeightedArea>> {
 fn points(path: &Path, frame: &Frame, run: &mut CommandContext) -> Result<(Vec<Standing>, Vec<f64>)> {
     let (mut points, mut weights) = (Vec::new(), Vec::new());
     for row in observer_rows(path, frame, RowsAre::Places, ObserverUse::Places, run)? {
-        for corner in &row.corners {
-            let place = std::array::from_fn(|i| corner[i] - frame.origin[i]);
+        for &place in &row.corners {
             points.push(Standing { place, height: row.height });
             weights.push(row.weight.unwrap_or(1.0));
         }

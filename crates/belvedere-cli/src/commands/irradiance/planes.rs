@@ -2,7 +2,7 @@
 
 use super::hours;
 use crate::arguments::{IrradianceArguments, PvArguments};
-use crate::outputs::formats::{check_output, check_parent, extension};
+use crate::outputs::formats::{check_outputs, check_parent, extension};
 use crate::outputs::text::write_lines;
 use crate::run::CommandContext;
 use crate::summary::Summary;
@@ -22,12 +22,8 @@ use std::path::Path;
 const AZIMUTHS: usize = 48;
 
 pub(super) fn check(arguments: &IrradianceArguments) -> Result<()> {
-    for output in &arguments.planes {
-        check_output("--planes", output, &["csv", "geojson", "gpkg"])?;
-    }
-    if let Some(output) = &arguments.photovoltaics.buildings {
-        check_output("--buildings", output, &["csv"])?;
-    }
+    check_outputs("--planes", &arguments.planes, &["csv", "geojson", "gpkg"])?;
+    check_outputs("--buildings", &arguments.photovoltaics.buildings, &["csv"])?;
     for folder in [&arguments.horizons, &arguments.photovoltaics.hourly].into_iter().flatten() {
         check_parent(folder)?;
     }

@@ -79,9 +79,7 @@ pub(super) fn observers(
     for row in observer_rows(path, frame, rows_are, ObserverUse::Limits, run)? {
         let limits = limits_of(&row);
         limits.or(&usual).check().map_err(|error| Usage(format!("{}: {error}", path.display())))?;
-        let corners: Vec<[f64; 3]> =
-            row.corners.iter().map(|corner| std::array::from_fn(|i| corner[i] - frame.origin[i])).collect();
-        let places = places_along(&corners, looking.step.unwrap_or(STEP))?;
+        let places = places_along(&row.corners, looking.step.unwrap_or(STEP))?;
         observers.extend(places.into_iter().map(|place| at(place, row.height, limits)));
     }
     check_count(arguments, observers.len())?;

@@ -42,6 +42,20 @@ impl Workplace {
         place
     }
 
+    /// A folder with a house in `house.laz`.
+    pub(crate) fn with_house() -> Self {
+        let place = Self::new();
+        place.write_cloud("house.laz", &house());
+        place
+    }
+
+    /// A folder with a house in a field in `house.laz`.
+    pub(crate) fn with_field() -> Self {
+        let place = Self::new();
+        place.write_cloud("house.laz", &house_in_a_field());
+        place
+    }
+
     fn folder(&self) -> PathBuf {
         self.0.path().join("place")
     }
@@ -285,13 +299,26 @@ pub(crate) fn is_hidden(place: [f64; 3], direction: [f64; 3]) -> bool {
     enters < leaves
 }
 
+/// Cells of a column of a table.
+pub(crate) fn cells(text: &str, column: &str) -> Vec<String> {
+    let mut lines = text.lines().map(|line| line.split(','));
+    let at = lines.next().unwrap().position(|own| own == column).unwrap_or_else(|| panic!("{column} in {text}"));
+    lines.map(|mut line| line.nth(at).unwrap().to_owned()).collect()
+}
+
 /// Numbers of a column of a table; NaN for what is none.
+pub(crate) fn numbers(text: &str, column: &str) -> Vec<f64> {
+    cells(text, column).iter().map(|cell| cell.parse().unwrap_or(f64::NAN)).collect()
+}
+
+/// [`numbers`] of a file.
 pub(crate) fn column(place: &Workplace, name: &str, column: &str) -> Vec<f64> {
-    let text = place.text(name);
-    let mut lines = text.lines();
-    let at =
-        lines.next().unwrap().split(',').position(|own| own == column).unwrap_or_else(|| panic!("{column} in {text}"));
-    lines.map(|line| line.split(',').nth(at).unwrap().parse().unwrap_or(f64::NAN)).collect()
+    numbers(&place.text(name), column)
+}
+
+/// Corners around the middle of the house, as flags take them.
+pub(crate) fn corners(places: &[[f64; 2]]) -> String {
+    places.iter().map(|[x, y]| format!("{},{}", EAST + x, NORTH + y)).collect::<Vec<_>>().join(" ")
 }
 
 /// The reference data, or `None` with a line that says so.
