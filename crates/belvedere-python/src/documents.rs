@@ -2,14 +2,14 @@
 
 use crate::arrays::to_1d;
 use crate::errors::{exception, wrong};
-use crate::remarks::remarks_of;
+use crate::planning::PyTable;
+use crate::question::Data;
+use crate::remarks::{Remarks, remarks_of};
 use crate::scene::{PyScene, local_ring};
-use crate::sky::DaysKeywords;
-use crate::sun::SiteKeywords;
 use crate::targets::RequestedTargets;
 use crate::windows::{WindowRow, given};
 use crate::work::run;
-use belvedere::apps::ask::{self, GivenWindows};
+use belvedere::apps::ask::{self, Days, GivenWindows, SunPlace};
 use belvedere::apps::sun_calendar::SunStretch;
 use belvedere::sunlight_report::{Language, ReportArea, ReportParams, ShadowStudy, sunlight_report};
 use pyo3::prelude::*;
@@ -37,7 +37,7 @@ pub(crate) struct ReportKeywords {
 }
 
 impl ReportKeywords {
-    fn params(&self, scene: &ask::Scene, days: &DaysKeywords, place: &SiteKeywords) -> PyResult<ReportParams> {
+    fn params(&self, scene: &ask::Scene, days: Days, place: SunPlace) -> PyResult<ReportParams> {
         let language = Language::ALL.iter().find(|(code, _)| *code == self.language);
         let Some(&(_, language)) = language else {
             return Err(wrong("language", &format!("'{}'", self.language), "use 'en', 'nl', 'de' or 'fr'"));
@@ -47,9 +47,6 @@ impl ReportKeywords {
             known.ok_or_else(|| wrong("study", &format!("'{name}'"), "use 'ceqr', 'san-francisco' or 'toronto'"))
         };
         let study = self.study.as_deref().map(study_of).transpose()?;
-        let GivenWindows::Each(windows) = given(&self.windows, scene.frame()) else {
-            return Ok(ReportParams::default());
-        };
         let area = |(name, ring): &(String, Vec<[f64; 2]>)| ReportArea {
             name: name.clone(),
             rings: vec![local_ring(scene, ring)],
@@ -58,51 +55,38 @@ impl ReportKeywords {
             title: self.title.clone(),
             notes: self.notes.clone(),
             language,
-            windows,
+            windows: given(&self.windows, scene.frame()),
             names: self.names.clone(),
             rooms: self.rooms.clone(),
             areas: self.areas.iter().map(area).collect(),
             rule: self.rule.clone(),
             area_rule: self.area_rule.clone(),
             study,
-            days: days.chosen(),
-            place: place.chosen()?,
+            days,
+            place,
             date: self.today.clone(),
             ..ReportParams::default()
         })
     }
 }
 
-/// Columns by name, and remarks.
-type CalendarReply<'py> = (Bound<'py, PyDict>, Vec<Bound<'py, PyDict>>);
-
 #[pymethods]
 impl PyScene {
     /// Stretches of sun and shade, one in each row.
-    #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn sun_calendar<'py>(
         &self,
         py: Python<'py>,
+        question: Data<ask::SunCalendarQuestion>,
         windows: Vec<WindowRow>,
         targets: RequestedTargets<'py>,
-        days: DaysKeywords,
-        rule: Option<String>,
-        place: SiteKeywords,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<CalendarReply<'py>> {
-        let scene = Arc::clone(&self.0);
+    ) -> PyResult<PyTable<'py>> {
         let places = match &windows[..] {
-            [] => targets.chosen(py, &scene)?.places,
+            [] => targets.chosen(py, &self.0)?.places,
             _ => ask::Places::Scene,
         };
-        let question = ask::SunCalendarQuestion {
-            windows: given(&windows, scene.frame()),
-            days: days.chosen(),
-            rule,
-            place: place.chosen()?,
-            ..ask::SunCalendarQuestion::default()
-        };
-        let answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
+        let windows = GivenWindows::Each(given(&windows, self.0.frame()));
+        let answers = self.ask(py, progress, ask::SunCalendarQuestion { windows, ..question.0 }, places)?;
         let found = &answers.found;
         let stretches = || found.stretches().map(|(.., stretch)| stretch);
         let object = |stretch: &SunStretch| found.mesh_name(stretch.obstacle).unwrap_or_default().to_owned();
@@ -124,13 +108,13 @@ impl PyScene {
         py: Python<'py>,
         path: PathBuf,
         keywords: ReportKeywords,
-        days: DaysKeywords,
-        place: SiteKeywords,
+        days: Data<Days>,
+        place: Data<SunPlace>,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(Vec<String>, Vec<Bound<'py, PyDict>>)> {
+    ) -> PyResult<(Vec<String>, Remarks<'py>)> {
         let scene = Arc::clone(&self.0);
         let planned = keywords.planned.as_ref().map(|planned| Arc::clone(&planned.get().0));
-        let params = keywords.params(&scene, &days, &place)?;
+        let params = keywords.params(&scene, days.0, place.0)?;
         let report = run(py, progress, move |control| sunlight_report(&scene, planned.as_deref(), &params, control))?;
         report.write(&path).map_err(exception)?;
         Ok((report.headlines(), remarks_of(py, &report.remarks)?))

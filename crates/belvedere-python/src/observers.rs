@@ -11,6 +11,20 @@ pub(crate) fn standing_observers(array: &PyReadonlyArray2<'_, f64>, scene: &ask:
     if standing.is_empty() { Err(wrong("observers", "empty", "give at least one")) } else { Ok(standing) }
 }
 
+/// Returns pairs of observers and targets, row by row.
+pub(crate) fn standing_pairs(
+    observers: &PyReadonlyArray2<'_, f64>,
+    targets: &PyReadonlyArray2<'_, f64>,
+    scene: &ask::Scene,
+) -> PyResult<ask::Places> {
+    let [observers, targets] = [standing(observers, "observers", scene)?, standing(targets, "targets", scene)?];
+    if observers.len() != targets.len() {
+        let value = format!("an array of {} rows", targets.len());
+        return Err(wrong("targets", &value, &format!("give a row for each of the {} observers", observers.len())));
+    }
+    Ok(ask::Places::Pairs(observers.into_iter().zip(targets).map(<[_; 2]>::from).collect()))
+}
+
 /// The places, local metres; z is NaN where it follows from the ground. `what` names the argument.
 pub(crate) fn standing(array: &PyReadonlyArray2<'_, f64>, what: &str, scene: &ask::Scene) -> PyResult<Vec<Standing>> {
     let rows = crate::arrays::fixed_rows(array, what)?;

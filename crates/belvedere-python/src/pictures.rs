@@ -1,18 +1,15 @@
 //! Depth maps.
 
 use crate::errors::exception;
-use crate::remarks::remarks_of;
+use crate::question::Data;
+use crate::remarks::{Remarks, remarks_of};
 use crate::scene::PyScene;
-use crate::sun::SiteKeywords;
-use crate::work::run;
-use belvedere::apps::ask::{self, Places, ViewFrom};
+use belvedere::apps::ask::{self, North, Places, ViewFrom};
 use belvedere::raster::Raster;
 use belvedere::view::{CAMERA_FOV, CAMERA_SIZE, PANORAMA_WIDTH, View, default_pixel_size, to_sun};
 use numpy::PyArray2;
 use numpy::ndarray::Array2;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
-use std::sync::Arc;
 
 /// Position and projection of a picture.
 #[derive(FromPyObject)]
@@ -40,15 +37,15 @@ fn to_array<T: numpy::Element + Copy>(py: Python<'_>, raster: Raster<T>) -> PyRe
 }
 
 impl PictureCamera {
-    /// Returns the position and projection of the picture; azimuths are from the north of `place`.
-    fn from(&self, scene: &ask::Scene, place: &SiteKeywords) -> belvedere::Result<ViewFrom> {
+    /// Returns the position and projection of the picture; azimuths are from `north`.
+    fn from(&self, scene: &ask::Scene, north: North) -> belvedere::Result<ViewFrom> {
         let (low, high) = scene.model().bounds().corners();
         let pixel = self.pixel.unwrap_or_else(|| default_pixel_size(low, high));
         let local = |place| scene.frame().local_from_file(place);
         let view = match (self.sun, self.direction, self.eye, self.look_at) {
             (Some([azimuth, elevation]), ..) => {
                 ask::check_sun([azimuth, elevation], ask::SunRange::NotBelowHorizon)?;
-                let north = place.grid_north_of(scene);
+                let north = north.of_scene(scene).of_grid;
                 let sun = to_sun(azimuth.to_radians() - north, elevation.to_radians());
                 View::parallel(sun.map(|v| -v), low, high, pixel)?
             }
@@ -75,7 +72,7 @@ impl PictureCamera {
 }
 
 /// Depths in metres, the rows of the balls that are seen, and remarks.
-type Depths<'py> = (Bound<'py, PyAny>, Option<Bound<'py, PyAny>>, Vec<Bound<'py, PyDict>>);
+type Depths<'py> = (Bound<'py, PyAny>, Option<Bound<'py, PyAny>>, Remarks<'py>);
 
 #[pymethods]
 impl PyScene {
@@ -84,15 +81,15 @@ impl PyScene {
         &self,
         py: Python<'py>,
         camera: PictureCamera,
-        place: SiteKeywords,
+        north: Data<North>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Depths<'py>> {
-        let scene = Arc::clone(&self.0);
-        let from = camera.from(&scene, &place).map_err(exception)?;
+        let scene = &self.0;
+        let from = camera.from(scene, north.0).map_err(exception)?;
         let site = ask::SunPlace::default().site_of(scene.frame(), &scene.model().bounds(), None).ok();
         let of_sun = camera.sun.and_then(|sun| ask::remark_on_sun(site.map(|(site, _)| site), sun));
         let question = ask::DepthMapQuestion { from: Some(from), ball_ids: true };
-        let answers = run(py, progress, move |control| ask::ask(&scene, &question, &Places::Scene, control))?;
+        let answers = self.ask(py, progress, question, Places::Scene)?;
         let remarks = remarks_of(py, of_sun.iter().chain(&answers.remarks))?;
         let balls = answers.found.balls.map(|balls| to_array(py, balls)).transpose()?;
         Ok((to_array(py, answers.found.depth)?, balls, remarks))

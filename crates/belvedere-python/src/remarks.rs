@@ -4,11 +4,14 @@ use belvedere::apps::ask::{Remark, Severity};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+/// Remarks in Python.
+pub(crate) type Remarks<'py> = Vec<Bound<'py, PyDict>>;
+
 /// All remarks.
 pub(crate) fn remarks_of<'a, 'py>(
     py: Python<'py>,
     remarks: impl IntoIterator<Item = &'a Remark>,
-) -> PyResult<Vec<Bound<'py, PyDict>>> {
+) -> PyResult<Remarks<'py>> {
     remarks.into_iter().map(|remark| remark_of(py, remark)).collect()
 }
 

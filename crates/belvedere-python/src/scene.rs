@@ -4,10 +4,10 @@ use crate::cloud::{Cloud, PyInput, json};
 use crate::device::backend;
 use crate::errors::{belvedere_error, exception, wrong};
 use crate::mesh::PyMesh;
-use crate::remarks::remarks_of;
+use crate::remarks::{Remarks, remarks_of};
 use crate::system::System;
 use crate::work::run;
-use belvedere::apps::ask::{self, HowSure};
+use belvedere::apps::ask;
 use belvedere::apps::horizon::convergence;
 use belvedere::apps::survey_reliability::ReliabilityParams;
 use belvedere::cache::{SceneCache, scene_model};
@@ -20,11 +20,10 @@ use belvedere::io::{
 use belvedere::medial::{CarvedParams, Rule, ShrinkMethod, ShrinkParams, Trees};
 use belvedere::model::{BallParams, ClearedArea, ModelParams, OrientBy, SceneModel, StripHeights};
 use belvedere::normals::estimate::Neighborhood;
-use belvedere::query::UnprovenAs;
 use belvedere::strips::StripParams;
 use belvedere::{Frame, PointCloud};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::PyBytes;
 use std::borrow::Cow;
 use std::io::Cursor;
 use std::path::PathBuf;
@@ -33,34 +32,6 @@ use std::sync::Arc;
 /// A scene: balls, pulses, and the cloud that they were made from.
 #[pyclass(frozen, module = "belvedere._core", name = "Scene")]
 pub(crate) struct PyScene(pub(crate) Arc<ask::Scene>);
-
-/// Request for the certainty of answers.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
-pub(crate) struct HowSureKeywords {
-    probability: bool,
-    certain: Option<f64>,
-}
-
-impl From<HowSureKeywords> for HowSure {
-    fn from(HowSureKeywords { probability, certain }: HowSureKeywords) -> Self {
-        Self { probability, certain }
-    }
-}
-
-pub(crate) fn unproven_as(text: &str) -> PyResult<UnprovenAs> {
-    match text {
-        "report" => Ok(UnprovenAs::Reported),
-        "as-visible" => Ok(UnprovenAs::Visible),
-        "as-blocked" => Ok(UnprovenAs::Blocked),
-        _ => Err(wrong("unproven", &format!("'{text}'"), "use 'report', 'as-visible' or 'as-blocked'")),
-    }
-}
-
-/// The same where reporting is the default: `None` if nothing else is requested.
-pub(crate) fn unproven_choice(text: &str) -> PyResult<Option<UnprovenAs>> {
-    Ok(Some(unproven_as(text)?).filter(|unproven| *unproven != UnprovenAs::Reported))
-}
 
 /// The value of a library's type that has a name.
 fn parse_name<T: Copy>(what: &'static str, name: &str, all: &[T], name_of: fn(T) -> &'static str) -> PyResult<T> {
@@ -230,7 +201,7 @@ impl PyScene {
         cloud: &Cloud,
         choices: Choices,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(Self, String, Vec<Bound<'py, PyDict>>)> {
+    ) -> PyResult<(Self, String, Remarks<'py>)> {
         let cloud = Arc::clone(&cloud.0);
         let params = py.detach(|| choices.params(&cloud.frame))?;
         let (given, cache) = (Arc::clone(&cloud), choices.cache.cache());
@@ -257,7 +228,7 @@ impl PyScene {
         share: f64,
         seed: u64,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(String, Vec<Bound<'py, PyDict>>)> {
+    ) -> PyResult<(String, Remarks<'py>)> {
         let cloud = Arc::clone(&cloud.0);
         let params = py.detach(|| choices.params(&cloud.frame))?;
         let kept_out = ReliabilityParams { share, seed };
@@ -338,7 +309,7 @@ impl PyScene {
         py: Python<'py>,
         rings: Option<Vec<Vec<[f64; 2]>>>,
         class_: u8,
-    ) -> PyResult<(Self, String, Vec<Bound<'py, PyDict>>)> {
+    ) -> PyResult<(Self, String, Remarks<'py>)> {
         let inner = Arc::clone(&self.0);
         let (model, cloud, report) = run(py, None, move |control| {
             let area = match rings {

@@ -1,50 +1,24 @@
 //! Shadow.
 
-use crate::errors::wrong;
-use crate::scene::{HowSureKeywords, PyScene};
-use crate::sun::{SiteKeywords, SunChoice};
-use crate::targets::{RequestedTargets, TargetResults, put_to_scene};
-use crate::trees::Through;
+use crate::question::Data;
+use crate::scene::PyScene;
+use crate::targets::{RequestedTargets, TargetResults};
 use belvedere::apps::ask;
-use belvedere::apps::shadow::Edges;
 use belvedere::apps::targets::Measure;
 use pyo3::prelude::*;
-use std::sync::Arc;
 
 #[pymethods]
 impl PyScene {
     /// The share of each sun that reaches each target; of one sun with hard edges, also which light is unproven.
-    #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn shadow<'py>(
         &self,
         py: Python<'py>,
-        suns: SunChoice,
-        place: SiteKeywords,
+        question: Data<ask::ShadowQuestion>,
         targets: RequestedTargets<'py>,
-        edges: &str,
-        trees: Through,
-        how_sure: HowSureKeywords,
-        casters: bool,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Vec<TargetResults<'py>>> {
-        let edges = match edges {
-            "hard" => Edges::Hard,
-            "soft" => Edges::Soft,
-            _ => return Err(wrong("edges", &format!("'{edges}'"), "use 'hard' or 'soft'")),
-        };
-        let question = ask::ShadowQuestion {
-            suns: suns.into(),
-            place: place.chosen()?,
-            edges,
-            trees: trees.chosen()?,
-            unproven: None,
-            how_sure: how_sure.into(),
-            casters,
-        };
-        let scene = Arc::clone(&self.0);
-        let chosen = targets.chosen(py, &scene)?;
-        let places = chosen.places.clone();
-        let answers = put_to_scene(py, progress, scene, question, places)?;
+        let chosen = targets.chosen(py, &self.0)?;
+        let answers = self.ask(py, progress, question.0, chosen.places.clone())?;
         let (found, mut measures) = (answers.found, answers.measures);
         let further = measures.split_off(found.suns.len().min(measures.len()));
         let is_one = found.suns.len() == 1;

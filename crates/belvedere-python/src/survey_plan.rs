@@ -1,87 +1,45 @@
 //! Survey plan: stations for another scan.
 
 use crate::arrays::{to_1d, to_2d};
-use crate::errors::wrong;
-use crate::observers::standing;
+use crate::observers::standing_pairs;
+use crate::planning::PyTable;
+use crate::question::Data;
 use crate::remarks::remarks_of;
 use crate::scene::PyScene;
-use crate::targets::ground_points;
-use crate::visibility::EndKeywords;
-use crate::work::run;
-use belvedere::apps::ask::{self, Candidates, GivenCamera, GridCells, PlannedStation, Suns, SurveyPlanQuestion};
+use crate::targets::RequestedTargets;
+use belvedere::apps::ask::{Candidates, GivenCamera, PlannedStation, SurveyPlanQuestion};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::sync::Arc;
-
-/// Stations to choose from, and the limits of the scanner.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
-pub(crate) struct StationKeywords {
-    /// x, y and z in the coordinates of the file, z NaN where it follows from the ground; `None` for a grid.
-    candidates: Option<Vec<[f64; 3]>>,
-    /// The number of the line that each of them is a place on, where lines are candidates.
-    lines: Option<Vec<usize>>,
-    on_roofs: bool,
-    spacing: f64,
-    station_height: Option<f64>,
-    count: usize,
-    max_distance: Option<f64>,
-    angle_step_deg: Option<f64>,
-    /// Azimuths and elevations of suns whose light on cells of a side, metres, is to be proven; none for pairs.
-    suns: Vec<[f64; 2]>,
-    cell: Option<f64>,
-}
 
 #[pymethods]
 impl PyScene {
-    /// Columns of the candidates that can be used, and remarks.
+    /// Columns of the candidates that can be used, and remarks. Candidates are x, y and z in the coordinates of the
+    /// file, z NaN where it follows from the ground, with the number of the line that each is a place on; `None` for
+    /// those of the question. Without targets, `cells` are what suns are to light.
+    #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn survey_plan<'py>(
         &self,
         py: Python<'py>,
-        stations: StationKeywords,
+        question: Data<SurveyPlanQuestion>,
+        candidates: Option<Vec<([f64; 3], Option<usize>)>>,
         observers: PyReadonlyArray2<'py, f64>,
         targets: PyReadonlyArray2<'py, f64>,
-        ends: EndKeywords,
+        cells: RequestedTargets<'py>,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(Bound<'py, PyDict>, Vec<Bound<'py, PyDict>>)> {
-        let scene = Arc::clone(&self.0);
-        let line = |row: usize| stations.lines.as_ref().and_then(|lines| lines.get(row).copied());
-        let given = |(row, &place): (usize, &[f64; 3])| GivenCamera {
-            place: scene.frame().local_from_file(place),
-            line: line(row),
+    ) -> PyResult<PyTable<'py>> {
+        let mut question = question.0;
+        let given = |(place, line): ([f64; 3], Option<usize>)| GivenCamera {
+            place: self.0.frame().local_from_file(place),
+            line,
             ..GivenCamera::default()
         };
-        let question = SurveyPlanQuestion {
-            count: stations.count,
-            candidates: match &stations.candidates {
-                Some(places) => Candidates::Given(places.iter().enumerate().map(given).collect()),
-                None if stations.on_roofs => Candidates::Roofs(stations.spacing),
-                None => Candidates::Ground(stations.spacing),
-            },
-            station_height: stations.station_height,
-            max_distance: stations.max_distance,
-            angle_step_deg: stations.angle_step_deg,
-            observer_height: ends.observer_height,
-            target_height: ends.target_height,
-            ground: ground_points(ends.ground.as_deref())?,
-            suns: (!stations.suns.is_empty()).then(|| Suns::Directions(stations.suns.clone())),
-            whole_lines: stations.lines.is_some(),
-            ..SurveyPlanQuestion::default()
-        };
-        let [observers, targets] = [standing(&observers, "observers", &scene)?, standing(&targets, "targets", &scene)?];
-        if observers.len() != targets.len() {
-            let value = format!("an array of {} rows", targets.len());
-            return Err(wrong("targets", &value, &format!("give a row for each of the {} observers", observers.len())));
+        if let Some(places) = candidates {
+            question.candidates = Candidates::Given(places.into_iter().map(given).collect());
         }
-        let pairs = match question.suns.is_some() {
-            true => {
-                let (cell, height, ground) = (stations.cell, ends.target_height, question.ground);
-                ask::Places::Cells(GridCells { cell, height, ground, ..GridCells::default() })
-            }
-            false => ask::Places::Pairs(observers.into_iter().zip(targets).map(<[_; 2]>::from).collect()),
-        };
-        let answers = run(py, progress, move |control| ask::ask(&scene, &question, &pairs, control))?;
+        let pairs = standing_pairs(&observers, &targets, &self.0)?;
+        let places = if question.suns.is_some() { cells.chosen(py, &self.0)?.places } else { pairs };
+        let answers = self.ask(py, progress, question, places)?;
         let found = &answers.found;
         let rows = found.stations();
         let places: Vec<[f64; 3]> = rows.iter().map(|row| self.0.frame().file_from_local(row.eye)).collect();

@@ -4,41 +4,19 @@ use crate::arrays::{PositionArray, fixed_rows, to_1d, to_2d};
 use crate::cloud::Cloud;
 use crate::errors::{exception, wrong};
 use crate::mesh::{Faces, rows_of};
-use crate::remarks::remarks_of;
-use crate::work::run;
-use belvedere::apps::ask::{self, Answers, Ask, Question, Reach, Remark};
+use crate::question::Data;
+use crate::remarks::{Remarks, remarks_of};
+use belvedere::apps::ask::{self, Reach, Remark};
 use belvedere::apps::targets::{CellLevel, Measure, ResultKind, Targets};
 use belvedere::ground::{GroundPoints, MapGrid};
 use belvedere::io::Georeference;
-use belvedere::results::{FaceRows, georeference, question_tags};
+use belvedere::results::{FaceRows, georeference};
 use belvedere::{Frame, Mesh};
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// Puts a question to a scene. Its measures have the metadata of the question beside their own.
-pub(crate) fn put_to_scene<Q>(
-    py: Python<'_>,
-    progress: Option<Py<PyAny>>,
-    scene: Arc<ask::Scene>,
-    question: Q,
-    places: ask::Places,
-) -> PyResult<Answers<Q::Found>>
-where
-    Q: Ask<Found: Send + 'static> + Clone + Into<Question> + Send + 'static,
-{
-    let named = question.clone();
-    let mut answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
-    let tags = question_tags(&named.into(), answers.time_zone());
-    for measure in &mut answers.measures {
-        let is_new = |(name, _): &&(String, String)| measure.tags.iter().all(|(known, _)| known != name);
-        let new: Vec<(String, String)> = tags.iter().filter(is_new).cloned().collect();
-        measure.tags.extend(new);
-    }
-    Ok(answers)
-}
 
 /// Targets in Python.
 #[derive(FromPyObject)]
@@ -52,7 +30,7 @@ pub(crate) struct RequestedTargets<'py> {
     surface: bool,
     cell: Option<f64>,
     height: Option<f64>,
-    ground: Option<String>,
+    pub(crate) ground: Data<GroundPoints>,
 }
 
 /// Places of a question, and the mesh whose faces they are.
@@ -61,25 +39,7 @@ pub(crate) struct Chosen {
     mesh: Option<Arc<Mesh>>,
 }
 
-/// Returns the source of ground points.
-pub(crate) fn ground_points(text: Option<&str>) -> PyResult<GroundPoints> {
-    match text {
-        None | Some("auto") => Ok(GroundPoints::Auto),
-        Some("class") => Ok(GroundPoints::Classed),
-        Some("found") => Ok(GroundPoints::Found),
-        Some(other) => Err(wrong("ground", &format!("'{other}'"), "use 'auto', 'class' or 'found'")),
-    }
-}
-
 impl RequestedTargets<'_> {
-    pub(crate) fn height(&self) -> Option<f64> {
-        self.height
-    }
-
-    pub(crate) fn ground(&self) -> Option<&str> {
-        self.ground.as_deref()
-    }
-
     pub(crate) fn chosen(&self, py: Python<'_>, scene: &ask::Scene) -> PyResult<Chosen> {
         self.chosen_within(Reach::Cloud, py, scene)
     }
@@ -102,7 +62,7 @@ impl RequestedTargets<'_> {
         if let Some(places) = &self.on_map {
             let places = places.iter().map(|&[x, y, z]| ([x, y], Some(z).filter(|z| !z.is_nan())));
             let places = ask::standing_on_map(places, self.height, reach, scene).map_err(exception)?;
-            return of(ask::Places::At(places, ground_points(self.ground.as_deref())?));
+            return of(ask::Places::At(places, self.ground.0));
         }
         if let Some(cloud) = &self.cloud {
             let cloud = Arc::clone(&cloud.borrow(py).0);
@@ -117,7 +77,7 @@ impl RequestedTargets<'_> {
             cell: self.cell,
             level: if self.surface { CellLevel::Surface } else { CellLevel::Ground },
             height: self.height,
-            ground: ground_points(self.ground.as_deref())?,
+            ground: self.ground.0,
             ..ask::GridCells::default()
         }))
     }
@@ -147,7 +107,7 @@ pub(crate) type TargetResults<'py> = (
     Vec<MeasureColumn<'py>>,
     Option<Grid>,
     Option<Bound<'py, PyDict>>,
-    Vec<Bound<'py, PyDict>>,
+    Remarks<'py>,
     Option<Bound<'py, PyArray2<f64>>>,
 );
 

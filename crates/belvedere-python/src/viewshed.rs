@@ -3,23 +3,21 @@
 use crate::arrays::to_1d;
 use crate::errors::{exception, wrong};
 use crate::observers::standing_observers;
-use crate::outlook::LookingKeywords;
-use crate::remarks::remarks_of;
-use crate::scene::{HowSureKeywords, PyScene, unproven_choice};
-use crate::sun::SiteKeywords;
-use crate::targets::{Grid, grid_at, grid_of, ground_points};
+use crate::question::Data;
+use crate::remarks::{Remarks, remarks_of};
+use crate::scene::PyScene;
+use crate::targets::{Grid, grid_at, grid_of};
 use crate::work::run;
-use belvedere::apps::ask::{self, HowSure, Places, Standing, StandingObserver, ViewLimits, ViewshedTargets};
+use belvedere::apps::ask::{self, Places, StandingObserver, ViewLimits, ViewshedTargets};
 use belvedere::raster::Raster;
 use belvedere::results::{Pixels, ResultRaster, terrain_georeference};
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// The bands of cells with their nodata value, their names, their description, their grid, and remarks.
-type ViewshedReply<'py> = (Vec<(Bound<'py, PyAny>, f64)>, Vec<String>, String, Grid, Vec<Bound<'py, PyDict>>);
+type ViewshedReply<'py> = (Vec<(Bound<'py, PyAny>, f64)>, Vec<String>, String, Grid, Remarks<'py>);
 
 /// Observers of a viewshed.
 #[derive(FromPyObject)]
@@ -32,60 +30,27 @@ enum Observers<'py> {
     Places(PyReadonlyArray2<'py, f64>),
 }
 
-impl LookingKeywords {
-    fn question(
-        &self,
-        observers: Vec<Standing>,
-        place: &SiteKeywords,
-        unproven: &str,
-        how_sure: HowSure,
-    ) -> PyResult<ask::ViewshedQuestion> {
-        let limits = ViewLimits {
-            azimuth_range_deg: self.azimuth_range,
-            elevation_range_deg: self.elevation_range,
-            min_distance: self.min_distance,
-            max_distance: self.max_distance,
-        };
-        let standing = observers.into_iter();
-        Ok(ask::ViewshedQuestion {
-            observers: standing.map(|standing| StandingObserver { standing, limits: ViewLimits::default() }).collect(),
-            reverse: self.is_reverse,
-            observer_height: self.observer_height,
-            target_height: self.target_height,
-            limits,
-            north: place.north(),
-            earth: self.earth()?,
-            unproven: unproven_choice(unproven)?,
-            how_sure,
-            cell: self.cell,
-            ground: ground_points(self.ground.as_deref())?,
-            targets: vec![if self.is_far { ViewshedTargets::FarTerrain } else { ViewshedTargets::Cells }],
-            masks: false,
-            max_height: None,
-        })
-    }
-}
-
 #[pymethods]
 impl PyScene {
     /// The bands of cells with their nodata value, their names, their description, their grid, and remarks.
-    #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn viewshed<'py>(
         &self,
         py: Python<'py>,
+        question: Data<ask::ViewshedQuestion>,
         observers: Observers<'py>,
-        looking: LookingKeywords,
-        place: SiteKeywords,
-        unproven: &str,
-        how_sure: HowSureKeywords,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<ViewshedReply<'py>> {
-        let (standing, spread) = match observers {
-            Observers::Spread(count) => (Vec::new(), Some(count)),
-            Observers::Places(places) => (standing_observers(&places, &self.0)?, None),
-        };
-        let mut question = looking.question(standing, &place, unproven, how_sure.into())?;
-        if looking.is_far && self.0.model().far_terrain().grid().is_none() {
+        let mut question = question.0;
+        let mut spread = None;
+        match observers {
+            Observers::Spread(count) => spread = Some(count),
+            Observers::Places(places) => {
+                let standing = standing_observers(&places, &self.0)?.into_iter();
+                let observer = |standing| StandingObserver { standing, limits: ViewLimits::default() };
+                question.observers = standing.map(observer).collect();
+            }
+        }
+        if question.targets.contains(&ViewshedTargets::FarTerrain) && self.0.model().far_terrain().grid().is_none() {
             return Err(wrong(
                 "far",
                 "True",

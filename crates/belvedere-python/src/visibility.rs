@@ -1,49 +1,23 @@
 //! Visibility of pairs, and of many targets of one eye.
 
 use crate::arrays::{to_1d, to_2d};
-use crate::errors::{exception, wrong};
 use crate::mesh::{Faces, rows_of};
-use crate::observers::standing;
-use crate::remarks::remarks_of;
-use crate::scene::{HowSureKeywords, PyScene, unproven_as};
-use crate::targets::{RequestedTargets, ground_points};
+use crate::observers::{standing, standing_pairs};
+use crate::question::Data;
+use crate::remarks::{Remarks, remarks_of};
+use crate::scene::PyScene;
+use crate::targets::RequestedTargets;
 use crate::work::run;
-use belvedere::apps::ask::{self, LinesOfSightQuestion};
-use belvedere::query::{
-    AnswerCounts, Curvature, EarthParams, MeshTargetParams, SurfacePieces, UnprovenAs, Viewer, seen_faces,
-};
+use belvedere::apps::ask;
+use belvedere::query::{AnswerCounts, MeshTargetParams, SurfacePieces, UnprovenAs, Viewer, seen_faces};
 use belvedere::results::FaceRows;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// Heights of the ends of lines that have none.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
-pub(crate) struct EndKeywords {
-    pub(crate) observer_height: Option<f64>,
-    pub(crate) target_height: Option<f64>,
-    pub(crate) ground: Option<String>,
-}
-
 /// Columns of pairs, where their targets are, and remarks.
-type SightsReply<'py> = (Bound<'py, PyDict>, Bound<'py, PyAny>, Vec<Bound<'py, PyDict>>);
-
-/// Curvature of the earth on lines of sight; missing keywords have the library's defaults.
-pub(crate) fn earth(curvature: Option<&str>, refraction: Option<f64>) -> PyResult<EarthParams> {
-    let usual = EarthParams::default();
-    let curvature = match curvature {
-        None => usual.curvature,
-        Some("auto") => Curvature::Auto,
-        Some("on") => Curvature::On,
-        Some("off") => Curvature::Off,
-        Some(other) => return Err(wrong("curvature", &format!("'{other}'"), "use 'auto', 'on' or 'off'")),
-    };
-    let params = EarthParams { curvature, refraction: refraction.unwrap_or(usual.refraction), ..usual };
-    params.validate().map_err(exception)?;
-    Ok(params)
-}
+type SightsReply<'py> = (Bound<'py, PyDict>, Bound<'py, PyAny>, Remarks<'py>);
 
 impl PyScene {
     /// Returns remarks on the scene, on an eye, local metres, and on targets of which some are outside the cloud.
@@ -53,7 +27,7 @@ impl PyScene {
         eye: [f64; 3],
         (outside, count): (usize, usize),
         things: &str,
-    ) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    ) -> PyResult<Remarks<'py>> {
         let model = self.0.model();
         let of_eye = ask::remark_on_eye(model.coverage().as_ref(), eye);
         let of_model = ask::remarks_on_model(model);
@@ -69,10 +43,10 @@ impl PyScene {
         py: Python<'py>,
         eye: [f64; 3],
         targets: RequestedTargets<'py>,
-        unproven: &str,
+        unproven: Data<Option<UnprovenAs>>,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(Bound<'py, PyAny>, Vec<Bound<'py, PyDict>>)> {
-        let unproven = unproven_as(unproven)?;
+    ) -> PyResult<(Bound<'py, PyAny>, Remarks<'py>)> {
+        let unproven = unproven.0.unwrap_or(UnprovenAs::Reported);
         let inner = Arc::clone(&self.0);
         let eye = inner.frame().local_from_file(eye);
         let places = targets.chosen(py, &inner)?.places;
@@ -107,10 +81,10 @@ impl PyScene {
         py: Python<'py>,
         eye: [f64; 3],
         faces: Faces,
-        unproven: &str,
+        unproven: Data<Option<UnprovenAs>>,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<(Bound<'py, PyDict>, Vec<Bound<'py, PyDict>>)> {
-        let unproven = unproven_as(unproven)?;
+    ) -> PyResult<(Bound<'py, PyDict>, Remarks<'py>)> {
+        let unproven = unproven.0.unwrap_or(UnprovenAs::Reported);
         let inner = Arc::clone(&self.0);
         let eye = inner.frame().local_from_file(eye);
         let (mesh, params) = faces.owned(&inner)?;
@@ -138,53 +112,27 @@ impl PyScene {
     /// Returns the result for the line of sight of each pair, the position of its target, and remarks. Without targets
     /// the pairs are those of a network of the observers, within `max_distance`. Heights of NaN follow from the
     /// ground.
-    #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
     fn lines_of_sight<'py>(
         &self,
         py: Python<'py>,
+        question: Data<ask::LinesOfSightQuestion>,
         observers: PyReadonlyArray2<'py, f64>,
         targets: Option<PyReadonlyArray2<'py, f64>>,
-        ends: EndKeywords,
-        unproven: &str,
-        how_sure: HowSureKeywords,
-        curvature: Option<&str>,
-        refraction: Option<f64>,
-        frequency: Option<f64>,
         max_distance: Option<f64>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<SightsReply<'py>> {
-        let question = LinesOfSightQuestion {
-            observer_height: ends.observer_height,
-            target_height: ends.target_height,
-            ground: ground_points(ends.ground.as_deref())?,
-            earth: earth(curvature, refraction)?,
-            frequency_ghz: frequency,
-            unproven: Some(unproven_as(unproven)?).filter(|unproven| *unproven != UnprovenAs::Reported),
-            how_sure: how_sure.into(),
-            profile: None,
-        };
-        let scene = Arc::clone(&self.0);
-        let observers = standing(&observers, "observers", &scene)?;
+        let scene = &self.0;
         let places = match targets {
             None => ask::Places::Network(ask::NetworkPlaces {
-                places: observers,
+                places: standing(&observers, "observers", scene)?,
                 max_distance,
                 ..ask::NetworkPlaces::default()
             }),
-            Some(targets) => {
-                let targets = standing(&targets, "targets", &scene)?;
-                if observers.len() != targets.len() {
-                    let value = format!("an array of {} rows", targets.len());
-                    let advice = format!("give a row for each of the {} observers", observers.len());
-                    return Err(wrong("targets", &value, &advice));
-                }
-                ask::Places::Pairs(observers.into_iter().zip(targets).map(<[_; 2]>::from).collect())
-            }
+            Some(targets) => standing_pairs(&observers, &targets, scene)?,
         };
-        let of_work = Arc::clone(&scene);
-        let answers = run(py, progress, move |control| ask::ask(&of_work, &question, &places, control))?;
+        let answers = self.ask(py, progress, question.0, places)?;
         let found = &answers.found;
-        let columns = found.columns(&scene);
+        let columns = found.columns(scene);
         let dict = PyDict::new(py);
         if let Some(network) = &found.network {
             for (end, name) in ["a", "b"].into_iter().enumerate() {

@@ -147,6 +147,21 @@ WRONG = {
     "zone as number": (lambda s, c, f: s.sun_hours(date="2026-06-21", zone=2), "zone", "Europe/Amsterdam"),
     "year as text": (lambda s, c, f: s.hourly_sun("2026"), "year", "whole number"),
     "directions as fraction": (lambda s, c, f: s.sky_view(directions=5.5), "directions", "whole number"),
+    "distance as text": (lambda s, c, f: s.viewshed((1, 2), max_distance="far"), "max_distance", "number"),
+    "step as text": (lambda s, c, f: s.sun_hours(date="2026-06-21", time_step_min="1"), "time_step_min", "number"),
+    "headings as fraction": (lambda s, c, f: s.cameras("roofs", count=1, headings=2.5), "headings", "whole number"),
+    "pixels as text": (lambda s, c, f: s.cameras("roofs", count=1, pixels="many"), "pixels", "number"),
+    "count below zero": (lambda s, c, f: s.survey_plan("ground", sun=(180, 30), count=-1), "count", "range"),
+    "class above 255": (lambda s, c, f: s.landmark(target_class=256), "target_class", "range"),
+    "year that no calendar has": (lambda s, c, f: s.sun_hours(date="equinox", year=10**6), "year", "range"),
+    "light as list": (lambda s, c, f: s.sky_view(through_trees=[0.5]), "through_trees", "number"),
+    "switch as word": (lambda s, c, f: s.sky_view(interval="no"), "interval", "True or False"),
+    "air of another elevation": (
+        lambda s, c, f: s.sun_hours(date="2026-06-21", sun_elevation="geometric", air=(1013, 15)), "air", "leave it"),
+    "goal of cameras": (lambda s, c, f: s.cameras("roofs"), "count and coverage_percent", "one of them"),
+    "weather and clear sky": (
+        lambda s, c, f: s.irradiance(weather=f / "weather.csv", clear_sky="bird"), "weather and clear_sky", "one of"),
+    "turbidity of another sky": (lambda s, c, f: s.irradiance(clear_sky="bird", linke=3), "linke", "ineichen"),
     "true as word": (lambda s, c, f: s.viewshed((1, 2), curvature=True), "curvature", "word"),
     "true as clear sky": (lambda s, c, f: s.irradiance(clear_sky=True), "clear_sky", "word"),
     "targets as file": (lambda s, c, f: s.shadow(sun=(180, 30), targets="a.shp"), "targets", "read the file"),
@@ -184,6 +199,19 @@ def test_wrong_call(name, scene, cloud, folder):
         assert error.what == what, error.what
     assert advice in error.advice or advice in str(error), f"{error} | {error.advice}"
     assert error.advice and str(error)
+
+
+def test_fields_that_questions_lack_are_not_left_out_in_silence(scene):
+    for place in ({"zones": "UTC"}, {"refraction": {"air": {"pressure": 1013, "temperature": 15, "humidity": 0.5}}}):
+        with pytest.raises(TypeError, match=r"no field (zones|humidity)"):
+            scene._core.sun_positions({"times": ["2026-06-21T15:00Z"], "place": place})
+
+
+def test_numbers_of_numpy_are_numbers(scene):
+    named = {"directions": np.int64(9), "cell": np.float32(8), "interval": np.bool_(False)}
+    plain = {name: value.item() for name, value in named.items()}
+    factors = [scene.sky_view(**numbers)["sky_view_factor"].values for numbers in (named, plain)]
+    assert np.array_equal(*factors, equal_nan=True)
 
 
 def test_files_that_are_missing_or_refused_raise_what_python_raises(folder, scene):

@@ -12,7 +12,7 @@ from . import _core
 from ._errors import wrong
 from ._inputs import check_finite, map_places, pairs_of, reporter
 from ._mesh import Mesh
-from ._questions import _place, _suns
+from ._questions import cells_of, earth, given, ground_of, north, suns_of, switch, unproven_as
 from ._raster import Raster
 from ._remarks import Remark, warned
 from ._shapes import in_system, is_single
@@ -203,58 +203,57 @@ class Cameras:
         """
         if isinstance(candidates, str) and candidates not in ("ground", "roofs"):
             raise wrong("candidates", repr(candidates), "give places, 'ground' or 'roofs'")
-        given = (
-            None
-            if isinstance(candidates, str)
-            else map_places(candidates, "candidates", _PLACES, crs=self._core.crs.text)
-        )
+        crs = self._core.crs
         check_finite(spacing=spacing, camera_height=camera_height, fov_deg=fov_deg, vertical_fov_deg=vertical_fov_deg)
-        check_finite(pixels=pixels, min_distance=min_distance, coverage_percent=coverage_percent, refraction=refraction)
+        check_finite(pixels=pixels, min_distance=min_distance, coverage_percent=coverage_percent)
         if isinstance(targets, Mesh) and weights is not None:
             raise wrong("weights", "given", "the targets of a mesh have the weights of their areas")
         if targets is None and weights is not None:
             raise wrong("weights", "given", "cells count alike; give targets, or leave this out")
-        targets = in_system(targets, "targets", self._core.crs.text)
-        wanted_targets = wanted(targets, None, {"cell": cell, "target_height": None, "ground": None})
-        wanted_targets.update(height=target_height, ground=ground)
+        if (count is None) == (coverage_percent is None):
+            raise wrong("count and coverage_percent", "not one of them", "give one of them")
+        targets = in_system(targets, "targets", crs.text)
+        wanted_targets = wanted(targets, None, {"cell": cell})
+        wanted_targets.update(height=target_height, ground=ground_of(ground))
         check_finite(certain=certain)
         check_finite(target_height=target_height, frequency_ghz=frequency_ghz, fresnel_percent=fresnel_percent)
         if fresnel_percent is not None and frequency_ghz is None:
             raise wrong("fresnel_percent", fresnel_percent, "give frequency_ghz too, or leave this out")
-        choice: dict[str, Any] = {
-            "candidates": None if given is None else given.tolist(),
-            "on_roofs": isinstance(candidates, str) and candidates == "roofs",
-            "spacing": float(spacing),
-            "camera_height": camera_height,
-            "existing": _existing(existing, self._core.crs.text).tolist(),
-            "private": []
-            if private is None
-            else map_places(private, "private", _PLACES, crs=self._core.crs.text).tolist(),
-            "weights": None if weights is None else _weights(weights, targets).tolist(),
-            "fov": fov_deg,
-            "vertical_fov": vertical_fov_deg,
-            "pixels": pixels,
-            "density": density,
-            "headings": headings,
-            "tilts": None if tilts_deg is None else [float(tilt) for tilt in np.atleast_1d(np.asarray(tilts_deg))],
-            "turning": turning,
-            "min_distance": min_distance,
-            "max_distance": max_distance,
-            "count": count,
-            "coverage": coverage_percent,
-            "per_target": per_target,
-            "search_limit": search_limit,
-            "curvature": curvature,
-            "refraction": refraction,
-            "frequency": frequency_ghz,
-            "fresnel_percent": fresnel_percent,
-            "certain": certain,
-        }
-        columns, whole, counts, grid, given_remarks = self._core.cameras(
-            choice, wanted_targets, _place(None, grid_north=grid_north), unproven, reporter(progress)
+        question = given(
+            goal=given(count=count, coverage_percent=coverage_percent),
+            per_target=per_target,
+            search_limit=search_limit,
+            candidates=_grid(candidates, spacing),
+            camera_height=camera_height,
+            lens=given(
+                fov_deg=fov_deg,
+                vertical_fov_deg=vertical_fov_deg,
+                pixels=pixels,
+                headings=headings,
+                tilts_deg=None if tilts_deg is None else np.atleast_1d(np.asarray(tilts_deg, np.float64)).tolist(),
+                is_turning=switch(turning=turning)["turning"],
+                min_distance=min_distance,
+                max_distance=max_distance,
+            ),
+            targets=given(height=target_height),
+            north=north(grid_north),
+            frequency_ghz=frequency_ghz,
+            fresnel_percent=fresnel_percent,
+            unproven=unproven_as(unproven),
+            certain=certain,
         )
-        remarks = warned(given_remarks)
-        crs = self._core.crs
+        choice = {
+            "candidates": None
+            if isinstance(candidates, str)
+            else map_places(candidates, "candidates", _PLACES, crs=crs.text).tolist(),
+            "existing": _existing(existing, crs.text).tolist(),
+            "private": [] if private is None else map_places(private, "private", _PLACES, crs=crs.text).tolist(),
+            "weights": [] if weights is None else _weights(weights, targets).tolist(),
+            "density": density,
+        }
+        asked = question, earth(curvature, refraction), choice, wanted_targets
+        columns, whole, counts, grid, found = self._core.cameras(*asked, reporter(progress))
+        remarks = warned(found)
         of_targets: Raster | Table
         small = np.where(counts == np.uint32(2**32 - 1), 65535, np.minimum(counts, 65534)).astype(np.uint16)
         if grid is None:
@@ -344,48 +343,50 @@ class Cameras:
         """
         if isinstance(candidates, str) and candidates not in ("ground", "roofs"):
             raise wrong("candidates", repr(candidates), "give places, 'ground' or 'roofs'")
-        given, lines = _stations(candidates, self._core.crs.text)
         if (sun is None) == (observer is None and target is None):
             raise wrong("observer and target", "missing" if sun is None else "given", "give both of them, or only sun")
-        suns = [] if sun is None else [list(direction) for direction in _suns(sun, None)[0]]
         check_finite(spacing=spacing, station_height=station_height, max_distance=max_distance)
         check_finite(observer_height=observer_height, target_height=target_height, angle_step_deg=angle_step_deg)
-        nobody = np.empty((0, 3))
-        if sun is not None:
-            observers, targets = nobody, nobody
-        elif observer is None or target is None:
-            raise wrong("observer and target", "one of them", "give both of them, or only sun")
-        else:
+        observers = targets = np.empty((0, 3))
+        if sun is None:
+            if observer is None or target is None:
+                raise wrong("observer and target", "one of them", "give both of them, or only sun")
             observers, targets = pairs_of(observer, target, self._core.crs.text)
-        stations = {
-            "candidates": None if given is None else given.tolist(),
-            "lines": lines,
-            "suns": suns,
-            "cell": cell,
-            "on_roofs": isinstance(candidates, str) and candidates == "roofs",
-            "spacing": float(spacing),
-            "station_height": station_height,
-            "count": count,
-            "max_distance": max_distance,
-            "angle_step_deg": angle_step_deg,
-        }
-        ends = {"observer_height": observer_height, "target_height": target_height, "ground": ground}
-        columns, remarks = self._core.survey_plan(stations, observers, targets, ends, reporter(progress))
+        given_places, has_lines = _stations(candidates, self._core.crs.text)
+        question = given(
+            count=count,
+            candidates=_grid(candidates, spacing),
+            station_height=station_height,
+            max_distance=max_distance,
+            angle_step_deg=angle_step_deg,
+            suns=None if sun is None else suns_of(sun, None)[0],
+            whole_lines=has_lines,
+            observer_height=observer_height,
+            target_height=target_height,
+            ground=ground_of(ground),
+        )
+        cells = wanted(None, None, cells_of(cell, target_height, False, ground))
+        asked = question, given_places, observers, targets, cells
+        columns, remarks = self._core.survey_plan(*asked, reporter(progress))
         places = columns.pop("place")
         table = Table(columns, places=places, crs=self._core.crs.text)
         table.remarks = warned(remarks)
         return table
 
 
-def _stations(candidates: Any, crs: str | None) -> tuple[npt.NDArray[np.float64] | None, list[int] | None]:
-    """Places for the scanner, and the number of the line of each where lines are candidates."""
+def _grid(candidates: Any, spacing: float) -> dict[str, float] | None:
+    """Candidates of a grid; None for places."""
+    return {candidates: spacing} if isinstance(candidates, str) else None
+
+
+def _stations(candidates: Any, crs: str | None) -> tuple[list[tuple[list[float], int | None]] | None, bool]:
+    """Places with the numbers of the lines that they are on, if any are given, and whether they are on lines."""
     if isinstance(candidates, str):
-        return None, None
+        return None, False
     if isinstance(candidates, (list, tuple)) and candidates and not any(map(is_single, candidates)):
-        places = [map_places(line, "candidates", _PLACES, crs=crs) for line in candidates]
-        lines = [number for number, line in enumerate(places) for _ in line]
-        return np.concatenate(places), lines
-    return map_places(candidates, "candidates", _PLACES, crs=crs), None
+        lines = [map_places(line, "candidates", _PLACES, crs=crs).tolist() for line in candidates]
+        return [(place, number) for number, line in enumerate(lines) for place in line], True
+    return [(place, None) for place in map_places(candidates, "candidates", _PLACES, crs=crs).tolist()], False
 
 
 def _existing(given: Places | Table | None, crs: str | None) -> npt.NDArray[np.float64]:

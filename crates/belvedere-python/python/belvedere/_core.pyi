@@ -9,6 +9,9 @@ _Progress = Callable[[str, int, int], object] | None
 _Grid = tuple[int, int, Sequence[float]]
 _Columns = list[tuple[str, str, npt.NDArray[Any]]]
 _NamedColumns = list[tuple[str, Any]]
+#: Dictionaries of fields, columns and choices.
+_Data = dict[str, Any]
+_Places = npt.NDArray[np.float64]
 _Remarks = list[dict[str, Any]]
 _Measures = list[tuple[str, str, npt.NDArray[Any], bool, str, dict[str, str]]]
 _Results = tuple[
@@ -155,196 +158,99 @@ class Scene:
     @property
     def provenance(self) -> list[tuple[str, str]]: ...
     def visible(
-        self, eye: Sequence[float], targets: dict[str, Any], unproven: str, progress: _Progress
+        self, eye: Sequence[float], targets: _Data, unproven: str | None, progress: _Progress
     ) -> tuple[npt.NDArray[np.uint8], _Remarks]: ...
     def seen_of_mesh(
-        self, eye: Sequence[float], faces: dict[str, Any], unproven: str, progress: _Progress
-    ) -> tuple[dict[str, Any], _Remarks]: ...
+        self, eye: Sequence[float], faces: _Data, unproven: str | None, progress: _Progress
+    ) -> tuple[_Data, _Remarks]: ...
     def lines_of_sight(
         self,
-        observers: npt.NDArray[np.float64],
-        targets: npt.NDArray[np.float64] | None,
-        ends: dict[str, Any],
-        unproven: str,
-        how_sure: dict[str, Any],
-        curvature: str | None,
-        refraction: float | None,
-        frequency: float | None,
+        question: _Data,
+        observers: _Places,
+        targets: _Places | None,
         max_distance: float | None,
         progress: _Progress,
-    ) -> tuple[dict[str, npt.NDArray[Any]], npt.NDArray[np.float64], list[dict[str, Any]]]: ...
-    def shadow(
-        self,
-        suns: Sequence[Any],
-        place: dict[str, Any],
-        targets: dict[str, Any],
-        edges: str,
-        trees: dict[str, Any],
-        how_sure: dict[str, Any],
-        casters: bool,
-        progress: _Progress,
-    ) -> list[_Results]: ...
-    def sun_hours(
-        self,
-        days: dict[str, Any],
-        rules: list[str],
-        place: dict[str, Any],
-        targets: dict[str, Any],
-        trees: dict[str, Any],
-        interval: bool,
-        progress: _Progress,
-    ) -> _Results: ...
+    ) -> tuple[_Data, _Places, _Remarks]: ...
+    def shadow(self, question: _Data, targets: _Data, progress: _Progress) -> list[_Results]: ...
+    def on_targets(self, question: _Data, weather: object, targets: _Data, progress: _Progress) -> _Results: ...
     def hourly_sun(
-        self,
-        year: int,
-        days: dict[str, Any],
-        place: dict[str, Any],
-        targets: dict[str, Any],
-        progress: _Progress,
-    ) -> tuple[list[tuple[str, npt.NDArray[np.uint32]]], _Grid | None, list[dict[str, Any]]]: ...
-    def sky_view(
-        self,
-        directions: int | None,
-        patches: str | None,
-        targets: dict[str, Any],
-        trees: dict[str, Any],
-        interval: bool,
-        progress: _Progress,
-    ) -> _Results: ...
+        self, year: int, question: _Data, targets: _Data, progress: _Progress
+    ) -> tuple[list[tuple[str, npt.NDArray[np.uint32]]], _Grid | None, _Remarks]: ...
+    def sun_positions(self, question: _Data) -> list[tuple[float, float]]: ...
     def viewshed(
-        self,
-        observers: npt.NDArray[np.float64] | int,
-        looking: dict[str, Any],
-        place: dict[str, Any],
-        unproven: str,
-        how_sure: dict[str, Any],
-        progress: _Progress,
-    ) -> tuple[list[tuple[npt.NDArray[Any], float]], list[str], str, _Grid, list[dict[str, Any]]]: ...
-    def horizon(
-        self,
-        observers: npt.NDArray[np.float64],
-        angle_step: float | None,
-        looking: dict[str, Any],
-        place: dict[str, Any],
-        interval: bool,
-        progress: _Progress,
-    ) -> tuple[npt.NDArray[np.float64], int, list[dict[str, Any]]]: ...
+        self, question: _Data, observers: _Places | int, progress: _Progress
+    ) -> tuple[list[tuple[npt.NDArray[Any], float]], list[str], str, _Grid, _Remarks]: ...
+    def horizon(self, question: _Data, observers: _Places, progress: _Progress) -> tuple[_Places, int, _Remarks]: ...
     def isovist(
-        self,
-        observers: npt.NDArray[np.float64],
-        angle_step: float | None,
-        min_jump: float | None,
-        looking: dict[str, Any],
-        place: dict[str, Any],
-        interval: bool,
-        progress: _Progress,
-    ) -> tuple[dict[str, npt.NDArray[Any]], list[npt.NDArray[np.float32]], list[dict[str, Any]]]: ...
+        self, question: _Data, observers: _Places, progress: _Progress
+    ) -> tuple[_Data, list[npt.NDArray[np.float32]], _Remarks]: ...
     def towers(
-        self,
-        towers: list[dict[str, Any]],
-        looking: dict[str, Any],
-        targets: dict[str, Any],
-        wirelines: str | None,
-        progress: _Progress,
+        self, question: _Data, towers: list[_Data], wirelines: str | None, targets: _Data, progress: _Progress
     ) -> _Results: ...
     def landmark(
-        self,
-        landmark: dict[str, Any],
-        observers: npt.NDArray[np.float64] | None,
-        looking: dict[str, Any],
-        unproven: str,
-        probability: bool,
-        progress: _Progress,
-    ) -> tuple[_Measures, _Grid | None, list[dict[str, Any]], npt.NDArray[np.float64]]: ...
+        self, question: _Data, object: _Data, observers: _Places | None, progress: _Progress
+    ) -> tuple[_Measures, _Grid | None, _Remarks, _Places]: ...
     def protected_view(
-        self,
-        landmark: dict[str, Any],
-        observers: npt.NDArray[np.float64],
-        looking: dict[str, Any],
-        unproven: str,
-        progress: _Progress,
-    ) -> tuple[_Columns, _Grid, list[dict[str, Any]]]: ...
+        self, question: _Data, shape: _Data, object: _Data, observers: _Places, cells: _Data, progress: _Progress
+    ) -> tuple[_Columns, _Grid, _Remarks]: ...
     def window_views(
-        self, facades: dict[str, Any], place: dict[str, Any], unproven: str, progress: _Progress
-    ) -> tuple[
-        _Columns,
-        npt.NDArray[np.float64],
-        list[str],
-        tuple[list[str], list[tuple[str, npt.NDArray[Any]]]],
-        list[dict[str, Any]],
-    ]: ...
+        self, question: _Data, windows: list[list[float]], mesh: Mesh | None, objects: list[str], progress: _Progress
+    ) -> tuple[_Columns, _Places, list[str], tuple[list[str], _NamedColumns], _Remarks]: ...
     def cameras(
-        self,
-        choice: dict[str, Any],
-        targets: dict[str, Any],
-        place: dict[str, Any],
-        unproven: str,
-        progress: _Progress,
-    ) -> tuple[
-        dict[str, npt.NDArray[Any]], dict[str, Any], npt.NDArray[np.uint32], _Grid | None, list[dict[str, Any]]
-    ]: ...
+        self, question: _Data, earth: _Data, choice: _Data, targets: _Data, progress: _Progress
+    ) -> tuple[_Data, _Data, npt.NDArray[np.uint32], _Grid | None, _Remarks]: ...
     def survey_plan(
         self,
-        stations: dict[str, Any],
-        observers: npt.NDArray[np.float64],
-        targets: npt.NDArray[np.float64],
-        ends: dict[str, Any],
+        question: _Data,
+        candidates: list[tuple[list[float], int | None]] | None,
+        observers: _Places,
+        targets: _Places,
+        cells: _Data,
         progress: _Progress,
-    ) -> tuple[dict[str, Any], list[dict[str, Any]]]: ...
-    def irradiance(
-        self, radiation: dict[str, Any], targets: dict[str, Any], trees: dict[str, Any], progress: _Progress
-    ) -> _Results: ...
-    def heat(
-        self,
-        given: dict[str, Any],
-        days: dict[str, Any],
-        place: dict[str, Any],
-        targets: dict[str, Any],
-        trees: dict[str, Any],
-        progress: _Progress,
-    ) -> _Results: ...
+    ) -> tuple[_Data, _Remarks]: ...
+    def irradiance(self, radiation: _Data, summation: _Data, targets: _Data, progress: _Progress) -> _Results: ...
     def roof_planes(
         self,
-        radiation: dict[str, Any],
-        roofs: dict[str, Any],
-        trees: dict[str, Any],
+        radiation: _Data,
+        summation: _Data,
+        footprints: object,
+        ground: str | None,
+        is_hourly: bool,
         progress: _Progress,
     ) -> tuple[_NamedColumns, _NamedColumns, list[_NamedColumns], _Remarks]: ...
     def depth_map(
-        self, camera: dict[str, Any], place: dict[str, Any], progress: _Progress
+        self, camera: _Data, north: str, progress: _Progress
     ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32] | None, _Remarks]: ...
     def comfort(
-        self, walks: dict[str, Any], days: dict[str, Any], place: dict[str, Any], progress: _Progress
-    ) -> tuple[dict[str, npt.NDArray[Any]], list[dict[str, Any]]]: ...
-    def sun_calendar(
         self,
+        question: _Data,
+        routes: list[list[tuple[float, float, float]]],
         windows: list[list[float]],
-        targets: dict[str, Any],
-        days: dict[str, Any],
-        rule: str | None,
-        place: dict[str, Any],
+        ground: str | None,
         progress: _Progress,
-    ) -> tuple[dict[str, Any], list[dict[str, Any]]]: ...
+    ) -> tuple[_Data, _Remarks]: ...
+    def envelope(
+        self,
+        question: _Data,
+        parcel: list[list[tuple[float, float]]],
+        protect: list[list[tuple[float, float, float]]],
+        ground: str | None,
+        progress: _Progress,
+    ) -> tuple[tuple[str, str, npt.NDArray[np.float32]], _Grid, _Remarks]: ...
+    def sun_calendar(
+        self, question: _Data, windows: list[list[float]], targets: _Data, progress: _Progress
+    ) -> tuple[_Data, _Remarks]: ...
     def glare(
         self,
-        keywords: dict[str, Any],
-        observers: npt.NDArray[np.float64],
-        days: dict[str, Any],
-        place: dict[str, Any],
+        question: _Data,
+        reflectors: list[list[float]],
+        names: list[str],
+        observers: _Places,
         progress: _Progress,
-    ) -> tuple[list[tuple[str, Any]], list[tuple[str, Any]], list[dict[str, Any]]]: ...
+    ) -> tuple[_NamedColumns, _NamedColumns, _Remarks]: ...
     def sunlight_report(
-        self,
-        path: str,
-        keywords: dict[str, Any],
-        days: dict[str, Any],
-        place: dict[str, Any],
-        progress: _Progress,
-    ) -> tuple[list[str], list[dict[str, Any]]]: ...
-    def envelope(
-        self, build: dict[str, Any], days: dict[str, Any], place: dict[str, Any], progress: _Progress
-    ) -> tuple[tuple[str, str, npt.NDArray[np.float32]], _Grid, list[dict[str, Any]]]: ...
-    def sun_positions(self, times: list[str], place: dict[str, Any]) -> list[tuple[float, float]]: ...
+        self, path: str, keywords: _Data, days: _Data, place: _Data, progress: _Progress
+    ) -> tuple[list[str], _Remarks]: ...
 
 def read(
     inputs: list[Any],

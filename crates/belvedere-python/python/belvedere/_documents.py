@@ -11,9 +11,9 @@ import numpy as np
 
 from . import _core
 from ._errors import wrong
-from ._inputs import as_list, check_finite, reporter
+from ._inputs import as_list, reporter
 from ._planning import _windows
-from ._questions import _cells, _days, _place
+from ._questions import days_of, given, place_of
 from ._remarks import warned
 from ._shapes import columns_of, in_system, rings_of
 from ._table import Table
@@ -96,26 +96,25 @@ class Documents:
         """
         if (windows is None) == (targets is None):
             raise wrong("windows and targets", "both given" if windows is not None else "missing", "give one of them")
-        check_finite(time_step_min=time_step_min, min_sun_elevation_deg=min_sun_elevation_deg)
         places = in_system(targets, "targets", self._core.crs.text)
-        columns, given = self._core.sun_calendar(
-            [] if windows is None else _windows(windows),
-            wanted(places, None, _cells(None, None, False, None), may_lack_heights=True),
-            _days(date, period, year, time_step_min, min_sun_elevation_deg),
-            rule,
-            _place(location, zone=zone, grid_north=grid_north),
-            reporter(progress),
+        question = given(
+            days=days_of(date, period, year, time_step_min, min_sun_elevation_deg),
+            rule=rule,
+            place=place_of(location, zone=zone, grid_north=grid_north),
         )
+        rows = [] if windows is None else _windows(windows)
+        chosen = wanted(places, None, {}, may_lack_heights=True)
+        columns, found = self._core.sun_calendar(question, rows, chosen, reporter(progress))
         days = np.array(columns.pop("date"), "datetime64[D]").astype("datetime64[s]")
         for name in ("start", "end"):
             columns[name] = days + np.round(columns[name] * 3600).astype("timedelta64[s]")
         for name in ("state", "object"):
             columns[name] = np.array(columns[name], object)
-        where = None if windows is None else np.array(_windows(windows))[:, :3]
+        where = None if windows is None else np.array(rows)[:, :3]
         at = coordinates(places) if where is None else where
         of_rows = None if at is None or at.ndim != 2 or at.shape[1] != 3 else at[columns["place"]]
         table = Table(columns, places=of_rows, crs=self._core.crs.text)
-        table.remarks = warned(given)
+        table.remarks = warned(found)
         return table
 
     def sunlight_report(
@@ -203,7 +202,6 @@ class Documents:
         path = os.fspath(path)
         if not path.lower().endswith(".html"):
             raise wrong("path", repr(path), "a report is a file .html")
-        check_finite(time_step_min=time_step_min)
         columns: dict[str, Any] = {} if windows is None else dict(columns_of(windows))
         names, rooms = ([str(text) for text in np.asarray(columns.pop(name, []), object)] for name in ("name", "room"))
         rings = []
@@ -214,7 +212,7 @@ class Documents:
             rings.append((str(name), outline))
         if planned is not None and not isinstance(planned, Documents):
             raise wrong("planned", f"a {type(planned).__name__}", "give a Scene, such as scene.with_added('plan.obj')")
-        said, given = self._core.sunlight_report(
+        said, found = self._core.sunlight_report(
             path,
             {
                 "windows": _windows(columns) if columns else [],
@@ -230,9 +228,9 @@ class Documents:
                 "language": language,
                 "today": datetime.date.today().isoformat(),
             },
-            _days(date, None, year, time_step_min),
-            _place(location, zone=zone, grid_north=grid_north),
+            days_of(date, None, year, time_step_min),
+            place_of(location, zone=zone, grid_north=grid_north),
             reporter(progress),
         )
-        warned(given)
+        warned(found)
         return said

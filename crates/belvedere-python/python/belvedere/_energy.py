@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
@@ -9,14 +10,13 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import wrong
-from ._inputs import check_finite, check_whole, check_words, location_pair, native_source, reporter
+from ._inputs import check_finite, check_whole, location_pair, native_source, reporter
 from ._keywords import Irradiance
-from ._questions import _cells
+from ._questions import cells_of, given, ground_of, place_of, switch, trees_of, word
 from ._raster import Rasters
 from ._remarks import warned
-from ._shapes import in_system
 from ._table import Table
-from ._targets import Rows, Targets, measures, wanted
+from ._targets import Rows, Targets, measured
 from ._types import (
     ClearSky,
     Ground,
@@ -141,29 +141,16 @@ class Energy:
         >>> bool(0 < np.nanmax(energy["kwh_m2"]) < 2500)
         True
         """
-        radiation = _radiation(
-            weather=weather,
-            clear_sky=clear_sky,
-            linke=linke,
-            year=year,
-            parts=parts_per_row,
-            sky_model=sky_model,
-            patch_division=patch_division,
-            albedo=albedo,
-            surroundings=surroundings,
-            sun_cell=sun_cell_deg,
-            months=months,
-            location=location,
-            interval=interval,
+        radiation = _radiation(weather, clear_sky, linke, year, parts_per_row, location)
+        summation = given(
+            params=_params(sky_model, patch_division, sun_cell_deg, albedo, surroundings, months),
+            place=place_of(location),
+            trees=trees_of(through_trees, leaves),
+            **switch(interval=interval),
         )
-        targets = in_system(targets, "targets", self._core.crs.text)
-        results = self._core.irradiance(
-            radiation,
-            wanted(targets, normals, _cells(cell, target_height, surface, ground), may_lack_heights=True),
-            {"share": through_trees, "leaves": leaves},
-            reporter(progress),
-        )
-        return measures(results, self._core.crs, targets)
+        cells = cells_of(cell, target_height, surface, ground)
+        asked = radiation, summation
+        return measured(self._core, self._core.irradiance, asked, targets, cells, progress, normals)
 
     def roof_planes(
         self,
@@ -257,42 +244,37 @@ class Energy:
         (True, 'clear sky of Ineichen & Perez; Linke turbidity 3; 2026')
         """
         check_finite(min_area=min_area, panel=panel)
-        radiation = _radiation(
-            weather=weather,
-            clear_sky=clear_sky,
-            linke=linke,
-            year=year,
-            parts=parts_per_row,
-            sky_model=sky_model,
-            patch_division=patch_division,
-            albedo=albedo,
-            surroundings=surroundings,
-            sun_cell=sun_cell_deg,
-            months=months,
-            location=location,
-            interval=interval,
+        check_whole(min_cells=min_cells)
+        system = given(
+            module_efficiency=module_efficiency,
+            temperature_coefficient=temperature_coefficient,
+            system_losses=system_losses,
+            inverter_efficiency=inverter_efficiency,
+            dc_ac_ratio=dc_ac_ratio,
         )
-        roofs = {
-            "min_area": min_area,
-            "panel": panel,
-            "min_cells": min_cells,
-            "ground": ground,
-            "footprints": None if footprints is None else native_source(footprints, None),
-            "module_efficiency": module_efficiency,
-            "temperature_coefficient": temperature_coefficient,
-            "system_losses": system_losses,
-            "inverter_efficiency": inverter_efficiency,
-            "dc_ac_ratio": dc_ac_ratio,
-            "hourly": hourly,
-        }
-        trees = {"share": through_trees, "leaves": leaves}
-        planes, buildings, hours, given = self._core.roof_planes(radiation, roofs, trees, reporter(progress))
+        roofs = given(min_area=min_area, panel=panel, min_cells=min_cells, system=system)
+        radiation = _radiation(weather, clear_sky, linke, year, parts_per_row, location)
+        summation = given(
+            params=_params(sky_model, patch_division, sun_cell_deg, albedo, surroundings, months),
+            place=place_of(location),
+            trees=trees_of(through_trees, leaves),
+            roofs=roofs,
+            **switch(interval=interval),
+        )
+        planes, buildings, hours, remarks = self._core.roof_planes(
+            radiation,
+            summation,
+            None if footprints is None else native_source(footprints, None),
+            ground_of(ground),
+            switch(hourly=hourly)["hourly"],
+            reporter(progress),
+        )
         found = _as_arrays(planes)
         middle = np.column_stack([found.pop(axis) for axis in "xyz"])
         table = Table(found, places=middle, crs=self._core.crs.text)
         table.buildings = Table(_as_arrays(buildings))
         table.hours = [Table(_as_arrays(of_plane)) for of_plane in hours]
-        table.remarks = warned(given)
+        table.remarks = warned(remarks)
         return table
 
 
@@ -306,16 +288,47 @@ def native_weather(weather: Any, location: tuple[float, float] | None) -> Any:
     return _as_file(weather, location) if hasattr(weather, "columns") else native_source(weather, None)
 
 
-def _radiation(**given: Any) -> dict[str, Any]:
-    """Where radiation comes from, as the native part takes it."""
-    check_finite(linke=given["linke"], albedo=given["albedo"], sun_cell_deg=given["sun_cell"])
-    check_words(**{name: given[name] for name in ("clear_sky", "sky_model", "surroundings")})
-    check_whole(year=given["year"], patch_division=given["patch_division"], parts_per_row=given["parts"])
-    location = location_pair(given["location"])
-    weather = given["weather"]
-    if weather is not None:
-        weather = native_weather(weather, location)
-    return given | {"weather": weather, "location": location}
+def _radiation(
+    weather: Any,
+    clear_sky: ClearSky | None,
+    linke: float | None,
+    year: int | None,
+    parts_per_row: int | None,
+    location: Location | None,
+) -> dict[str, Any]:
+    """The source of radiation as the native part takes it."""
+    check_finite(linke=linke)
+    check_whole(year=year, parts_per_row=parts_per_row)
+    model = word(ClearSky, clear_sky=clear_sky)
+    if linke is not None and model != "ineichen":
+        raise wrong("linke", "given", "it needs clear_sky='ineichen'")
+    if weather is not None and model is not None:
+        raise wrong("weather and clear_sky", "given together", "give one of them")
+    if weather is None and model is None:
+        raise wrong("radiation", "missing", "give weather='file.epw' or clear_sky='ineichen'")
+    file = None if weather is None else native_weather(weather, location_pair(location))
+    return {"weather": file, "clear_sky": model, "linke": linke, "year": year, "parts": parts_per_row}
+
+
+def _params(
+    sky_model: SkyModel | None,
+    patch_division: int | None,
+    sun_cell_deg: float | None,
+    albedo: float | None,
+    surroundings: Surroundings | None,
+    months: bool,
+) -> dict[str, Any]:
+    """How radiation is summed."""
+    check_finite(albedo=albedo, sun_cell_deg=sun_cell_deg)
+    check_whole(patch_division=patch_division)
+    return given(
+        sky=word(SkyModel, sky_model=sky_model),
+        patch_division=patch_division,
+        sun_cell=None if sun_cell_deg is None else math.radians(sun_cell_deg),
+        albedo=albedo,
+        surroundings=word(Surroundings, surroundings=surroundings),
+        grouping="months" if switch(months=months)["months"] else None,
+    )
 
 
 def _as_file(weather: Any, location: tuple[float, float] | None) -> tuple[str, bytes]:

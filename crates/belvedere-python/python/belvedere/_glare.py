@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 
 from . import _core
 from ._inputs import check_finite, map_places, reporter, table_columns
 from ._outlook import _OBSERVERS
-from ._questions import _days, _place
+from ._questions import days_of, given, ground_of, place_of
 from ._remarks import warned
 from ._table import Table
 from ._types import Columns, Day, Ground, Location, Period, Places, Progress, Zone
@@ -99,34 +98,23 @@ class Glare:
         >>> seen["hours"].shape
         (1,)
         """
-        check_finite(
-            time_step_min=time_step_min,
-            min_sun_elevation_deg=min_sun_elevation_deg,
-            scatter_deg=scatter_deg,
-            from_sun_deg=from_sun_deg,
-            observer_height=observer_height,
-        )
+        check_finite(scatter_deg=scatter_deg, from_sun_deg=from_sun_deg, observer_height=observer_height)
         columns = table_columns(
             reflectors, "reflectors", (*_NUMBERS, "name"), ("x", "y", "z", "azimuth", "width", "height"), ("name",)
         )
         names = [str(name) for name in columns.pop("name", ())]
         columns.setdefault("tilt", np.full(len(columns["x"]), 90.0))
         rows = np.column_stack([columns[name] for name in _NUMBERS])
-        keywords: dict[str, Any] = {
-            "reflectors": rows.tolist(),
-            "names": names,
-            "observer_height": observer_height,
-            "ground": ground,
-            "scatter_deg": scatter_deg,
-            "from_sun_deg": from_sun_deg,
-        }
-        pairs, by_hour, given = self._core.glare(
-            keywords,
-            map_places(observers, "observers", _OBSERVERS, crs=self._core.crs.text),
-            _days(date, period, year, time_step_min, min_sun_elevation_deg),
-            _place(location, zone=zone, grid_north=grid_north),
-            reporter(progress),
+        question = given(
+            observer_height=observer_height,
+            ground=ground_of(ground),
+            days=days_of(date, period, year, time_step_min, min_sun_elevation_deg),
+            place=place_of(location, zone=zone, grid_north=grid_north),
+            scatter_deg=scatter_deg,
+            from_sun_deg=from_sun_deg,
         )
+        places = map_places(observers, "observers", _OBSERVERS, crs=self._core.crs.text)
+        pairs, by_hour, remarks = self._core.glare(question, rows.tolist(), names, places, reporter(progress))
         found = dict(pairs)
         for name in ("first_day", "last_day"):
             found[name] = np.array([day or "NaT" for day in found[name]], "datetime64[D]")
@@ -138,5 +126,5 @@ class Glare:
             Table({name: values[hours["observer"] == one] for name, values in hours.items() if name != "observer"})
             for one in range(1, count + 1)
         ]
-        table.remarks = warned(given)
+        table.remarks = warned(remarks)
         return table

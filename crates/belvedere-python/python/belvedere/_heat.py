@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, overload
 
 from . import _core
 from ._energy import native_weather
-from ._inputs import check_finite, location_pair, number_pair, reporter
+from ._inputs import check_finite, check_whole, location_pair, number_pair
 from ._keywords import Heat as HeatKeywords
-from ._questions import _cells, _days, _place
+from ._questions import cells_of, days_of, given, place_of, switch, trees_of, word
 from ._raster import Rasters
-from ._shapes import in_system
 from ._table import Table
-from ._targets import Rows, Targets, measures, wanted
+from ._targets import Rows, Targets, measured
 from ._types import (
     Body,
     Day,
@@ -146,25 +145,19 @@ class Heat:
         '°C'
         """
         check_finite(ground_warming=ground_warming, wind_factor=wind_factor)
+        check_whole(parts_per_row=parts_per_row)
         hours = None if between is None else number_pair(between, "between", "give two hours, such as (10, 17)")
-        given = {
-            "weather": native_weather(weather, location_pair(location)),
-            "between": hours,
-            "body": body,
-            "ground_cover": ground_cover,
-            "ground_warming": ground_warming,
-            "wind_factor": wind_factor,
-            "parts": parts_per_row,
-            "by_hour": by_hour,
-            "pet": pet,
-        }
-        targets = in_system(targets, "targets", self._core.crs.text)
-        results = self._core.heat(
-            given,
-            _days(date, period, None, None),
-            _place(location, zone=zone),
-            wanted(targets, None, _cells(cell, target_height, surface, ground), may_lack_heights=True),
-            {"share": through_trees, "leaves": leaves},
-            reporter(progress),
+        question = given(
+            days=days_of(date, period, None),
+            hours=hours,
+            place=place_of(location, zone=zone),
+            body=word(Body, body=body),
+            surfaces=given(ground=word(GroundCover, ground_cover=ground_cover), warming=ground_warming),
+            trees=trees_of(through_trees, leaves),
+            parts=parts_per_row,
+            wind_factor=wind_factor,
+            **switch(by_hour=by_hour, pet=pet),
         )
-        return measures(results, self._core.crs, targets)
+        asked = {"heat": question}, native_weather(weather, location_pair(location))
+        cells = cells_of(cell, target_height, surface, ground)
+        return measured(self._core, self._core.on_targets, asked, targets, cells, progress)

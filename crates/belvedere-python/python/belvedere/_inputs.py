@@ -289,13 +289,6 @@ def zone_text(zone: Zone | None) -> str | None:
     return f"{'-' if minutes < 0 else '+'}{abs(minutes) // 60:02}:{abs(minutes) % 60:02}"
 
 
-def check_words(**values: object) -> None:
-    """Refuses what should be a word and is none."""
-    for name, value in values.items():
-        if value is not None and not isinstance(value, str):
-            raise wrong(name, repr(value), "give a word; help() lists them")
-
-
 def check_whole(**values: object) -> None:
     """Refuses what should be a whole number and is none."""
     for name, value in values.items():

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import operator
-import warnings
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._errors import BelvedereWarning, wrong
-from ._inputs import check_finite, check_whole, check_words, map_places, number_pair, place, reporter
-from ._questions import _place
+from ._errors import wrong
+from ._inputs import check_finite, check_whole, map_places, number_pair, place, reporter
+from ._questions import earth, given, ground_of, how_sure, north, switch, unproven_as
 from ._raster import Raster
 from ._remarks import warned
 from ._shapes import is_single
@@ -127,21 +125,7 @@ class Outlook:
         True
         >>> mountains = scene.with_terrain("dtm.tif").viewshed(standing, far=True)  # doctest: +SKIP
         """
-        looking = _looking(
-            observer_height=observer_height,
-            target_height=target_height,
-            cell=cell,
-            ground=ground,
-            azimuth_range=_range(azimuth_range_deg, "azimuth_range_deg"),
-            elevation_range=_range(elevation_range_deg, "elevation_range_deg"),
-            min_distance=min_distance,
-            max_distance=max_distance,
-            curvature=curvature,
-            refraction=refraction,
-            is_reverse=target is not None,
-            is_far=far,
-        )
-        if sum(given is not None for given in (observers, target, spread)) > 1:
+        if sum(one is not None for one in (observers, target, spread)) > 1:
             raise wrong("observers, target and spread", "given together", "give one of them")
         places: npt.NDArray[np.float64] | int
         if spread is not None:
@@ -157,14 +141,26 @@ class Outlook:
             places = map_places(target, "target", "give x and y, or x, y and z", crs=self._core.crs.text)
             if len(places) != 1:
                 raise wrong("target", f"{len(places)} places", "give one")
-        bands, names, text, grid, given = self._core.viewshed(
-            places,
-            looking,
-            _place(None, grid_north=grid_north),
-            unproven,
-            {"probability": probability, "certain": certain},
-            reporter(progress),
+        check_finite(observer_height=observer_height, target_height=target_height, cell=cell, min_distance=min_distance)
+        question = given(
+            reverse=target is not None,
+            observer_height=observer_height,
+            target_height=target_height,
+            limits=given(
+                azimuth_range_deg=_range(azimuth_range_deg, "azimuth_range_deg"),
+                elevation_range_deg=_range(elevation_range_deg, "elevation_range_deg"),
+                min_distance=min_distance,
+                max_distance=max_distance,
+            ),
+            north=north(grid_north),
+            earth=earth(curvature, refraction),
+            unproven=unproven_as(unproven),
+            how_sure=how_sure(probability, certain),
+            cell=cell,
+            ground=ground_of(ground),
+            targets=["far-terrain" if far else "cells"],
         )
+        bands, names, text, grid, found = self._core.viewshed(question, places, reporter(progress))
         made = {
             name: raster(band, grid, self._core.crs, name=name, nodata=no_value, unit="1")
             for (band, no_value), name in zip(bands, names)
@@ -173,7 +169,7 @@ class Outlook:
         seen.description = text
         seen.unproven, seen.uncertain = made.get("unproven"), made.get("uncertain")
         seen.probability = made.get("probability", made.get("expected"))
-        seen.remarks = warned(given)
+        seen.remarks = warned(found)
         return seen
 
     def depth_map(
@@ -232,9 +228,9 @@ class Outlook:
         >>> scene.depth_map(eye=eye, width=256).shape
         (128, 256)
         """
-        given = [name for name, v in (("sun", sun), ("direction", direction), ("eye", eye)) if v is not None]
-        if len(given) != 1:
-            raise wrong("view", " and ".join(given) or "missing", "give one of sun, direction and eye")
+        ways = [name for name, v in (("sun", sun), ("direction", direction), ("eye", eye)) if v is not None]
+        if len(ways) != 1:
+            raise wrong("view", " and ".join(ways) or "missing", "give one of sun, direction and eye")
         check_finite(pixel=pixel, fov_deg=fov_deg)
         check_whole(width=width)
         camera = {
@@ -247,8 +243,8 @@ class Outlook:
             "size": None if size is None else [int(side) for side in number_pair(size, "size", _SIZE)],
             "width": width,
         }
-        depth, _, given_remarks = self._core.depth_map(camera, _place(None, grid_north=grid_north), reporter(progress))
-        warned(given_remarks)
+        depth, _, found = self._core.depth_map(camera, north(grid_north), reporter(progress))
+        warned(found)
         return depth
 
     def horizon(
@@ -303,12 +299,19 @@ class Outlook:
         >>> len(azimuths), bool((elevations <= 90).all())
         (360, True)
         """
-        looking = _looking(observer_height=observer_height, ground=ground, curvature=curvature, refraction=refraction)
-        check_finite(angle_step_deg=angle_step_deg)
+        check_finite(observer_height=observer_height, angle_step_deg=angle_step_deg)
+        question = given(
+            observer_height=observer_height,
+            ground=ground_of(ground),
+            angle_step_deg=angle_step_deg,
+            earth=earth(curvature, refraction),
+            north=north(grid_north),
+            below="keep",
+            **switch(interval=interval),
+        )
         places = map_places(observers, "observers", _OBSERVERS, crs=self._core.crs.text)
-        place = _place(None, grid_north=grid_north)
-        found, count, given = self._core.horizon(places, angle_step_deg, looking, place, interval, reporter(progress))
-        warned(given)
+        found, count, remarks = self._core.horizon(question, places, reporter(progress))
+        warned(remarks)
         azimuths = 360.0 * np.arange(count) / count
         elevations = found.reshape((len(places), count, 3) if interval else (len(places), count))
         return azimuths, elevations[0] if is_single(observers) else elevations
@@ -373,38 +376,23 @@ class Outlook:
         >>> bool(space["volume_m3"][0] > 0), space.panoramas[0].shape
         (True, (180, 360))
         """
-        looking = _looking(observer_height=observer_height, max_distance=max_distance, ground=ground)
-        check_finite(angle_step_deg=angle_step_deg, min_jump=min_jump)
-        columns, panoramas, given = self._core.isovist(
-            map_places(observers, "observers", _OBSERVERS, crs=self._core.crs.text),
-            angle_step_deg,
-            min_jump,
-            looking,
-            _place(None, grid_north=grid_north),
-            interval,
-            reporter(progress),
+        check_finite(observer_height=observer_height, angle_step_deg=angle_step_deg, min_jump=min_jump)
+        question = given(
+            observer_height=observer_height,
+            ground=ground_of(ground),
+            north=north(grid_north),
+            max_distance=max_distance,
+            angle_step_deg=angle_step_deg,
+            min_jump=min_jump,
+            **switch(interval=interval),
         )
+        eyes = map_places(observers, "observers", _OBSERVERS, crs=self._core.crs.text)
+        columns, panoramas, found = self._core.isovist(question, eyes, reporter(progress))
         places = columns.pop("place")
         table = Table(columns, places=places, crs=self._core.crs.text, panoramas=panoramas)
-        table.remarks = warned(given)
+        table.remarks = warned(found)
         return table
-
-
-def _looking(**given: Any) -> dict[str, Any]:
-    """How observers look, as the native part takes it."""
-    names = ("observer_height", "target_height", "cell", "ground", "azimuth_range", "elevation_range")
-    more = ("min_distance", "max_distance", "curvature", "refraction")
-    check_words(ground=given.get("ground"), curvature=given.get("curvature"))
-    numbers = ("observer_height", "target_height", "cell", "min_distance", "refraction")
-    check_finite(**{name: given.get(name) for name in numbers})
-    switches = ("is_reverse", "is_far")
-    return {name: given.get(name) for name in names + more} | {name: bool(given.get(name)) for name in switches}
 
 
 def _range(value: object, what: str) -> tuple[float, float] | None:
     return None if value is None else number_pair(value, what, "give two angles in degrees, such as (300, 60)")
-
-
-def _warn(sentences: list[str]) -> None:
-    for sentence in sentences:
-        warnings.warn(sentence, BelvedereWarning)

@@ -13,13 +13,26 @@ from ._errors import wrong
 from ._inputs import as_list, check_finite, check_whole, map_places, number_pair, reporter, table_columns
 from ._keywords import Landmark as LandmarkKeywords
 from ._mesh import Mesh, native_mesh
-from ._outlook import _OBSERVERS, _looking
-from ._questions import _DIRECTION, _days, _place
+from ._outlook import _OBSERVERS
+from ._questions import (
+    _DIRECTION,
+    cells_of,
+    days_of,
+    earth,
+    given,
+    ground_of,
+    north,
+    place_of,
+    sky_parts,
+    switch,
+    unproven_as,
+    word,
+)
 from ._raster import Raster, Rasters
 from ._remarks import warned
 from ._shapes import is_single, rings_of
 from ._table import Table
-from ._targets import measures, raster
+from ._targets import measures, raster, wanted
 from ._types import (
     Columns,
     Curvature,
@@ -143,25 +156,26 @@ class Planning:
         >>> bool(0 <= views["visible_share"][0] <= 1)
         True
         """
-        what = _landmark(mesh, target_class, target_polygon, objects, spacing, seed, self._core.crs.text)
-        looking = _looking(
+        shape, thing = _landmark(mesh, target_class, target_polygon, objects, spacing, seed, self._core.crs.text)
+        check_finite(observer_height=observer_height, cell=cell)
+        question = given(
+            shape=shape,
             observer_height=observer_height,
             cell=cell,
-            ground=ground,
+            ground=ground_of(ground),
             max_distance=max_distance,
-            curvature=curvature,
-            refraction=refraction,
+            earth=earth(curvature, refraction),
+            unproven=unproven_as(unproven),
+            **switch(probability=probability),
         )
         if observers is not None and cell is not None:
             raise wrong("cell", cell, "it applies only to a grid; leave out observers, or leave this out")
         places = None if observers is None else map_places(observers, "observers", _OBSERVERS, crs=self._core.crs.text)
-        columns, grid, given, standing = self._core.landmark(
-            what, places, looking, unproven, probability, reporter(progress)
-        )
+        columns, grid, found, standing = self._core.landmark(question, thing, places, reporter(progress))
         if places is None:
-            return measures((columns, grid, None, given, None), self._core.crs, None)
+            return measures((columns, grid, None, found, None), self._core.crs, None)
         table = Table({name: values for name, _, values, *_ in columns}, places=standing, crs=self._core.crs.text)
-        table.remarks = warned(given)
+        table.remarks = warned(found)
         return table
 
     def protected_view(
@@ -227,11 +241,13 @@ class Planning:
         >>> bool(np.nanmin(limits["height"].values) >= 0)
         True
         """
-        what = _landmark(mesh, target_class, target_polygon, objects, spacing, seed, self._core.crs.text)
-        looking = _looking(observer_height=observer_height, cell=cell, ground=ground, max_distance=max_distance)
+        shape, thing = _landmark(mesh, target_class, target_polygon, objects, spacing, seed, self._core.crs.text)
+        check_finite(observer_height=observer_height)
+        question = given(observer_height=observer_height, max_distance=max_distance, unproven=unproven_as(unproven))
         places = map_places(observers, "observers", _OBSERVERS, crs=self._core.crs.text)
-        columns, grid, given = self._core.protected_view(what, places, looking, unproven, reporter(progress))
-        remarks = warned(given)
+        cells = wanted(None, None, cells_of(cell, None, False, ground))
+        columns, grid, said = self._core.protected_view(question, shape, thing, places, cells, reporter(progress))
+        remarks = warned(said)
         nan = float("nan")
         crs = self._core.crs
         found = {
@@ -310,22 +326,24 @@ class Planning:
         """
         check_finite(spacing=spacing)
         check_whole(seed=seed, directions=directions)
-        is_mesh = isinstance(windows, (str, os.PathLike, Mesh))
-        if not is_mesh and (spacing is not None or as_list(objects)):
-            raise wrong("spacing and objects", "given", "they apply only to a mesh; leave them out")
-        facades: dict[str, Any] = {
-            "windows": [] if isinstance(windows, (str, os.PathLike, Mesh)) else _windows(windows),
-            "mesh": native_mesh(windows) if isinstance(windows, (str, os.PathLike, Mesh)) else None,
-            "objects": as_list(objects),
-            "spacing": spacing,
-            "seed": seed,
-            "directions": directions,
-            "classes": [] if classes is None else _classes(classes),
-        }
-        columns, places, names, buildings, given = self._core.window_views(
-            facades, _place(None, grid_north=grid_north), unproven, reporter(progress)
+        question = given(
+            north=north(grid_north),
+            spacing=spacing,
+            seed=seed,
+            directions=directions,
+            classes=None if classes is None else _classes(classes),
+            unproven=unproven_as(unproven),
         )
-        remarks = warned(given)
+        rows, mesh = [], None
+        if isinstance(windows, (str, os.PathLike, Mesh)):
+            mesh = native_mesh(windows)
+        elif spacing is not None or as_list(objects):
+            raise wrong("spacing and objects", "given", "they apply only to a mesh; leave them out")
+        else:
+            rows = _windows(windows)
+        asked = question, rows, mesh, as_list(objects)
+        columns, places, names, buildings, said = self._core.window_views(*asked, reporter(progress))
+        remarks = warned(said)
         found = {"object": np.array(names, object)} if names else {}
         found |= {name: values for name, _, values in columns}
         objects_table = None
@@ -404,21 +422,20 @@ class Planning:
         """
         if (route is None) == (windows is None):
             raise wrong("route and windows", "both given" if route is not None else "missing", "give one of them")
-        check_finite(distance_step_m=distance_step_m, target_height=target_height, time_step_min=time_step_min)
-        walks: dict[str, Any] = {
-            "routes": [] if route is None else [_line(route, "route", self._core.crs.text, least=2)],
-            "windows": [] if windows is None else _windows(windows),
-            "step": distance_step_m,
-            "height": target_height,
-            "directions": directions,
-            "ground": ground,
-        }
-        place = _place(location, zone=zone, grid_north=grid_north)
-        days = _days(date, period, year, time_step_min)
-        columns, given = self._core.comfort(walks, days, place, reporter(progress))
+        check_finite(distance_step_m=distance_step_m, target_height=target_height)
+        question = given(
+            days=days_of(date, period, year, time_step_min),
+            place=place_of(location, zone=zone, grid_north=grid_north),
+            sky=sky_parts(directions),
+            distance_step_m=distance_step_m,
+            target_height=target_height,
+        )
+        routes = [] if route is None else [_line(route, "route", self._core.crs.text, least=2)]
+        rows = [] if windows is None else _windows(windows)
+        columns, found = self._core.comfort(question, routes, rows, ground_of(ground), reporter(progress))
         places = columns.pop("place")
         table = Table(columns, places=places, crs=self._core.crs.text)
-        table.remarks = warned(given)
+        table.remarks = warned(found)
         return table
 
     def envelope(
@@ -497,35 +514,33 @@ class Planning:
         >>> bool(np.nanmax(height) <= 20)
         True
         """
-        check_finite(
-            time_step_min=time_step_min, fence_height=fence_height, spacing=spacing, max_height=max_height, cell=cell
-        )
-        suns: list[tuple[float, float]] = []
+        check_finite(fence_height=fence_height, spacing=spacing, max_height=max_height, cell=cell)
+        hours = None if between is None else number_pair(between, "between", "give two hours, such as (9, 15)")
+        days = days_of(date, period, year, time_step_min)
+        suns: dict[str, Any] = {"days": given(days=days, hours=hours)}
         if sun is not None:
             if date is not None or period is not None:
                 raise wrong("sun and days", "given together", "give one of them")
-            suns = [number_pair(one, "sun", _DIRECTION) for one in np.atleast_2d(np.asarray(sun, np.float64))]
+            directions = np.atleast_2d(np.asarray(sun, np.float64))
+            suns = {"directions": [number_pair(one, "sun", _DIRECTION) for one in directions]}
         crs = self._core.crs.text
         lines = [protect]
         if isinstance(protect, (list, tuple)) and not any(map(is_single, protect)):
             lines = list(protect)
-        build: dict[str, Any] = {
-            "parcel": rings_of(parcel, "parcel", crs),
-            "protect": [_line(line, "protect", crs) for line in lines],
-            "suns": suns,
-            "between": None if between is None else number_pair(between, "between", "give two hours, such as (9, 15)"),
-            "fence_height": fence_height,
-            "spacing": spacing,
-            "max_height": max_height,
-            "credit_shade": credit_shade,
-            "cell": cell,
-            "ground": ground,
-        }
-        place = _place(location, zone=zone, grid_north=grid_north)
-        days = _days(date, period, year, time_step_min)
-        (name, text, values), grid, given = self._core.envelope(build, days, place, reporter(progress))
+        question = given(
+            suns=suns,
+            place=place_of(location, zone=zone, grid_north=grid_north),
+            fence_height=fence_height,
+            spacing=spacing,
+            cell=cell,
+            params=given(ceiling=max_height),
+            **switch(credit_shade=credit_shade),
+        )
+        protected = [_line(line, "protect", crs) for line in lines]
+        asked = question, rings_of(parcel, "parcel", crs), protected, ground_of(ground)
+        (name, text, values), grid, found = self._core.envelope(*asked, reporter(progress))
         height = raster(values, grid, self._core.crs, name=name, description=text, nodata=float("nan"), unit="m")
-        height.remarks = warned(given)
+        height.remarks = warned(found)
         return height
 
 
@@ -543,34 +558,35 @@ def _landmark(
     spacing: float | None,
     seed: int,
     crs: str | None,
-) -> dict[str, Any]:
-    """The landmark as the native part takes it."""
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The shape of a landmark, and the object that has it."""
     check_finite(spacing=spacing)
-    given = sum(what is not None for what in (mesh, target_class, target_polygon))
-    if given != 1:
-        raise wrong("landmark", f"{given} given", "give one of mesh, target_class and target_polygon")
+    count = sum(what is not None for what in (mesh, target_class, target_polygon))
+    if count != 1:
+        raise wrong("landmark", f"{count} given", "give one of mesh, target_class and target_polygon")
     check_whole(target_class=target_class, seed=seed)
-    return {
+    shape: dict[str, Any] = {"inside": {}} if target_class is None else {"class": target_class}
+    if mesh is not None:
+        shape = {"mesh": given(spacing=spacing, seed=seed)}
+    return shape, {
         "mesh": None if mesh is None else native_mesh(mesh),
         "objects": as_list(objects),
-        "spacing": spacing,
-        "seed": seed,
-        "class": target_class,
-        "polygon": None if target_polygon is None else rings_of(target_polygon, "target_polygon", crs),
+        "polygon": [] if target_polygon is None else rings_of(target_polygon, "target_polygon", crs),
     }
 
 
-def _classes(meanings: Mapping[int, str]) -> list[tuple[int, str]]:
+def _classes(meanings: Mapping[int, Kind]) -> list[tuple[int, str | None]]:
     for class_ in meanings:
         if int(class_) != class_ or not 0 <= class_ <= 255:
             raise wrong("classes", repr(class_), "each is the class of points, 0 to 255")
-    return [(int(class_), name) for class_, name in meanings.items()]
+    return [(int(class_), word(Kind, classes=name)) for class_, name in meanings.items()]
 
 
 def _windows(columns: Columns) -> list[list[float]]:
     known = ("x", "y", "z", "azimuth", "tilt", "width", "height")
-    given = table_columns(columns, "windows", known, known[:4])
+    columns = table_columns(columns, "windows", known, known[:4])
     usual = {"tilt": 90.0}
-    full = {name: np.full(len(given["x"]), usual.get(name, float("nan"))) for name in known}
-    full |= given
-    return [[float(value) for value in row] for row in np.column_stack([full[name] for name in known])]
+    full = {name: np.full(len(columns["x"]), usual.get(name, float("nan"))) for name in known}
+    full |= columns
+    rows: list[list[float]] = np.column_stack([full[name] for name in known]).tolist()
+    return rows

@@ -13,6 +13,7 @@ from ._cloud import Cloud
 from ._inputs import check_finite, pairs_of, place, reporter
 from ._keywords import LineOfSight
 from ._mesh import Mesh
+from ._questions import earth, given, ground_of, how_sure, unproven_as
 from ._remarks import Remark, warned
 from ._shapes import in_system, is_single
 from ._table import Table
@@ -126,14 +127,16 @@ class Sights:
         <belvedere.Table: 1 rows of object, area_m2, visible_m2, visible_share, unproven_m2, standard_error_m2>
         """
         if isinstance(targets, Mesh):
-            faces, given = self._core.seen_of_mesh(place(eye, "eye"), targets._faces, unproven, reporter(progress))
+            faces, found = self._core.seen_of_mesh(
+                place(eye, "eye"), targets._faces, unproven_as(unproven), reporter(progress)
+            )
             table = face_table(faces)
-            table.remarks = warned(given)
+            table.remarks = warned(found)
             return table
         targets = in_system(targets, "targets", self._core.crs.text)
         chosen = wanted(targets, None, {})
-        answers, given = self._core.visible(place(eye, "eye"), chosen, unproven, reporter(progress))
-        warned(given)
+        answers, found = self._core.visible(place(eye, "eye"), chosen, unproven_as(unproven), reporter(progress))
+        warned(found)
         return answers
 
     @overload
@@ -214,26 +217,20 @@ class Sights:
         <belvedere.Table: ... rows of answer, first_block_range_m, unproven_m, block_x, block_y, block_z,
         block_ball, block_source, block_surface>
         """
-        check_finite(refraction=refraction, frequency_ghz=frequency_ghz)
-        check_finite(observer_height=observer_height, target_height=target_height)
+        check_finite(frequency_ghz=frequency_ghz, observer_height=observer_height, target_height=target_height)
         is_one = is_single(observer) and is_single(target)
         observers, targets = pairs_of(observer, target, self._core.crs.text)
-        ends = {"observer_height": observer_height, "target_height": target_height, "ground": ground}
-        columns, standing, given = self._core.lines_of_sight(
-            observers,
-            targets,
-            ends,
-            unproven,
-            {"probability": probability, "certain": certain},
-            curvature,
-            refraction,
-            frequency_ghz,
-            None,
-            reporter(progress),
+        question = given(
+            observer_height=observer_height,
+            target_height=target_height,
+            ground=ground_of(ground),
+            earth=earth(curvature, refraction),
+            frequency_ghz=frequency_ghz,
+            unproven=unproven_as(unproven),
+            how_sure=how_sure(probability, certain),
         )
-        remarks = warned(given)
-        if "block_surface" in columns:
-            columns["block_surface"] = np.asarray(columns["block_surface"])
+        columns, standing, found = self._sight_columns(question, observers, targets, None, progress)
+        remarks = warned(found)
         if not is_one:
             # heights that were given, to their last digit
             np.copyto(standing, targets, where=~np.isnan(targets))
@@ -303,23 +300,32 @@ class Sights:
         >>> [(int(a), int(b)) for a, b in zip(links["a"], links["b"])]
         [(0, 1), (0, 2), (1, 2)]
         """
-        check_finite(refraction=refraction, frequency_ghz=frequency_ghz, max_distance=max_distance)
-        check_finite(observer_height=observer_height)
+        check_finite(frequency_ghz=frequency_ghz, max_distance=max_distance, observer_height=observer_height)
         given_places, _ = pairs_of(places, places, self._core.crs.text)
-        columns, standing, given = self._core.lines_of_sight(
-            given_places,
-            None,
-            {"observer_height": observer_height, "target_height": None, "ground": ground},
-            unproven,
-            {"probability": probability, "certain": certain},
-            curvature,
-            refraction,
-            frequency_ghz,
-            max_distance,
-            reporter(progress),
+        question = given(
+            observer_height=observer_height,
+            ground=ground_of(ground),
+            earth=earth(curvature, refraction),
+            frequency_ghz=frequency_ghz,
+            unproven=unproven_as(unproven),
+            how_sure=how_sure(probability, certain),
         )
+        columns, standing, found = self._sight_columns(question, given_places, None, max_distance, progress)
+        table = Table(columns, places=standing, crs=self._core.crs.text)
+        table.remarks = warned(found)
+        return table
+
+    def _sight_columns(
+        self,
+        question: dict[str, Any],
+        observers: npt.NDArray[np.float64],
+        targets: npt.NDArray[np.float64] | None,
+        max_distance: float | None,
+        progress: Progress,
+    ) -> tuple[dict[str, Any], npt.NDArray[np.float64], list[dict[str, Any]]]:
+        """Columns of lines of sight, where they end, and remarks."""
+        asked = question, observers, targets, max_distance
+        columns, standing, found = self._core.lines_of_sight(*asked, reporter(progress))
         if "block_surface" in columns:
             columns["block_surface"] = np.asarray(columns["block_surface"])
-        table = Table(columns, places=standing, crs=self._core.crs.text)
-        table.remarks = warned(given)
-        return table
+        return columns, standing, found

@@ -11,22 +11,15 @@ import numpy.typing as npt
 from . import _core
 from ._cloud import Cloud
 from ._errors import wrong
-from ._inputs import (
-    as_list,
-    check_finite,
-    check_whole,
-    check_words,
-    reporter,
-    times,
-)
+from ._inputs import as_list, check_finite, reporter, times
 from ._keywords import Shadow, SkyView, SunHours
 from ._mesh import Mesh
-from ._questions import _cells, _days, _place, _suns
+from ._questions import cells_of, days_of, given, how_sure, place_of, sky_parts, suns_of, switch, trees_of
 from ._raster import Raster, Rasters, RasterSeries
 from ._remarks import warned
 from ._shapes import in_system
 from ._table import Table
-from ._targets import Results, Rows, Targets, measures, raster, wanted
+from ._targets import Results, Rows, Targets, measured, measures, raster, wanted
 from ._types import (
     Day,
     Direction,
@@ -250,24 +243,19 @@ class Sunlight:
         >>> lit.shape == (len(targets),)
         True
         """
-        suns, is_one = _suns(sun, time)
+        suns, is_one = suns_of(sun, time)
+        question = given(
+            suns=suns,
+            place=place_of(location, grid_north=grid_north),
+            edges="soft" if soft else "hard",
+            trees=trees_of(through_trees, leaves),
+            how_sure=how_sure(probability, certain),
+            **switch(casters=casters),
+        )
         targets = in_system(targets, "targets", self._core.crs.text)
-        chosen = wanted(
-            targets,
-            normals,
-            _cells(cell, target_height, surface, ground),
-            may_lack_heights=True,
-        )
-        results = self._core.shadow(
-            suns,
-            _place(location, grid_north=grid_north),
-            chosen,
-            "soft" if soft else "hard",
-            {"share": through_trees, "leaves": leaves},
-            {"probability": probability, "certain": certain},
-            casters,
-            reporter(progress),
-        )
+        cells = cells_of(cell, target_height, surface, ground)
+        chosen = wanted(targets, normals, cells, may_lack_heights=True)
+        results = self._core.shadow(question, chosen, reporter(progress))
         has_columns = probability or certain is not None or casters
         made = [self._lit(result, targets, has_columns) for result in results]
         if is_one:
@@ -276,9 +264,9 @@ class Sunlight:
 
     def _lit(self, results: Results, targets: Targets, has_columns: bool) -> Any:
         """The share of one sun."""
-        columns, grid, faces, given, _ = results
+        columns, grid, faces, remarks, _ = results
         if grid is None and faces is None and not has_columns:
-            warned(given)
+            warned(remarks)
             return columns[0][2]
         found = measures(results, self._core.crs, targets)
         if isinstance(found, Table):
@@ -384,23 +372,18 @@ class Sunlight:
         >>> bool(np.nanmax(sun["sun_hours"]) < 17)
         True
         """
-        check_finite(
-            time_step_min=time_step_min,
-            min_sun_elevation_deg=min_sun_elevation_deg,
+        check_finite(sun_tolerance_deg=sun_tolerance_deg)
+        question = given(
+            days=days_of(date, period, year, time_step_min, min_sun_elevation_deg),
+            rules=as_list(rule),
+            place=place_of(location, zone=zone, sun_elevation=sun_elevation, air=air),
             sun_tolerance_deg=sun_tolerance_deg,
+            trees=trees_of(through_trees, leaves),
+            **switch(interval=interval),
         )
-        days = _days(date, period, year, time_step_min, min_sun_elevation_deg, sun_tolerance_deg)
-        targets = in_system(targets, "targets", self._core.crs.text)
-        results = self._core.sun_hours(
-            days,
-            as_list(rule),
-            _place(location, zone=zone, sun_elevation=sun_elevation, air=air),
-            wanted(targets, normals, _cells(cell, target_height, surface, ground), may_lack_heights=True),
-            {"share": through_trees, "leaves": leaves},
-            interval,
-            reporter(progress),
-        )
-        return measures(results, self._core.crs, targets)
+        cells = cells_of(cell, target_height, surface, ground)
+        asked = {"sun-hours": question}, None
+        return measured(self._core, self._core.on_targets, asked, targets, cells, progress, normals)
 
     def hourly_sun(
         self,
@@ -454,16 +437,16 @@ class Sunlight:
         True
         """
         check_finite(sun_tolerance_deg=sun_tolerance_deg)
-        bands, grid, given = self._core.hourly_sun(
-            year,
-            _days(None, None, year, None, None, sun_tolerance_deg),
-            _place(location, zone=zone, sun_elevation=sun_elevation, air=air),
-            wanted(None, None, _cells(cell, target_height, surface, ground)),
-            reporter(progress),
+        question = given(
+            days=days_of(None, None, year),
+            place=place_of(location, zone=zone, sun_elevation=sun_elevation, air=air),
+            sun_tolerance_deg=sun_tolerance_deg,
         )
+        cells = wanted(None, None, cells_of(cell, target_height, surface, ground))
+        bands, grid, found = self._core.hourly_sun(year, question, cells, reporter(progress))
         if grid is None:
             raise wrong("targets", "no cells", "give none")
-        remarks = warned(given)
+        remarks = warned(found)
         text = "days with sun in the middle of an hour, a bit for each"
         named = {"nodata": 2.0**31, "unit": "1", "description": text}
         made = Rasters({name: raster(days, grid, self._core.crs, name=name, **named) for name, days in bands})
@@ -531,18 +514,10 @@ class Sunlight:
         >>> sky["sky_view_factor"].shape == (len(targets),)
         True
         """
-        check_whole(directions=directions)
-        check_words(patches=patches)
-        targets = in_system(targets, "targets", self._core.crs.text)
-        results = self._core.sky_view(
-            directions,
-            patches,
-            wanted(targets, normals, _cells(cell, target_height, surface, ground), may_lack_heights=True),
-            {"share": through_trees, "leaves": None},
-            interval,
-            reporter(progress),
-        )
-        return measures(results, self._core.crs, targets)
+        question = given(sky=sky_parts(directions, patches), trees=trees_of(through_trees), **switch(interval=interval))
+        cells = cells_of(cell, target_height, surface, ground)
+        asked = {"sky-view": question}, None
+        return measured(self._core, self._core.on_targets, asked, targets, cells, progress, normals)
 
     def sun_position(self, time: Time | Iterable[Time], *, location: Location | None = None) -> npt.NDArray[np.float64]:
         """Azimuth, clockwise from true north, and elevation of the sun above the scene, degrees.
@@ -564,5 +539,5 @@ class Sunlight:
         array([...])
         """
         texts, is_one = times(time)
-        positions = np.array(self._core.sun_positions(texts, _place(location)))
+        positions = np.array(self._core.sun_positions({"times": texts, "place": place_of(location)}))
         return positions[0] if is_one else positions

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, TypedDict, Union
+from collections.abc import Callable, Sequence
+from typing import Any, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -11,26 +11,19 @@ import numpy.typing as npt
 from . import _core
 from ._cloud import Cloud
 from ._errors import wrong
-from ._inputs import check_finite, map_places, places
+from ._inputs import check_finite, map_places, places, reporter
 from ._mesh import Mesh
+from ._questions import Cells, ground_of
 from ._raster import Raster, Rasters
 from ._remarks import warned
+from ._shapes import in_system
 from ._table import Table
-from ._types import Ground, Numbers, Places
+from ._types import Numbers, Places, Progress
 
 #: Places of shape (N, 3), the points of a cloud, or the faces of a mesh: targets that are no cells.
 Rows = Union[Places, Cloud, Mesh]
 #: Cells of a grid (None), or rows.
 Targets = Union[Rows, None]
-
-
-class Cells(TypedDict, total=False):
-    """How cells are laid."""
-
-    cell: float | None
-    target_height: float | None
-    surface: bool
-    ground: Ground | None
 
 
 def wanted(targets: Targets, normals: Numbers | None, cells: Cells, may_lack_heights: bool = False) -> dict[str, Any]:
@@ -71,7 +64,7 @@ def wanted(targets: Targets, normals: Numbers | None, cells: Cells, may_lack_hei
         "surface": bool(cells.get("surface")),
         "cell": cells.get("cell"),
         "height": cells.get("target_height"),
-        "ground": cells.get("ground"),
+        "ground": ground_of(cells.get("ground")),
     }
 
 
@@ -130,6 +123,21 @@ def measures(results: Results, crs: _core.Crs, targets: Targets) -> Rasters | Ta
     )
     table.remarks = remarks
     return table
+
+
+def measured(
+    core: _core.Scene,
+    ask: Callable[..., Results],
+    question: Sequence[Any],
+    targets: Targets,
+    cells: Cells,
+    progress: Progress,
+    normals: Numbers | None = None,
+) -> Rasters | Table:
+    """Measures of targets: the native part is asked the question with them."""
+    targets = in_system(targets, "targets", core.crs.text)
+    results = ask(*question, wanted(targets, normals, cells, may_lack_heights=True), reporter(progress))
+    return measures(results, core.crs, targets)
 
 
 def face_table(faces: dict[str, Any]) -> Table:

@@ -9,14 +9,12 @@ import numpy as np
 
 from . import _core
 from ._errors import wrong
-from ._inputs import check_finite, reporter, table_columns
+from ._inputs import check_finite, table_columns
 from ._keywords import Towers as TowersKeywords
-from ._outlook import _looking
-from ._questions import _cells
+from ._questions import cells_of, earth, given, ground_of
 from ._raster import Rasters
-from ._shapes import in_system
 from ._table import Table
-from ._targets import Rows, Targets, measures, wanted
+from ._targets import Rows, Targets, measured
 from ._types import Columns, Curvature, Ground, Progress
 
 if TYPE_CHECKING:
@@ -116,24 +114,17 @@ class Towers:
         >>> seen["metres"].unit
         'm'
         """
-        check_finite(observer_height=observer_height, max_distance=max_distance, refraction=refraction)
-        looking = _looking(
+        check_finite(observer_height=observer_height, max_distance=max_distance)
+        question = given(
             observer_height=observer_height,
             max_distance=max_distance,
-            ground=ground,
-            curvature=curvature,
-            refraction=refraction,
-            is_far=far,
+            earth=earth(curvature, refraction),
+            ground=ground_of(ground),
+            far=bool(far),
         )
-        targets = in_system(targets, "targets", self._core.crs.text)
-        results = self._core.towers(
-            _rows(towers),
-            looking,
-            wanted(targets, None, _cells(cell, None, surface, ground), may_lack_heights=True),
-            None if wirelines is None else fspath(wirelines),
-            reporter(progress),
-        )
-        return measures(results, self._core.crs, targets)
+        asked = question, _rows(towers), None if wirelines is None else fspath(wirelines)
+        cells = cells_of(cell, None, surface, ground)
+        return measured(self._core, self._core.towers, asked, targets, cells, progress)
 
 
 def _rows(towers: Columns) -> list[dict[str, Any]]:

@@ -51,7 +51,7 @@ const LEVELS: [(&str, u8); 18] = [
 ];
 
 /// Crates of others that only one file or folder may name.
-const ONE_HOME: [(&str, &str); 37] = [
+const ONE_HOME: [(&str, &str); 39] = [
     ("ab_glyph_rasterizer::", "figures/src/font.rs"),
     ("sha2::", "/src/cache/key.rs"),
     ("skrifa::", "figures/src/font.rs"),
@@ -80,6 +80,8 @@ const ONE_HOME: [(&str, &str); 37] = [
     ("proj_wkt::", "data/src/crs"),
     ("solar_positioning::", "apps/src/sun/position.rs"),
     ("jiff::", "apps/src/sun/time.rs"),
+    ("pythonize::", "python/src/question.rs"),
+    ("serde_path_to_error::", "python/src/question.rs"),
     ("axum::", "viewer/src/"),
     ("tokio::", "viewer/src/"),
     ("hyper::", "viewer/src/server.rs"),
