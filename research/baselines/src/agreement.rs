@@ -2,6 +2,7 @@
 
 use belvedere::apps::resampling::resampled;
 pub use belvedere::apps::resampling::{Interval, Tiles};
+use belvedere::cast::to_index;
 use belvedere::query::{Answer, UnprovenAs};
 
 /// Answers for targets of known truth, counted.
@@ -130,8 +131,7 @@ pub fn quantile(views: &[Vec<TruthCounts>], rate: Rate, share: f64) -> Option<f6
     };
     let mut rates: Vec<f64> = views.iter().filter_map(of_view).collect();
     rates.sort_by(f64::total_cmp);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index into the list")]
-    let index = (share.clamp(0.0, 1.0) * rates.len() as f64) as usize;
+    let index = to_index(share.clamp(0.0, 1.0) * rates.len() as f64);
     rates.get(index.min(rates.len().saturating_sub(1))).copied()
 }
 

@@ -1,4 +1,6 @@
-//! The order in which points are inserted into a hull or a tetrahedralisation, and looked for.
+//! The order in which points are inserted into a hull, and looked for.
+
+use belvedere::cast::{to_index, to_row};
 
 /// Points in the first round of insertions; each later round holds as many as all before it.
 const FIRST_ROUND: usize = 1000;
@@ -8,13 +10,12 @@ const CURVE_CELLS: f64 = 262_143.0;
 /// All points but `first`: rounds that double in size, chosen at random, each along a space-filling curve.
 pub(crate) fn insertion_order(points: &[[f64; 3]], first: &[u32], curve: &Curve) -> Vec<u32> {
     let round_count = (points.len() / FIRST_ROUND).max(1).ilog2();
-    let mut keys: Vec<(u64, u32)> = (0..number(points.len()))
+    let mut keys: Vec<(u64, u32)> = (0..to_row(points.len()))
         .filter(|index| !first.contains(index))
         .map(|index| {
             // half of the points come in the last round, a quarter in the one before
             let lot = belvedere::random::uniform(0, u64::from(index)).max(1e-9);
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 30")]
-            let rounds_before_last = ((-lot.log2()) as u32).min(round_count);
+            let rounds_before_last = to_row(to_index(-lot.log2())).min(round_count);
             (u64::from(round_count - rounds_before_last) << 54 | curve.key(points[index as usize]), index)
         })
         .collect();
@@ -45,9 +46,7 @@ impl Curve {
     pub(crate) fn key(&self, point: [f64; 3]) -> u64 {
         let cell = |axis: usize| {
             let cells = (point[axis] - self.low[axis]) * self.cells_per_metre;
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to CURVE_CELLS")]
-            let cell = cells.clamp(0.0, CURVE_CELLS) as u64;
-            cell
+            to_index(cells.clamp(0.0, CURVE_CELLS)) as u64
         };
         spread(cell(0)) | spread(cell(1)) << 1 | spread(cell(2)) << 2
     }
@@ -61,10 +60,4 @@ fn spread(v: u64) -> u64 {
     x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
     x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
     (x | x << 2) & 0x1249_2492_4924_9249
-}
-
-/// A number of a point, a facet or a tetrahedron.
-#[expect(clippy::cast_possible_truncation, reason = "callers refuse more points than fit")]
-pub(crate) fn number(index: usize) -> u32 {
-    index as u32
 }

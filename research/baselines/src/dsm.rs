@@ -5,6 +5,7 @@ mod grid;
 
 use crate::lines_of_sight::{check_clearance, check_positive, sight};
 use crate::mesh_rays::{MeshRays, MeshRaysParams};
+use belvedere::cast::{to_f32, to_index};
 use belvedere::query::{Sight, Viewer, Visibility};
 use belvedere::raster::Raster;
 use belvedere::ray_index::Ray;
@@ -77,7 +78,7 @@ impl Dsm {
         let (corner, [width, height]) = layout(low, high, params)?;
         let mut heights = vec![f32::NAN; width * height];
         for position in positions.iter().filter(|p| p.iter().all(|v| v.is_finite())) {
-            let [column, row] = [0, 1].map(|axis| whole((f64::from(position[axis]) - corner[axis]) / params.cell));
+            let [column, row] = [0, 1].map(|axis| to_index((f64::from(position[axis]) - corner[axis]) / params.cell));
             if let Some(cell) = heights.get_mut(row.min(height - 1) * width + column.min(width - 1)) {
                 *cell = cell.max(position[2]);
             }
@@ -102,9 +103,8 @@ impl Dsm {
                 let top = high[2] + 1.0;
                 let hit =
                     Ray::new([x, y, top], [0.0, 0.0, -1.0], [0.0, f64::INFINITY]).and_then(|ray| rays.first(&ray));
-                #[expect(clippy::cast_possible_truncation, reason = "rasters hold f32")]
                 if let Some((range, _)) = hit {
-                    *height = (top - range) as f32;
+                    *height = to_f32(top - range);
                 }
             }
         });
@@ -160,10 +160,5 @@ fn layout(low: [f64; 2], high: [f64; 2], params: &DsmParams) -> Result<([f64; 2]
             expected: "at most 268435456 cells; take larger cells",
         });
     }
-    Ok((corner, size.map(whole)))
-}
-
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-fn whole(coordinate: f64) -> usize {
-    coordinate as usize
+    Ok((corner, size.map(to_index)))
 }

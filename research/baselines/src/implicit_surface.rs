@@ -7,6 +7,7 @@ use crate::lines_of_sight::{check_clearance, check_min, check_positive, sight};
 use crate::sampling::{capped_spacing, check_neighbor};
 use along_ray::Crossings;
 use belvedere::Result;
+use belvedere::cast::to_f32;
 use belvedere::control::Control;
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
@@ -127,8 +128,7 @@ impl ImplicitSurface {
         let samples: Vec<SurfaceSample> = given
             .filter(|((_, normal), spacing)| **normal != [0.0; 3] && **spacing > 0.0)
             .map(|((&position, &normal), &spacing)| {
-                #[expect(clippy::cast_possible_truncation, reason = "kept in f32 like the points")]
-                let support = (f64::from(spacing) * params.support_scale) as f32;
+                let support = to_f32(f64::from(spacing) * params.support_scale);
                 SurfaceSample { position, normal, support }
             })
             .collect();

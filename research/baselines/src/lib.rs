@@ -6,9 +6,7 @@
 pub mod agreement;
 pub mod audit;
 mod curve;
-mod delaunay;
 pub mod dsm;
-pub mod graph_cut;
 pub mod held_out;
 pub mod hidden_points;
 pub mod implicit_surface;
@@ -16,13 +14,11 @@ mod lines_of_sight;
 pub mod medial;
 pub mod mesh_rays;
 pub mod methods;
-pub mod orient_by_carving;
 pub mod poisson;
 mod sampling;
 pub mod shadow_map;
 pub mod simulated;
 pub mod splatting;
-pub mod tin;
 pub mod voxels;
 
 use belvedere::{Mesh, PointCloud};

@@ -1,5 +1,6 @@
 //! What all methods that trace one ray per target have in common.
 
+use belvedere::cast::to_f32;
 use belvedere::query::{Answer, Sight, Viewer};
 use belvedere::ray_index::Ray;
 use belvedere::{Error, Parameter, Result};
@@ -60,7 +61,6 @@ pub(crate) fn check_clearance(value: f64) -> Result<()> {
 }
 
 /// A corner of a box in f32, rounded away from the inside: `outward` is −1 for the lowest corner and 1 for the highest.
-#[expect(clippy::cast_possible_truncation, reason = "rounded outward right after")]
 pub(crate) fn box_corner(corner: [f64; 3], outward: f64) -> [f32; 3] {
-    corner.map(|v| if outward < 0.0 { (v as f32).next_down() } else { (v as f32).next_up() })
+    corner.map(|v| if outward < 0.0 { to_f32(v).next_down() } else { to_f32(v).next_up() })
 }

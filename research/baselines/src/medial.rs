@@ -2,6 +2,7 @@
 
 use crate::MethodInput;
 use belvedere::Bounds;
+use belvedere::cast::to_f32;
 use belvedere::clean::CleanParams;
 use belvedere::control::Control;
 use belvedere::depth::{ItemBuffer, Profile, depth_map};
@@ -188,8 +189,7 @@ impl Visibility for MedialBaseline {
         let [low, high] = self.bounds;
         let view = View::parallel(to_viewer.map(|v| -v), low, high, PIXEL_SIZE)?;
         let map = depth_map(&self.balls, &view, self.params.blocking.profile, ItemBuffer::Without, &Control::none())?;
-        #[expect(clippy::cast_possible_truncation, reason = "a length in metres")]
-        let bias = self.params.blocking.bias as f32;
+        let bias = to_f32(self.params.blocking.bias);
         Ok(Box::new(move |targets| Ok(query_points(&map, targets, bias))))
     }
 }

@@ -1,7 +1,6 @@
 //! Every method by name, ready to be built from a survey.
 
 use crate::dsm::{Dsm, DsmParams};
-use crate::graph_cut::{GraphCut, GraphCutParams};
 use crate::hidden_points::{ForeignTargets, HiddenPoints, HiddenPointsParams};
 use crate::implicit_surface::{ImplicitSurface, ImplicitSurfaceParams};
 use crate::medial::{MedialBaseline, MedialParams, Outward};
@@ -9,7 +8,6 @@ use crate::mesh_rays::{MeshRays, MeshRaysParams};
 use crate::poisson::{Poisson, PoissonParams};
 use crate::shadow_map::{ShadowMap, ShadowMapParams};
 use crate::splatting::{SplatParams, Splats};
-use crate::tin::{Tin, TinParams};
 use crate::voxels::{VoxelParams, Voxels};
 use crate::{MethodInput, PlaceModel};
 use belvedere::medial::{CarvedParams, Rule, Trees};
@@ -123,11 +121,6 @@ pub fn methods<'a>(survey: &'a MethodInput<'a>) -> Vec<Method<'a>> {
     let splats = |key: &str, title: &str, params: SplatParams| {
         Method::new(key, title, "splats", move || Splats::new(cloud, &params))
     };
-    let graph_cut = |key: &str, title: &str, params: GraphCutParams| {
-        Method::new(key, title, "graph-cut", move || GraphCut::new(survey, &params))
-    };
-    // targets behind surfaces, as for the balls below whose shell is 0
-    let bare_graph_cut = GraphCutParams { clearance: 0.0, ..GraphCutParams::default() };
     let voxels = |key: &str, title: &str, size: f64| {
         let params = VoxelParams { size, ..VoxelParams::default() };
         Method::new(key, title, "voxels", move || Voxels::new(positions, &params))
@@ -146,15 +139,12 @@ pub fn methods<'a>(survey: &'a MethodInput<'a>) -> Vec<Method<'a>> {
         Method::new("implicit-surface", "implicit surface", "implicit-surface", move || {
             ImplicitSurface::new(survey, &ImplicitSurfaceParams::default())
         }),
-        graph_cut("graph-cut", "Delaunay graph cut", GraphCutParams::default()),
-        graph_cut("graph-cut-clearance-0", "the same, clearance 0", bare_graph_cut).on_held_out_pulses(),
         Method::new("poisson", "screened Poisson surface", "poisson", move || {
             Poisson::new(survey, &PoissonParams::default())
         }),
         voxels("voxels-05", "voxels 0.5 m", 0.5),
         voxels("voxels-10", "voxels 1 m", 1.0),
         Method::new("dsm", "highest-point raster", "dsm", move || Dsm::from_points(positions, &DsmParams::default())),
-        Method::new("tin", "first-return TIN", "tin", move || Tin::new(cloud, &TinParams::default())),
     ];
     // as the paper did it: signs of normals from a city model
     methods.extend(survey.models.first().map(|PlaceModel { name, mesh }| {

@@ -1,5 +1,6 @@
 //! How densely a cloud samples the surface around each of its points.
 
+use belvedere::cast::to_f32;
 use belvedere::neighbors::NeighborIndex;
 use belvedere::{Error, Parameter, Result};
 use rayon::prelude::*;
@@ -45,8 +46,7 @@ pub(crate) fn capped_spacing(positions: &[[f32; 3]], index: &NeighborIndex, k: u
         return spacing;
     }
     let median = *sorted.select_nth_unstable_by(middle, f32::total_cmp).1;
-    #[expect(clippy::cast_possible_truncation, reason = "saturates: no cap")]
-    let max = (f64::from(median) * cap) as f32;
+    let max = to_f32(f64::from(median) * cap);
     spacing.iter_mut().for_each(|distance| *distance = distance.min(max));
     spacing
 }

@@ -2,6 +2,7 @@
 
 use crate::lines_of_sight::{check_clearance, check_min, check_positive};
 use crate::mesh_rays::{MeshRays, MeshRaysParams};
+use belvedere::cast::to_index;
 use belvedere::query::{Answer, Sight, Viewer, Visibility};
 use belvedere::ray_index::Ray;
 use belvedere::vector::{cross, dot, sub, unit};
@@ -179,9 +180,8 @@ fn nothing_blocks(target: [f32; 3]) -> Answer {
 }
 
 /// The pixel that holds a coordinate in pixels, or `None` below zero and for NaN.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative: rounds down, saturates")]
 fn pixel_at(coordinate: f64) -> Option<usize> {
-    (coordinate >= 0.0).then_some(coordinate as usize)
+    (coordinate >= 0.0).then_some(to_index(coordinate))
 }
 
 /// Direction through a face of the cube around an eye: faces 0 to 5 look along +x, −x, +y, −y, +z, −z; `x` and `y` run

@@ -1,9 +1,99 @@
-//! Simulated scans as clouds, with the position of the scanner at each point.
+//! Simulated scans as clouds, with the position of the scanner at each point and the exact scene.
 
+use crate::MethodInput;
 use belvedere::cloud::{centre_rounded, to_local};
 use belvedere::trajectory::Trajectory;
-use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud, Result};
-use belvedere_scenes::{AirborneParams, Scan, TriangleScene, scan_airborne};
+use belvedere::{Attributes, Error, Frame, GpsTimeKind, Parameter, PointCloud, Result};
+use belvedere_scenes::{AirborneParams, Material, Preset, QuerySite, Scan, TriangleScene, Truth, scan_airborne, town};
+
+/// A scene, its exact rays, and a survey of it.
+pub struct SurveyedScene {
+    /// The exact scene.
+    pub scene: TriangleScene,
+    /// Exact rays in the scene.
+    pub truth: Truth,
+    /// The points of the survey.
+    pub cloud: PointCloud,
+    /// Local position of the scanner for each point, (N, 3), metres; empty where unknown.
+    pub scanner: Vec<[f32; 3]>,
+    /// Lowest and highest corner of the cloud, absolute, metres.
+    bounds: [[f64; 3]; 2],
+}
+
+impl SurveyedScene {
+    /// Puts a scene beside a survey of it.
+    #[must_use]
+    pub fn new(scene: TriangleScene, (cloud, scanner): (PointCloud, Vec<[f32; 3]>)) -> Self {
+        let bounds = cloud.bounds().unwrap_or_default();
+        let absolute = |p: [f32; 3]| std::array::from_fn(|i| f64::from(p[i]) + cloud.frame.origin[i]);
+        let bounds = [bounds.low, bounds.high].map(absolute);
+        Self { truth: Truth::new(&scene), scene, cloud, scanner, bounds }
+    }
+
+    /// Flies over a town of `extent` metres.
+    ///
+    /// # Errors
+    /// See [`surveyed`].
+    pub fn flown(preset: Preset, extent: f64, seed: u64, pulses_per_m2: f64) -> Result<Self> {
+        let scene = town(&preset.params(extent, seed));
+        let survey = flown(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, pulses_per_m2) })?;
+        Ok(Self::new(scene, survey))
+    }
+
+    /// The survey as methods get it, without models.
+    #[must_use]
+    pub fn input(&self) -> MethodInput<'_> {
+        MethodInput { cloud: &self.cloud, scanner: &self.scanner, models: &[] }
+    }
+
+    /// The box of the cloud in the scene.
+    #[must_use]
+    pub fn site(&self) -> QuerySite<'_> {
+        QuerySite { scene: &self.scene, truth: &self.truth, bounds: self.bounds }
+    }
+
+    /// Absolute position of a local one, metres.
+    #[must_use]
+    pub fn absolute(&self, local: [f32; 3]) -> [f64; 3] {
+        self.absolute_of(local.map(f64::from))
+    }
+
+    /// Absolute position of an eye, metres.
+    #[must_use]
+    pub fn absolute_of(&self, eye: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|i| eye[i] + self.cloud.frame.origin[i])
+    }
+
+    /// Local position of an absolute one, metres.
+    #[must_use]
+    pub fn local(&self, absolute: [f64; 3]) -> [f32; 3] {
+        to_local(absolute, self.cloud.frame.origin)
+    }
+
+    /// Local position of an absolute one, metres, for eyes.
+    #[must_use]
+    pub fn eye(&self, absolute: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|i| absolute[i] - self.cloud.frame.origin[i])
+    }
+
+    /// Material of a triangle.
+    #[must_use]
+    pub fn material(&self, triangle: u32) -> Option<Material> {
+        self.scene.materials.get(triangle as usize).copied()
+    }
+}
+
+/// The kind of town with a name.
+///
+/// # Errors
+/// [`Error::InvalidParameter`] for another name.
+pub fn preset(name: &str) -> Result<Preset> {
+    Preset::ALL.into_iter().find(|preset| preset.name() == name).ok_or_else(|| Error::InvalidParameter {
+        parameter: Parameter::MethodSetting,
+        value: format!("{name} for the preset"),
+        expected: "village, town, old-town, towers or park",
+    })
+}
 
 /// The cloud of a survey from the air, and the position of the scanner at each of its points, (N, 3) local metres.
 ///

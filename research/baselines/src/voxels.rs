@@ -1,6 +1,7 @@
 //! Occupied voxels: space is solid where there are points.
 
 use crate::lines_of_sight::{check_clearance, check_positive, sight};
+use belvedere::cast::to_i32;
 use belvedere::query::{Sight, Viewer, Visibility};
 use belvedere::ray_index::Ray;
 use belvedere::{Error, Parameter, Result};
@@ -126,9 +127,8 @@ fn bit_of(voxel: [i32; 3]) -> (usize, u64) {
     (z as usize, 1 << (y * 8 + x))
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "saturates: far outside the grid")]
 fn cell(coordinate: f64) -> i32 {
-    coordinate.floor() as i32
+    to_i32(coordinate.floor())
 }
 
 /// The cells of a grid that a ray meets within a box, one after the other.

@@ -1,14 +1,14 @@
 //! A place made ready: cloud, scanner, models, and targets with their exact answers.
 
 use anyhow::Result;
-use belvedere::cloud::to_local;
 use belvedere::query::Viewer;
 use belvedere::view::to_sun;
 use belvedere::{Bounds, Error, PointCloud};
 use belvedere_baselines::agreement::Tiles;
 use belvedere_baselines::audit::TruePoint;
+use belvedere_baselines::simulated::SurveyedScene;
 use belvedere_baselines::{MethodInput, PlaceModel};
-use belvedere_scenes::{Material, QuerySet, QuerySite, TriangleScene, Truth};
+use belvedere_scenes::{Material, QuerySet, TriangleScene};
 use rayon::prelude::*;
 
 /// Suns that methods answer for, azimuth and elevation in degrees: morning, noon and afternoon, from low to high.
@@ -78,27 +78,21 @@ pub(super) struct Set {
 
 /// A place with questions and answers.
 pub(super) struct ComparisonCase {
-    pub(super) cloud: PointCloud,
-    pub(super) scanner: Vec<[f32; 3]>,
+    pub(super) place: SurveyedScene,
     pub(super) models: Vec<PlaceModel>,
-    pub(super) triangles: usize,
     pub(super) views: Vec<CaseView>,
     pub(super) sets: Vec<Set>,
     /// What is known of the surface each point lies on.
     pub(super) sources: Vec<Option<TruePoint<Material>>>,
-    scene: TriangleScene,
-    truth: Truth,
 }
 
 impl ComparisonCase {
     /// Draws `count` targets of each kind and answers them exactly.
     pub(super) fn new(ingredients: Ingredients, count: usize, seed: u64) -> Result<Self> {
         let Ingredients { cloud, scanner, models, scene } = ingredients;
-        let truth = Truth::new(&scene);
-        let origin = cloud.frame.origin;
-        let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + origin[i]) };
-        let Bounds { low, high } = bounds_of(&cloud)?;
-        let site = QuerySite { scene: &scene, truth: &truth, bounds: [absolute(low), absolute(high)] };
+        bounds_of(&cloud)?;
+        let place = SurveyedScene::new(scene, (cloud, scanner));
+        let site = place.site();
 
         let mut views: Vec<CaseView> = SUNS_DEG
             .iter()
@@ -107,47 +101,45 @@ impl ComparisonCase {
                 from: Some(From::Direction(to_sun(azimuth.to_radians(), elevation.to_radians()))),
             })
             .collect();
-        let local = |eye: [f64; 3]| std::array::from_fn(|i| eye[i] - origin[i]);
+        let local = |eye: [f64; 3]| place.eye(eye);
         let observers = site.observers(seed).into_iter().flatten();
         views.extend(observers.map(|eye| CaseView { group: "observers", from: Some(From::Eye(local(eye))) }));
         let street = site.street_observers(STREET_OBSERVERS, seed);
         views.extend(street.into_iter().map(|eye| CaseView { group: STREET_GROUP, from: Some(From::Eye(local(eye))) }));
         views.push(CaseView { group: "pairs", from: None });
 
-        let sources = sources(&site, &cloud, &scanner);
+        let sources = sources(&place);
         let mut sets = Vec::new();
         let kinds = QuerySet::ALL.map(|set| (set.name(), set, count));
         let street = (STREET, QuerySet::Pedestrians, (count / FEWER_STREET_TARGETS).max(1));
         for (name, set, count) in kinds.into_iter().chain([street]) {
             let drawn = site.targets(set, count, seed);
-            let local =
-                |points: &[[f64; 3]]| -> Vec<[f32; 3]> { points.iter().map(|&p| to_local(p, origin)).collect() };
+            let local = |points: &[[f64; 3]]| -> Vec<[f32; 3]> { points.iter().map(|&p| place.local(p)).collect() };
             let (targets, eyes) = (local(&drawn.positions), local(&drawn.eyes));
             // the truth for what is queried: for positions as f32 stores them
-            let exact: Vec<Option<[f64; 3]>> = targets.iter().map(|&p| Some(absolute(p))).collect();
-            let ends: Vec<[f64; 3]> = eyes.iter().map(|&p| absolute(p)).collect();
-            sets.push(answered(name, targets, eyes, &exact, &ends, &views, (&truth, origin)));
+            let exact: Vec<Option<[f64; 3]>> = targets.iter().map(|&p| Some(place.absolute(p))).collect();
+            let ends: Vec<[f64; 3]> = eyes.iter().map(|&p| place.absolute(p)).collect();
+            sets.push(answered(name, targets, eyes, &exact, &ends, &views, &place));
         }
         // the returns themselves, as far as their surface is known
-        let step = (cloud.len() / count.max(1)).max(1);
-        let rows: Vec<usize> = (0..cloud.len()).step_by(step).filter(|&i| sources[i].is_some()).collect();
+        let step = (place.cloud.len() / count.max(1)).max(1);
+        let rows: Vec<usize> = (0..place.cloud.len()).step_by(step).filter(|&i| sources[i].is_some()).collect();
         let exact: Vec<Option<[f64; 3]>> = rows.iter().map(|&i| sources[i].map(|(_, outside)| outside)).collect();
-        let own: Vec<[f32; 3]> = rows.iter().map(|&i| cloud.positions[i]).collect();
-        sets.push(answered(OWN, own, Vec::new(), &exact, &[], &views, (&truth, origin)));
+        let own: Vec<[f32; 3]> = rows.iter().map(|&i| place.cloud.positions[i]).collect();
+        sets.push(answered(OWN, own, Vec::new(), &exact, &[], &views, &place));
         sets.retain(|set| !set.targets.is_empty());
 
         let sources = sources.into_iter().map(|source| source.map(|(source, _)| source)).collect();
-        Ok(Self { cloud, scanner, models, triangles: scene.triangles.len(), views, sets, sources, scene, truth })
+        Ok(Self { place, models, views, sets, sources })
     }
 
     pub(super) fn survey(&self) -> MethodInput<'_> {
-        MethodInput { cloud: &self.cloud, scanner: &self.scanner, models: &self.models }
+        MethodInput { models: &self.models, ..self.place.input() }
     }
 
     /// Whether a local position lies in a solid or in the ground.
     pub(super) fn is_inside(&self, local: [f32; 3]) -> bool {
-        let site = QuerySite { scene: &self.scene, truth: &self.truth, bounds: [[0.0; 3]; 2] };
-        site.is_inside(std::array::from_fn(|i| f64::from(local[i]) + self.cloud.frame.origin[i]))
+        self.place.site().is_inside(self.place.absolute(local))
     }
 
     pub(super) fn viewer<'a>(&'a self, view: usize, set: &'a Set) -> Viewer<'a> {
@@ -167,7 +159,7 @@ fn answered(
     exact: &[Option<[f64; 3]>],
     ends: &[[f64; 3]],
     views: &[CaseView],
-    (truth, origin): (&Truth, [f64; 3]),
+    place: &SurveyedScene,
 ) -> Set {
     let truth = views
         .iter()
@@ -177,9 +169,9 @@ fn answered(
             let visible = |(i, point): (usize, &Option<[f64; 3]>)| {
                 let point = (*point)?;
                 Some(!match view.from {
-                    Some(From::Direction(direction)) => truth.occluded_towards(point, direction),
-                    Some(From::Eye(eye)) => truth.occluded(point, std::array::from_fn(|k| eye[k] + origin[k])),
-                    None => truth.occluded(point, *ends.get(i)?),
+                    Some(From::Direction(direction)) => place.truth.occluded_towards(point, direction),
+                    Some(From::Eye(eye)) => place.truth.occluded(point, place.absolute_of(eye)),
+                    None => place.truth.occluded(point, *ends.get(i)?),
                 })
             };
             (number, exact.par_iter().enumerate().map(visible).collect())
@@ -190,18 +182,14 @@ fn answered(
 }
 
 /// For each point what its surface is, and a point just outside that surface; `None` where that is unknown.
-fn sources(
-    site: &QuerySite<'_>,
-    cloud: &PointCloud,
-    scanner: &[[f32; 3]],
-) -> Vec<Option<(TruePoint<Material>, [f64; 3])>> {
-    let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + cloud.frame.origin[i]) };
+fn sources(place: &SurveyedScene) -> Vec<Option<(TruePoint<Material>, [f64; 3])>> {
+    let site = place.site();
     let source = |(i, &position): (usize, &[f32; 3])| {
-        let from = scanner.get(i).copied().filter(|s| s.iter().all(|v| v.is_finite()))?;
-        let (hit, outside) = site.surface_of_return(absolute(from), absolute(position))?;
+        let from = place.scanner.get(i).copied().filter(|s| s.iter().all(|v| v.is_finite()))?;
+        let (hit, outside) = site.surface_of_return(place.absolute(from), place.absolute(position))?;
         let normal = site.scene.normal(hit.triangle as usize)?;
-        let kind = *site.scene.materials.get(hit.triangle as usize)?;
+        let kind = place.material(hit.triangle)?;
         Some((TruePoint { kind, normal }, outside))
     };
-    cloud.positions.par_iter().enumerate().map(source).collect()
+    place.cloud.positions.par_iter().enumerate().map(source).collect()
 }

@@ -256,7 +256,7 @@ pub(super) fn audit_published(
     let survey = case.survey();
     let params = MedialParams::published_with_spheres();
     let balls = scene_model(&survey, Outward::Survey, &params)?.into_parts().balls;
-    let (verdicts, audits) = audit(&balls, &case.cloud.positions, &case.sources, |p| case.is_inside(p));
+    let (verdicts, audits) = audit(&balls, &case.place.cloud.positions, &case.sources, |p| case.is_inside(p));
     let rows = audits
         .iter()
         .map(|(surface, audit)| AuditRow {

@@ -164,14 +164,14 @@ fn describe(
     methods: &[belvedere_baselines::methods::Method<'_>],
     seed: u64,
 ) -> Result<PlaceResult> {
-    let belvedere::Bounds { low, high } = bounds_of(&case.cloud)?;
+    let belvedere::Bounds { low, high } = bounds_of(&case.place.cloud)?;
     let (audit, ablation) = judge::audit_published(case, seed)?;
     Ok(PlaceResult {
         made_from: made_from.to_owned(),
         place: name.to_owned(),
-        points: case.cloud.len(),
+        points: case.place.cloud.len(),
         area_m2: f64::from(high[0] - low[0]) * f64::from(high[1] - low[1]),
-        triangles: case.triangles,
+        triangles: case.place.scene.triangles.len(),
         methods: methods.iter().map(|method| method.key.clone()).collect(),
         when_named: methods.iter().filter(|m| m.listing != Listing::Always).map(|m| m.key.clone()).collect(),
         blocked_in_truth: judge::blocked_in_truth(case),

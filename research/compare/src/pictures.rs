@@ -3,6 +3,7 @@
 use super::case::{ComparisonCase, bounds_of};
 use super::judge::{SHOWN_SET, SHOWN_VIEW};
 use anyhow::Result;
+use belvedere::cast::to_index;
 use belvedere::figures::{Canvas, Colors, side_by_side, write_png};
 use belvedere::query::Answer;
 use belvedere::view::View;
@@ -24,7 +25,7 @@ pub(super) const LEGEND: &str = "yellow: correctly lit; grey-blue: correctly in 
 pub(super) fn write_errors(path: &Path, case: &ComparisonCase, title: &str, answers: &[Answer]) -> Result<()> {
     let Some(set) = case.sets.iter().find(|set| set.name == SHOWN_SET) else { return Ok(()) };
     let Some((_, truth)) = set.truth.iter().find(|(view, _)| *view == SHOWN_VIEW) else { return Ok(()) };
-    let belvedere::Bounds { low, high } = bounds_of(&case.cloud)?;
+    let belvedere::Bounds { low, high } = bounds_of(&case.place.cloud)?;
     let (low, high) = (low.map(f64::from), high.map(f64::from));
     let pixel = (0..2).map(|i| high[i] - low[i]).fold(0.0, f64::max) / SIDE_PX;
     let from_above = View::parallel([0.0, 0.0, -1.0], low, high, pixel)?;
@@ -44,10 +45,9 @@ pub(super) fn write_errors(path: &Path, case: &ComparisonCase, title: &str, answ
     let flat = |p: &[f32; 3]| [p[0], p[1], 0.0];
     let targets: Vec<[f32; 3]> = set.targets.iter().map(flat).collect();
     let per_target = ((high[0] - low[0]) * (high[1] - low[1]) / targets.len().max(1) as f64).sqrt();
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few pixels")]
-    let size_px = (per_target / pixel).ceil().clamp(1.0, 9.0) as usize;
+    let size_px = to_index((per_target / pixel).ceil().clamp(1.0, 9.0));
     canvas.draw_points(&targets, Colors::Each(&colors), size_px)?;
-    let backdrop: Vec<[f32; 3]> = case.cloud.positions.iter().map(|p| [p[0], p[1], -1.0]).collect();
+    let backdrop: Vec<[f32; 3]> = case.place.cloud.positions.iter().map(|p| [p[0], p[1], -1.0]).collect();
     canvas.draw_points(&backdrop, Colors::One(BACKDROP), 2)?;
     write_png(path, &side_by_side(&[canvas.into_picture()], &[title]))?;
     Ok(())

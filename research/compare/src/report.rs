@@ -178,101 +178,91 @@ impl ComparisonResults {
         [rate(&|score| score.false_blocked), rate(&|score| score.false_visible)]
     }
 
-    fn balanced(&self) -> TextTable {
-        let headings = COLUMNS.map(|(_, _, heading)| heading);
-        let mut table = TextTable::new(
-            "Balanced accuracy and IoU of blocked targets, %",
-            "Mean over suns (sun), over two observers (eye) or over people in streets (street), then over places. The second number is the IoU.",
-            [&["method"], headings.as_slice()].concat(),
-        );
-        for (key, title) in self.method_names() {
-            let cells = COLUMNS.map(|(set, views, _)| {
-                let balanced = self.rate(key, (set, views), &|s| s.balanced);
-                let iou = self.rate(key, (set, views), &|s| s.blocked_iou);
-                pair(balanced.map(|i| i.value), iou.map(|i| i.value))
-            });
-            table.add(title, cells);
+    /// A row for each of `methods`, and a column for each of `columns`.
+    fn by_method(
+        (title, note): (&str, &str),
+        methods: &[(&str, &str)],
+        columns: &[(&'static str, &'static str, &'static str)],
+        cell: impl Fn(&str, (&str, &str)) -> String,
+    ) -> TextTable {
+        let headings = columns.iter().map(|(_, _, heading)| *heading);
+        let mut table = TextTable::new(title, note, ["method"].into_iter().chain(headings).collect());
+        for (key, title) in methods {
+            table.add(title, columns.iter().map(|(set, views, _)| cell(key, (set, views))));
         }
         table
+    }
+
+    fn balanced(&self) -> TextTable {
+        let texts = (
+            "Balanced accuracy and IoU of blocked targets, %",
+            "Mean over suns (sun), over two observers (eye) or over people in streets (street), then over places. The second number is the IoU.",
+        );
+        Self::by_method(texts, &self.method_names(), &COLUMNS, |key, group| {
+            let rate = |pick: &dyn Fn(&MethodScore) -> Option<Rated>| self.rate(key, group, pick).map(|i| i.value);
+            pair(rate(&|s| s.balanced), rate(&|s| s.blocked_iou))
+        })
     }
 
     fn errors(&self) -> TextTable {
-        let shown: Vec<_> = COLUMNS.iter().filter(|(set, ..)| !matches!(*set, "VOL" | "GRD")).collect();
-        let mut table = TextTable::new(
+        let texts = (
             "False-blocked / false-visible, %",
             "False-blocked: the share of visible targets that a method calls blocked. False-visible: the share of blocked targets that it calls visible. In brackets the 95 % interval: from resampled tiles for one place, from resampled places for several.",
-            [vec!["method"], shown.iter().map(|(_, _, heading)| *heading).collect()].concat(),
         );
-        for (key, title) in self.method_names() {
-            let cells = shown.iter().map(|(set, views, _)| {
-                let blocked = self.rate(key, (set, views), &|s| s.false_blocked);
-                let visible = self.rate(key, (set, views), &|s| s.false_visible);
-                match (blocked, visible) {
-                    (None, None) => "–".to_owned(),
-                    _ => format!("{} / {}", with_interval(blocked), with_interval(visible)),
-                }
-            });
-            table.add(title, cells);
-        }
-        table
+        Self::by_method(texts, &self.method_names(), &columns_of_errors(), |key, group| {
+            let blocked = self.rate(key, group, &|s| s.false_blocked);
+            match (blocked, self.rate(key, group, &|s| s.false_visible)) {
+                (None, None) => "–".to_owned(),
+                (blocked, visible) => format!("{} / {}", with_interval(blocked), with_interval(visible)),
+            }
+        })
     }
 
     fn probabilities(&self) -> TextTable {
-        let shown: Vec<_> = COLUMNS.iter().filter(|(set, ..)| !matches!(*set, "VOL" | "GRD")).collect();
-        let mut table = TextTable::new(
+        let texts = (
             "Probabilities: Brier score / expected calibration error, % / wrong among the most certain nine tenths, %",
             "Brier score: mean square of the difference between the probability of being visible and the truth. Answers of methods that give no probability count as 0 and 1. Mean over places.",
-            [vec!["method"], shown.iter().map(|(_, _, heading)| *heading).collect()].concat(),
         );
-        for (key, title) in self.method_names() {
-            let cells = shown.iter().map(|(set, views, _)| {
-                let scores = self.of(key).flat_map(|r| &r.scores).filter(|s| s.set == *set && s.views == *views);
-                let found: Vec<CalibrationScore> = scores.filter_map(|score| score.calibration).collect();
-                let mean = |of: fn(&CalibrationScore) -> f64| found.iter().map(of).sum::<f64>() / found.len() as f64;
-                match found.is_empty() {
-                    true => "–".to_owned(),
-                    false => format!(
-                        "{:.4} / {:.1} / {:.2}",
-                        mean(|s| s.brier),
-                        100.0 * mean(|s| s.expected_error),
-                        100.0 * mean(|s| s.error_of_most_certain)
-                    ),
-                }
-            });
-            table.add(title, cells);
-        }
-        table
+        Self::by_method(texts, &self.method_names(), &columns_of_errors(), |key, (set, views)| {
+            let scores = self.of(key).flat_map(|r| &r.scores).filter(|s| s.set == set && s.views == views);
+            let found: Vec<CalibrationScore> = scores.filter_map(|score| score.calibration).collect();
+            let mean = |of: fn(&CalibrationScore) -> f64| found.iter().map(of).sum::<f64>() / found.len() as f64;
+            match found.is_empty() {
+                true => "–".to_owned(),
+                false => format!(
+                    "{:.4} / {:.1} / {:.2}",
+                    mean(|s| s.brier),
+                    100.0 * mean(|s| s.expected_error),
+                    100.0 * mean(|s| s.error_of_most_certain)
+                ),
+            }
+        })
     }
 
     /// How much better or worse the others are than carved balls at the same places; `None` for a single place.
     fn differences(&self) -> Option<TextTable> {
-        let names = self.method_names();
+        let mut names = self.method_names();
         if self.places.len() < 2 || !names.iter().any(|(key, _)| *key == CARVED) {
             return None;
         }
-        let headings = COLUMNS.map(|(_, _, heading)| heading);
-        let mut table = TextTable::new(
+        names.retain(|(key, _)| *key != CARVED);
+        let texts = (
             "Balanced accuracy, difference from carved balls, percentage points",
             "Positive: better than carved balls. Means over the places at which both were measured, with the 95 % interval from resampled places: a difference whose interval holds 0 may be chance.",
-            [&["method"], headings.as_slice()].concat(),
         );
         let balanced = |result: &MethodResult, group: (&str, &str)| {
             let score = result.scores.iter().find(|s| (s.set.as_str(), s.views.as_str()) == group)?;
             score.balanced.map(|[value, ..]| value)
         };
-        for (key, title) in names.into_iter().filter(|(key, _)| *key != CARVED) {
-            let cells = COLUMNS.map(|(set, views, _)| {
-                let of_place = |result: &MethodResult| {
-                    let carved = self.of(CARVED).find(|carved| carved.place == result.place)?;
-                    let value = balanced(result, (set, views))? - balanced(carved, (set, views))?;
-                    Some(Interval { value, low: value, high: value })
-                };
-                let of_places: Vec<Interval> = self.of(key).filter_map(of_place).collect();
-                signed_with_interval(over_places(&of_places, SEED))
-            });
-            table.add(title, cells);
-        }
-        Some(table)
+        Some(Self::by_method(texts, &names, &COLUMNS, |key, group| {
+            let of_place = |result: &MethodResult| {
+                let carved = self.of(CARVED).find(|carved| carved.place == result.place)?;
+                let value = balanced(result, group)? - balanced(carved, group)?;
+                Some(Interval { value, low: value, high: value })
+            };
+            let of_places: Vec<Interval> = self.of(key).filter_map(of_place).collect();
+            signed_with_interval(over_places(&of_places, SEED))
+        }))
     }
 
     /// Balanced accuracy that a tenth of the observers in streets stay below, mean over places.
@@ -530,6 +520,11 @@ impl ComparisonResults {
              <h1>Visibility on point clouds: accuracy and cost</h1>\n{body}</html>\n"
         )
     }
+}
+
+/// Columns of the tables of errors.
+fn columns_of_errors() -> Vec<(&'static str, &'static str, &'static str)> {
+    COLUMNS.into_iter().filter(|(set, ..)| !matches!(*set, "VOL" | "GRD")).collect()
 }
 
 const STYLE: &str = "body{font:15px/1.45 system-ui,sans-serif;margin:2rem;max-width:110rem}\

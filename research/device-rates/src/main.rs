@@ -19,6 +19,7 @@ use belvedere::query::{Backend, BallTree, BlockRule, Cpu, LineAnswer, MedialScen
 use belvedere::random::uniform;
 use belvedere_core::ray_index::{NODE_WORDS, NodePart, RayIndex};
 use belvedere_data::Result;
+use belvedere_data::cast::{to_f32, to_f32s, to_index};
 use belvedere_gpu::{Choice, Gpu, devices};
 use std::io::Write;
 use std::sync::Arc;
@@ -44,10 +45,8 @@ fn place(count: u64, side: f64) -> MedialBalls {
             1 => ((12.0 * u(2)), 0.3 + 1.5 * u(3) * f64::from(u8::from((x / 25.0).fract() < 0.5))),
             _ => (4.0 + 12.0 * u(2), 0.1 + 0.4 * u(3)),
         };
-        #[expect(clippy::cast_possible_truncation, reason = "positions are f32")]
-        balls.centers.push([x, y, z].map(|v| v as f32));
-        #[expect(clippy::cast_possible_truncation, reason = "radii are f32")]
-        balls.radii.push(radius as f32);
+        balls.centers.push(to_f32s([x, y, z]));
+        balls.radii.push(to_f32(radius));
         balls.source.push(0);
         balls.touch.push(0);
         balls.separation_angles.push(0.0);
@@ -58,12 +57,8 @@ fn place(count: u64, side: f64) -> MedialBalls {
 fn grid(count: usize) -> Vec<[f32; 3]> {
     let side = (count as f64).sqrt();
     let across = |i: usize| SIDE * (i as f64 + 0.5) / side;
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "positions are f32, the side is above zero"
-    )]
-    let of = |i: usize| [across(i % side as usize), across(i / side as usize), 0.3].map(|v| v as f32);
+    let row = to_index(side);
+    let of = |i: usize| to_f32s([across(i % row), across(i / row), 0.3]);
     (0..count).map(of).collect()
 }
 

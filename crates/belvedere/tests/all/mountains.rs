@@ -1,4 +1,4 @@
-//! Simulated mountains, for tests and for the bench of far terrain.
+//! Simulated mountains of tests.
 
 use belvedere::ElevationGrid;
 use belvedere::random::uniform;

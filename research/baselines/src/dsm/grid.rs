@@ -1,6 +1,7 @@
 //! Rays over a height field, with a pyramid of greatest heights that lets them step over what lies far below.
 
 use super::DsmSurface;
+use belvedere::cast::to_i64;
 use belvedere::raster::Raster;
 use belvedere::ray_index::Ray;
 
@@ -205,7 +206,6 @@ fn pooled(values: &Raster<f32>, size: [usize; 2], stride: usize, window: usize) 
     pooled
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "saturates: far outside the field")]
 fn cell(coordinate: f64) -> i64 {
-    coordinate.floor() as i64
+    to_i64(coordinate.floor())
 }

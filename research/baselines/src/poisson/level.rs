@@ -1,6 +1,7 @@
 //! The indicator function on grids from coarse to fine: the first fills the box, each finer one lies around the points.
 
 use super::OrientedSample;
+use belvedere::cast::{to_i64, to_row};
 use rayon::prelude::*;
 
 /// No node.
@@ -41,8 +42,7 @@ pub(super) fn node(key: u64) -> [i64; 3] {
 impl GridLevel {
     /// All nodes of a box of `size` cells.
     pub(super) fn whole(corner: [f64; 3], cell: f64, size: [f64; 3]) -> Self {
-        #[expect(clippy::cast_possible_truncation, reason = "the coarsest level has few cells")]
-        let last = size.map(|cells| cells as i64);
+        let last = size.map(to_i64);
         let range = |axis: usize| 0..=last[axis];
         let nodes = range(0).flat_map(|x| range(1).flat_map(move |y| range(2).map(move |z| key([x, y, z]))));
         Self { corner, cell, keys: nodes.collect(), last, values: Vec::new() }
@@ -75,8 +75,7 @@ impl GridLevel {
     /// The cell that holds a place, and where in it, 0 to 1.
     pub(super) fn locate(&self, place: [f64; 3]) -> ([i64; 3], [f64; 3]) {
         let cells: [f64; 3] = std::array::from_fn(|axis| (place[axis] - self.corner[axis]) / self.cell);
-        #[expect(clippy::cast_possible_truncation, reason = "cells of the finest level are numbered by 20 bits")]
-        let whole = cells.map(|v| v.floor() as i64);
+        let whole = cells.map(|v| to_i64(v.floor()));
         (whole, std::array::from_fn(|axis| cells[axis] - whole[axis] as f64))
     }
 
@@ -214,7 +213,7 @@ impl LevelSolver {
                 let mut at = [(0, 0.0); 8];
                 for (slot, (step, weight)) in at.iter_mut().zip(corners(share)) {
                     if let Some(found) = level.find(plus(cell, step)) {
-                        *slot = (crate::curve::number(found), weight);
+                        *slot = (to_row(found), weight);
                     }
                 }
                 at
@@ -306,8 +305,8 @@ fn neighbors(keys: &[u64]) -> Vec<[u32; 6]> {
                 next += 1;
             }
             if keys.get(next) == Some(&(from + step)) {
-                neighbors[i][2 * axis + 1] = crate::curve::number(next);
-                neighbors[next][2 * axis] = crate::curve::number(i);
+                neighbors[i][2 * axis + 1] = to_row(next);
+                neighbors[next][2 * axis] = to_row(i);
             }
         }
     }

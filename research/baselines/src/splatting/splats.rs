@@ -4,6 +4,7 @@ use super::{SplatParams, SplatShape};
 use crate::lines_of_sight::box_corner;
 use crate::sampling::{capped_spacing, for_neighborhoods};
 use belvedere::Result;
+use belvedere::cast::{to_f32, to_f32s};
 use belvedere::control::Control;
 use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::estimate::{Neighborhood, estimate};
@@ -64,7 +65,7 @@ pub(super) fn make(positions: &[[f32; 3]], params: &SplatParams) -> Result<Vec<S
     Ok(for_neighborhoods(positions, &index, params.normal_neighbors, |point, neighbors, _| {
         let center = positions[point];
         let radius = f64::from(spacing[point]) * params.radius_scale;
-        let facing = SurfaceSplat { center, axes: [[0.0; 3]; 2], radius: to_f32([radius; 3])[0] };
+        let facing = SurfaceSplat { center, axes: [[0.0; 3]; 2], radius: to_f32(radius) };
         let normal = unit(normals.vectors[point].map(f64::from)).filter(|_| params.shape != SplatShape::Facing);
         let Some((normal, first)) = normal.and_then(|normal| Some((normal, any_tangent(normal)?))) else {
             return facing;
@@ -85,7 +86,7 @@ pub(super) fn make(positions: &[[f32; 3]], params: &SplatParams) -> Result<Vec<S
         };
         let longer = length(axes[0]);
         // duplicates of one point have no extent, hence no axes
-        SurfaceSplat { center, axes: axes.map(to_f32), radius: to_f32([longer; 3])[0] }
+        SurfaceSplat { center, axes: axes.map(to_f32s), radius: to_f32(longer) }
     }))
 }
 
@@ -107,9 +108,4 @@ fn spread(points: &[[f64; 2]]) -> (f64, f64) {
     let (middle, half_gap) = ((xx + yy) / 2.0, ((xx - yy) / 2.0).hypot(xy));
     let ratio = ((middle + half_gap) / (middle - half_gap).max(0.0)).sqrt();
     (xy.atan2((xx - yy) / 2.0) / 2.0, if ratio.is_nan() { 1.0 } else { ratio })
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "splats are stored in f32 like the points they represent")]
-fn to_f32(v: [f64; 3]) -> [f32; 3] {
-    v.map(|v| v as f32)
 }

@@ -1,11 +1,10 @@
 //! Height fields and voxels against brute force over all their cells and triangles.
 
-use crate::common::{TestRandom, blocked, cloud_of, count_true, moeller_trumbore};
+use crate::common::{TestRandom, blocked, count_true};
 use belvedere::Mesh;
 use belvedere::query::Viewer;
 use belvedere::ray_index::Ray;
 use belvedere_baselines::dsm::{Dsm, DsmParams, DsmSurface, GapFill};
-use belvedere_baselines::tin::{Tin, TinParams};
 use belvedere_baselines::voxels::{VoxelParams, Voxels};
 
 /// Ranges within which a line runs through a box, or `None`.
@@ -175,63 +174,6 @@ fn a_dsm_of_a_mesh_has_the_heights_of_its_highest_surface() {
             assert!((height - expected).abs() < 1e-6, "{column} {row}: {height}");
         }
     }
-}
-
-#[test]
-fn a_tin_blocks_as_all_empty_circumcircle_triangles_do() {
-    let mut random = TestRandom(4);
-    // one point per cell of 2 m, well inside it, so that thinning keeps all
-    let points: Vec<[f32; 3]> = (0..49)
-        .map(|i| {
-            let (x, y) = (f64::from(i % 7) * 2.0, f64::from(i / 7) * 2.0);
-            random.point([x + 0.2, y + 0.2, 0.0], [x + 1.8, y + 1.8, 5.0])
-        })
-        .collect();
-    let exact: Vec<[f64; 3]> = points.iter().map(|p| p.map(f64::from)).collect();
-    let mut triangles = Vec::new();
-    for a in 0..exact.len() {
-        for b in a + 1..exact.len() {
-            for c in b + 1..exact.len() {
-                let corners = [exact[a], exact[b], exact[c]];
-                if exact.iter().enumerate().all(|(i, &p)| [a, b, c].contains(&i) || outside_circle(corners, p)) {
-                    triangles.push(corners);
-                }
-            }
-        }
-    }
-    // Euler: 2 n − 2 − h triangles, h points on the hull
-    assert!((2 * 49 - 2 - 30..=2 * 49 - 2 - 8).contains(&triangles.len()), "{}", triangles.len());
-    let mut cloud = cloud_of(points.clone());
-    // later returns and lower points of a cell must not matter
-    for point in &points {
-        cloud.positions.extend([[point[0], point[1], point[2] + 1.0], [point[0] + 0.01, point[1], point[2] - 0.5]]);
-    }
-    cloud.attributes.return_number =
-        Some((0..points.len()).map(|_| 1).chain([2, 1].into_iter().cycle().take(98)).collect());
-    let params = TinParams { cell: 2.0, clearance: 0.05 };
-    let tin = Tin::new(&cloud, &params).unwrap();
-    let mut seen = [0; 2];
-    for (target, viewer) in lines(&mut random, 4000, [16.0, 16.0, 6.0]) {
-        let (direction, range) = viewer.line_of_sight(0, target).unwrap();
-        let hit = |corners: &[[f64; 3]; 3]| {
-            moeller_trumbore(*corners, target.map(f64::from), direction)
-                .is_some_and(|t| t >= params.clearance && t <= range)
-        };
-        let expected = triangles.iter().any(hit);
-        assert_eq!(blocked(&tin, viewer, &[target])[0], expected, "{target:?} {viewer:?}");
-        seen[usize::from(expected)] += 1;
-    }
-    assert!(seen.iter().all(|&n| n > 500), "{seen:?}");
-}
-
-/// Whether a point lies outside the circle through three others, seen from above.
-fn outside_circle(corners: [[f64; 3]; 3], p: [f64; 3]) -> bool {
-    let [a, b, c] = corners.map(|q| [q[0] - p[0], q[1] - p[1]]);
-    let square = |q: [f64; 2]| q[0] * q[0] + q[1] * q[1];
-    let minor = |q: [f64; 2], r: [f64; 2]| q[0] * r[1] - q[1] * r[0];
-    let determinant = square(a) * minor(b, c) - square(b) * minor(a, c) + square(c) * minor(a, b);
-    let turn = minor([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
-    determinant * turn < 0.0
 }
 
 #[test]

@@ -1,11 +1,10 @@
-//! Reconstructed surfaces against a sphere and the exact mesh of a town.
+//! The Poisson surface against a sphere and the exact mesh of a town.
 
 use crate::common::{TestRandom, blocked, cloud_of, count_true, dot, targets};
-use belvedere::query::{Viewer, Visibility};
+use belvedere::query::Viewer;
 use belvedere::ray_index::Ray;
 use belvedere::{Error, PointCloud};
 use belvedere_baselines::MethodInput;
-use belvedere_baselines::graph_cut::{GraphCut, GraphCutParams};
 use belvedere_baselines::mesh_rays::MeshRays;
 use belvedere_baselines::poisson::{Poisson, PoissonParams};
 use belvedere_baselines::simulated::flown;
@@ -49,13 +48,10 @@ fn check_sphere(rays: &MeshRays, tolerance: f64) {
 }
 
 #[test]
-fn rays_meet_reconstructed_spheres_where_the_sphere_is() {
+fn rays_meet_a_reconstructed_sphere_where_the_sphere_is() {
     let (cloud, scanner) = seen_sphere(5.0, 3000);
     let survey = MethodInput { cloud: &cloud, scanner: &scanner, models: &[] };
     let spacing = (4.0 * std::f64::consts::PI * 25.0 / 3000.0_f64).sqrt();
-    let cut = GraphCut::new(&survey, &GraphCutParams { cell: 0.01, ..GraphCutParams::default() }).unwrap();
-    // a triangle of sides up to two spacings lies below its sphere by a third of their square over twice the radius
-    check_sphere(cut.rays(), 4.0 * spacing * spacing / 3.0 / 10.0);
     let smooth = Poisson::new(&survey, &PoissonParams::default()).unwrap();
     assert_eq!(smooth.left_out(), 0);
     // cells are as wide as the spacing: half of one
@@ -73,14 +69,12 @@ fn any_number_of_threads_reconstructs_the_same_surface() {
     let ranges = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let cut = GraphCut::new(&survey, &GraphCutParams::default()).unwrap();
             let smooth = Poisson::new(&survey, &PoissonParams::default()).unwrap();
-            let first = |mesh: &MeshRays| rays.iter().map(|ray| mesh.first(ray)).collect::<Vec<_>>();
-            [first(cut.rays()), first(smooth.rays())]
+            rays.iter().map(|ray| smooth.rays().first(ray)).collect::<Vec<_>>()
         })
     };
     let one = ranges(1);
-    assert!(one.iter().flatten().all(Option::is_some));
+    assert!(one.iter().all(Option::is_some));
     assert_eq!(ranges(2), one);
     assert_eq!(ranges(7), one);
 }
@@ -96,17 +90,12 @@ fn most_of_a_town_is_reconstructed() {
         targets.iter().map(|t| std::array::from_fn(|i| f64::from(t[i]) + cloud.frame.origin[i])).collect();
     let sun = [0.48, -0.6, 0.64];
     let expected = truth.occluded_towards_each(&exact, sun);
-    let methods: [(&str, Box<dyn Visibility>); 2] = [
-        ("graph cut", Box::new(GraphCut::new(&survey, &GraphCutParams::default()).unwrap())),
-        ("Poisson", Box::new(Poisson::new(&survey, &PoissonParams::default()).unwrap())),
-    ];
-    for (name, method) in methods {
-        let found = blocked(method.as_ref(), Viewer::Direction(sun), &targets);
-        let wrong = found.iter().zip(&expected).filter(|(a, b)| a != b).count();
-        // targets are anywhere in the box; splats at 2 points/m² are wrong in one of eight
-        assert!(wrong < 3000 / 8, "{name}: {wrong} wrong");
-        assert!((300..2700).contains(&count_true(&expected)));
-    }
+    let smooth = Poisson::new(&survey, &PoissonParams::default()).unwrap();
+    let found = blocked(&smooth, Viewer::Direction(sun), &targets);
+    let wrong = found.iter().zip(&expected).filter(|(a, b)| a != b).count();
+    // targets are anywhere in the box; splats at 2 points/m² are wrong in one of eight
+    assert!(wrong < 3000 / 8, "{wrong} wrong");
+    assert!((300..2700).contains(&count_true(&expected)));
 }
 
 #[test]
@@ -115,35 +104,17 @@ fn clouds_that_have_no_surface_block_nothing_and_wrong_parameters_are_refused() 
     for positions in [Vec::new(), vec![[0.0; 3]], vec![[1.0; 3]; 5], vec![[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]]] {
         let cloud = cloud_of(positions);
         let survey = MethodInput { cloud: &cloud, scanner: &scanner[..cloud.len()], models: &[] };
-        let cut = GraphCut::new(&survey, &GraphCutParams::default()).unwrap();
         let smooth = Poisson::new(&survey, &PoissonParams::default()).unwrap();
-        for method in [&cut as &dyn Visibility, &smooth] {
-            assert_eq!(blocked(method, Viewer::Eye([0.4, 0.3, 9.0]), &[[0.0, 0.0, -9.0]]), [false]);
-        }
+        assert_eq!(blocked(&smooth, Viewer::Eye([0.4, 0.3, 9.0]), &[[0.0, 0.0, -9.0]]), [false]);
     }
     let cloud = cloud_of(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [f32::NAN; 3]]);
     let survey = MethodInput { cloud: &cloud, scanner: &[], models: &[] };
-    for error in [
-        GraphCut::new(&survey, &GraphCutParams::default()).err().unwrap(),
-        Poisson::new(&survey, &PoissonParams::default()).err().unwrap(),
-    ] {
-        assert!(error.to_string().contains("finite"), "{error}");
-    }
+    let error = Poisson::new(&survey, &PoissonParams::default()).err().unwrap();
+    assert!(error.to_string().contains("finite"), "{error}");
     let cloud = cloud_of(cloud.positions[..4].to_vec());
     let survey = MethodInput { cloud: &cloud, scanner: &[], models: &[] };
     let short = MethodInput { cloud: &cloud, scanner: &scanner[..2], models: &[] };
-    assert!(matches!(GraphCut::new(&short, &GraphCutParams::default()), Err(Error::LengthMismatch { .. })));
     assert!(matches!(Poisson::new(&short, &PoissonParams::default()), Err(Error::LengthMismatch { .. })));
-    let default = GraphCutParams::default;
-    for params in [
-        GraphCutParams { cell: 0.0, ..default() },
-        GraphCutParams { noise: f64::NAN, ..default() },
-        GraphCutParams { depth_in_noises: -1.0, ..default() },
-        GraphCutParams { quality: f64::INFINITY, ..default() },
-        GraphCutParams { clearance: -0.1, ..default() },
-    ] {
-        assert!(matches!(GraphCut::new(&survey, &params), Err(Error::InvalidParameter { .. })), "{params:?}");
-    }
     let default = PoissonParams::default;
     for params in [
         PoissonParams { area_neighbor: 0, ..default() },

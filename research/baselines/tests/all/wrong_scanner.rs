@@ -11,7 +11,6 @@ use belvedere::pulses::{FreeSegmentParams, FreeSegments, VerticalParams, vertica
 use belvedere::query::{BlockRule, MedialScene, Viewer, Visibility};
 use belvedere_baselines::agreement::{Rate, TruthCounts};
 use belvedere_baselines::medial::DEPTH_BIAS;
-use belvedere_baselines::orient_by_carving::{OrientByCarvingParams, orient_by_carving};
 use belvedere_scenes::Preset;
 
 impl TownWithLight {
@@ -21,7 +20,7 @@ impl TownWithLight {
         &self,
         scanner: &[[f32; 3]],
         before: impl Fn([f32; 3]) -> [f32; 3],
-        turn: impl Fn(OrientedCloud, &NeighborIndex, &FreeSegments) -> OrientedCloud,
+        turn: impl Fn(OrientedCloud) -> OrientedCloud,
     ) -> f64 {
         let index = NeighborIndex::new(&self.cloud.positions, &Control::none()).unwrap();
         let mut normals =
@@ -30,7 +29,7 @@ impl TownWithLight {
         let (oriented, _) = orient(&self.cloud, normals, &Orientation::Pulses(scanner), &Control::none()).unwrap();
         let (free_segments, _) =
             FreeSegments::of_cloud(&self.cloud, scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
-        let oriented = turn(oriented, &index, &free_segments);
+        let oriented = turn(oriented);
         let attributes = &self.cloud.attributes;
         let input = CarvedInput {
             oriented: &oriented,
@@ -54,7 +53,7 @@ impl TownWithLight {
     }
 }
 
-fn as_it_is(oriented: OrientedCloud, _: &NeighborIndex, _: &FreeSegments) -> OrientedCloud {
+fn as_it_is(oriented: OrientedCloud) -> OrientedCloud {
     oriented
 }
 
@@ -79,14 +78,7 @@ fn a_scanner_known_badly_and_normals_turned_wrongly_cost_less_than_a_point() {
     // pulses turn them whatever they were
     let flipped = place.score(&place.scanner, |normal| normal.map(|v| -v), as_it_is);
     assert!((flipped - exact).abs() < 1.0, "{flipped} of {exact}");
-    // and what pulses leave of balls on either side turns them without that
-    let params = OrientByCarvingParams { min_confidence: 1.0, ..OrientByCarvingParams::default() };
-    let turn = |oriented: OrientedCloud, index: &NeighborIndex, free_segments: &FreeSegments| {
-        orient_by_carving(&all_flipped(&oriented), index, free_segments, &params, &Control::none()).unwrap().0
-    };
-    let carved = place.score(&place.scanner, same, turn);
-    let wrong = place.score(&place.scanner, same, |oriented, _, _| all_flipped(&oriented));
-    assert!((carved - exact).abs() < 1.0, "{carved} of {exact}, {wrong} with all of them inward");
+    let wrong = place.score(&place.scanner, same, |oriented| all_flipped(&oriented));
     // by more than what is tolerated above, so that the test would notice
     assert!(wrong < exact - 1.0, "turning matters: {wrong} of {exact}");
 }

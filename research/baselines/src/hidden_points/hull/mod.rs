@@ -10,7 +10,8 @@ mod start;
 #[cfg(test)]
 mod tests;
 
-use crate::curve::{Curve, insertion_order, number};
+use crate::curve::{Curve, insertion_order};
+use belvedere::cast::to_row;
 use belvedere::vector::{cross, dot, sub};
 use robust::{Coord3D, orient3d};
 
@@ -74,7 +75,7 @@ impl Hull {
     /// nor method shows in [`Hull::is_extreme`].
     pub(crate) fn new(mut points: Vec<[f64; 3]>) -> Self {
         let given_count = points.len();
-        let eye = number(given_count);
+        let eye = to_row(given_count);
         points.push([0.0; 3]);
         let first = first_tetrahedron(&mut points, eye);
         let mut hull = Self {
@@ -214,13 +215,13 @@ impl Hull {
             return number;
         }
         self.facets.push(facet);
-        number(self.facets.len()) - 1
+        to_row(self.facets.len()) - 1
     }
 
     /// Closes the gaps that `free` (decreasing) leaves among the facets.
     fn drop_free_facets(&mut self, free: &[u32]) {
         for &gap in free {
-            let last = number(self.facets.len()) - 1;
+            let last = to_row(self.facets.len()) - 1;
             self.facets.swap_remove(gap as usize);
             if gap == last {
                 continue;

@@ -1,8 +1,9 @@
 //! The tetrahedron that a hull grows from.
 
+use belvedere::cast::to_row;
 use belvedere::vector::{cross, dot};
 
-use super::{Facet, NONE, number, orient};
+use super::{Facet, NONE, orient};
 
 /// Four points that fill a volume, the eye first; adds pairs about the eye to `points` where they do not by themselves.
 pub(super) fn first_tetrahedron(points: &mut Vec<[f64; 3]>, eye: u32) -> [u32; 4] {
@@ -13,11 +14,11 @@ pub(super) fn first_tetrahedron(points: &mut Vec<[f64; 3]>, eye: u32) -> [u32; 4
     let complete = |points: &mut Vec<[f64; 3]>, volume: &dyn Fn([f64; 3]) -> f64| {
         let best = axes.into_iter().max_by(|a, b| volume(*a).total_cmp(&volume(*b))).unwrap_or(axes[0]);
         points.extend([best, best.map(|v| -v)]);
-        number(points.len()) - 2
+        to_row(points.len()) - 2
     };
     let given = eye as usize;
     let best_of = |points: &[[f64; 3]], size_of: &dyn Fn([f64; 3]) -> f64| {
-        let sizes = points[..given].iter().enumerate().map(|(i, &p)| (number(i), size_of(p)));
+        let sizes = points[..given].iter().enumerate().map(|(i, &p)| (to_row(i), size_of(p)));
         sizes.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|best| best.1 > 0.0).map(|best| best.0)
     };
     let square = |v: [f64; 3]| dot(v, v);
@@ -58,7 +59,7 @@ pub(super) fn tetrahedron(points: &[[f64; 3]], [mut a, mut b, c, d]: [u32; 4]) -
     let facets = [[a, b, c], [b, a, d], [c, b, d], [a, c, d]];
     let across = |from: u32, to: u32| {
         let has_edge = |f: &[u32; 3]| (0..3).any(|i| f[i] == to && f[(i + 1) % 3] == from);
-        facets.iter().position(has_edge).map_or(NONE, number)
+        facets.iter().position(has_edge).map_or(NONE, to_row)
     };
     facets
         .iter()

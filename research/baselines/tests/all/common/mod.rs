@@ -42,18 +42,6 @@ pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Range at which a line meets a triangle: Möller & Trumbore 1997.
-pub(crate) fn moeller_trumbore(corners: [[f64; 3]; 3], origin: [f64; 3], direction: [f64; 3]) -> Option<f64> {
-    let (e1, e2) = (sub(corners[1], corners[0]), sub(corners[2], corners[0]));
-    let p = cross(direction, e2);
-    let determinant = dot(e1, p);
-    let s = sub(origin, corners[0]);
-    let u = dot(s, p) / determinant;
-    let q = cross(s, e1);
-    let v = dot(direction, q) / determinant;
-    (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| dot(e2, q) / determinant)
-}
-
 /// A town of 100 m with its mesh.
 pub(crate) fn small_town() -> (TriangleScene, Mesh) {
     let scene = town(&TownParams { extent: 100.0, seed: 3, ..TownParams::default() });

@@ -2,6 +2,7 @@
 
 use crate::place::{CarvingSite, Missing};
 use belvedere::Bounds;
+use belvedere::cast::to_index;
 use belvedere::figures::{Picture, side_by_side, write_png};
 use belvedere::medial::{MedialBalls, ShrinkParams};
 use belvedere::model::BallParams;
@@ -64,9 +65,8 @@ fn stacked(pictures: &[Picture]) -> Picture {
     all
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a picture of bounded size")]
 fn pixels(length: f32, pixel: f32) -> usize {
-    (length / pixel) as usize
+    to_index(f64::from(length / pixel))
 }
 
 /// An upright section from west to east through the middle of the place.

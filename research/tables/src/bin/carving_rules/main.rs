@@ -15,13 +15,14 @@
 mod figures;
 mod place;
 
+use belvedere::Result;
 use belvedere::control::Control;
 use belvedere::medial::{CarvedParams, CrownParams, Rule, Trees};
 use belvedere::model::BallParams;
-use belvedere::query::{Answer, BlockRule, UnprovenAs, Viewer, Visibility};
-use belvedere::{Error, Parameter, Result};
+use belvedere::query::{Answer, BlockRule, UnprovenAs, Visibility};
 use belvedere_baselines::agreement::{Rate, TruthCounts};
 use belvedere_baselines::medial::{MedialBaseline, MedialParams, Outward, scene_model};
+use belvedere_baselines::simulated::preset;
 use belvedere_scenes::{Preset, Regime};
 use place::{CarvingSite, Missing, ViewerTargets};
 use std::collections::BTreeMap;
@@ -72,16 +73,8 @@ fn main() -> Result<()> {
         let text = lists.get(index).map_or(usual, |list| list.as_str());
         text.split(',').filter(|part| !part.is_empty()).map(str::to_owned).collect()
     };
-    let presets: Vec<Preset> = list(0, "village,town,old-town,towers")
-        .iter()
-        .map(|name| {
-            Preset::ALL.into_iter().find(|preset| preset.name() == name).ok_or_else(|| Error::InvalidParameter {
-                parameter: Parameter::MethodSetting,
-                value: format!("{name} for the preset"),
-                expected: "village, town, old-town, towers or park",
-            })
-        })
-        .collect::<Result<_>>()?;
+    let presets: Vec<Preset> =
+        list(0, "village,town,old-town,towers").iter().map(|name| preset(name)).collect::<Result<_>>()?;
     let seeds: Vec<u64> = list(1, "7").iter().filter_map(|seed| seed.parse().ok()).collect();
     let wanted = list(2, "");
 
@@ -184,9 +177,4 @@ fn judge(place: &CarvingSite, model: &MedialBaseline, seconds: f64) -> Result<Sc
             seconds,
         ],
     })
-}
-
-/// The line of sight of a viewer, for the queries of this program.
-fn towards(viewer: Viewer<'_>, target: [f32; 3]) -> Option<([f64; 3], f64)> {
-    viewer.line_of_sight(0, target)
 }

@@ -1,15 +1,14 @@
 //! A simulated town with its survey, and questions with exact answers.
 
 use belvedere::Bounds;
-use belvedere::cloud::to_local;
+use belvedere::Result;
 use belvedere::query::{Answer, MedialScene, Viewer, Visibility};
 use belvedere::vector::{cross, unit};
 use belvedere::view::to_sun;
-use belvedere::{PointCloud, Result};
 use belvedere_baselines::MethodInput;
 use belvedere_baselines::medial::MedialBaseline;
-use belvedere_baselines::simulated::{flown, surveyed, without_returns_from_water};
-use belvedere_scenes::{AirborneParams, Preset, QuerySet, QuerySite, Regime, TriangleScene, Truth};
+use belvedere_baselines::simulated::{SurveyedScene, flown, surveyed, without_returns_from_water};
+use belvedere_scenes::{AirborneParams, Preset, QuerySet, Regime};
 use std::collections::BTreeMap;
 
 const EXTENT: f64 = 150.0;
@@ -39,11 +38,7 @@ pub(crate) struct ViewerTargets {
 }
 
 pub(crate) struct CarvingSite {
-    cloud: PointCloud,
-    bounds: Bounds,
-    scanner: Vec<[f32; 3]>,
-    scene: TriangleScene,
-    truth: Truth,
+    town: SurveyedScene,
     /// Local positions by name of the set.
     pub(crate) targets: BTreeMap<&'static str, Vec<[f32; 3]>>,
     pub(crate) questions: Vec<ViewerTargets>,
@@ -101,25 +96,15 @@ impl CarvingSite {
         {
             classes.iter_mut().filter(|class| (3..=5).contains(*class)).for_each(|class| *class = 1);
         }
-        let (cloud, scanner) =
-            if missing.water { without_returns_from_water(&cloud, &scanner) } else { (cloud, scanner) };
-        let truth = Truth::new(&scene);
-        let mut place = Self {
-            bounds: cloud.bounds().unwrap_or_default(),
-            cloud,
-            scanner,
-            scene,
-            truth,
-            targets: BTreeMap::new(),
-            questions: Vec::new(),
-        };
+        let survey = if missing.water { without_returns_from_water(&cloud, &scanner) } else { (cloud, scanner) };
+        let town = SurveyedScene::new(scene, survey);
+        let mut place = Self { town, targets: BTreeMap::new(), questions: Vec::new() };
         place.ask(seed);
         Ok(place)
     }
 
     fn ask(&mut self, seed: u64) {
-        let origin = self.cloud.frame.origin;
-        let site = self.site();
+        let site = self.town.site();
         let sets = [
             ("AIR", QuerySet::Air, TARGETS),
             ("PED", QuerySet::Pedestrians, TARGETS),
@@ -130,10 +115,10 @@ impl CarvingSite {
         let mut sets_of_targets = BTreeMap::new();
         for (name, set, count) in sets {
             let positions = site.targets(set, count, seed).positions;
-            sets_of_targets.insert(name, positions.into_iter().map(|p| to_local(p, origin)).collect::<Vec<_>>());
+            sets_of_targets.insert(name, positions.into_iter().map(|p| self.town.local(p)).collect::<Vec<_>>());
         }
         let suns = SUNS_DEG.map(|[a, e]| ("suns", Viewer::Direction(to_sun(a.to_radians(), e.to_radians()))));
-        let local = |eye: [f64; 3]| Viewer::Eye(std::array::from_fn(|i| eye[i] - origin[i]));
+        let local = |eye: [f64; 3]| Viewer::Eye(self.town.eye(eye));
         let eyes = site.observers(seed).into_iter().flatten().map(|eye| ("eyes", local(eye)));
         let street = site.street_observers(STREET_OBSERVERS, seed).into_iter().map(|eye| ("street", local(eye)));
         let viewers: Vec<(&'static str, Viewer<'static>)> = suns.into_iter().chain(eyes).chain(street).collect();
@@ -143,10 +128,10 @@ impl CarvingSite {
                 if (views == "street") != (set == "STREET") {
                     continue;
                 }
-                let exact: Vec<[f64; 3]> = targets.iter().map(|&p| self.absolute(p)).collect();
+                let exact: Vec<[f64; 3]> = targets.iter().map(|&p| self.town.absolute(p)).collect();
                 let blocked = match viewer {
-                    Viewer::Direction(direction) => self.truth.occluded_towards_each(&exact, direction),
-                    Viewer::Eye(eye) => self.truth.occluded_each(&exact, std::array::from_fn(|i| eye[i] + origin[i])),
+                    Viewer::Direction(direction) => self.town.truth.occluded_towards_each(&exact, direction),
+                    Viewer::Eye(eye) => self.town.truth.occluded_each(&exact, self.town.absolute_of(eye)),
                     Viewer::Each(_) => continue,
                 };
                 let visible = blocked.into_iter().map(|blocked| !blocked).collect();
@@ -156,40 +141,31 @@ impl CarvingSite {
         (self.targets, self.questions) = (sets_of_targets, questions);
     }
 
-    fn absolute(&self, p: [f32; 3]) -> [f64; 3] {
-        std::array::from_fn(|i| f64::from(p[i]) + self.cloud.frame.origin[i])
-    }
-
-    fn site(&self) -> QuerySite<'_> {
-        let Bounds { low, high } = self.bounds();
-        QuerySite { scene: &self.scene, truth: &self.truth, bounds: [self.absolute(low), self.absolute(high)] }
-    }
-
     /// Corners of the cloud, local metres.
     pub(crate) fn bounds(&self) -> Bounds {
-        self.bounds
+        self.town.cloud.bounds().unwrap_or_default()
     }
 
     /// Whether a local position lies in a solid or in the ground.
     pub(crate) fn is_inside(&self, p: [f32; 3]) -> bool {
-        self.site().is_inside(self.absolute(p))
+        self.town.site().is_inside(self.town.absolute(p))
     }
 
     /// The free local position `height` above the ground, if there is one.
     pub(crate) fn above_ground(&self, [x, y]: [f32; 2], height: f32) -> Option<[f32; 3]> {
-        let [east, north, _] = self.absolute([x, y, 0.0]);
-        let ground = to_local([east, north, self.site().ground_height([east, north])?], self.cloud.frame.origin);
+        let [east, north, _] = self.town.absolute([x, y, 0.0]);
+        let ground = self.town.local([east, north, self.town.site().ground_height([east, north])?]);
         let p = [x, y, ground[2] + height];
         (!self.is_inside(p)).then_some(p)
     }
 
     /// Whether nothing stands between a local position and the sun.
     pub(crate) fn is_lit(&self, p: [f32; 3], sun: [f64; 3]) -> bool {
-        !self.truth.occluded_towards(self.absolute(p), sun)
+        !self.town.truth.occluded_towards(self.town.absolute(p), sun)
     }
 
     pub(crate) fn survey(&self) -> MethodInput<'_> {
-        MethodInput { cloud: &self.cloud, scanner: &self.scanner, models: &[] }
+        self.town.input()
     }
 
     /// Whether a line of sight half a spacing of pulses beside this one, on any side, is blocked in truth where this
@@ -199,23 +175,23 @@ impl CarvingSite {
         let across = unit(cross(towards, [0.0, 0.0, 1.0])).unwrap_or([1.0, 0.0, 0.0]);
         let up = cross(across, towards);
         let half_spacing = 0.5 / PULSES_PER_M2.sqrt();
-        let target = self.absolute(target);
+        let target = self.town.absolute(target);
         (0..8_u32).any(|eighth| {
             let (sin, cos) = (f64::from(eighth) * std::f64::consts::FRAC_PI_4).sin_cos();
             let beside: [f64; 3] = std::array::from_fn(|i| {
                 target[i] + SURFACE_TOLERANCE * towards[i] + half_spacing * (cos * across[i] + sin * up[i])
             });
-            let is_hit = || self.truth.first_hit(beside, towards, range - SURFACE_TOLERANCE).is_some();
-            (self.site().is_inside(beside) || is_hit()) == is_free
+            let is_hit = || self.town.truth.first_hit(beside, towards, range - SURFACE_TOLERANCE).is_some();
+            (self.town.site().is_inside(beside) || is_hit()) == is_free
         })
     }
 
     /// Prints by surface what hides what a model calls visible, and at what its balls sit that hide what is visible;
     /// and what share of both lies at edges or along lines that the pulses of `with_pulses` do not prove.
     pub(crate) fn blame(&self, model: &MedialBaseline, with_pulses: &MedialScene) -> Result<()> {
-        let absolute = |p| self.absolute(p);
-        let site = self.site();
-        let kind = |triangle: u32| self.scene.materials.get(triangle as usize).map_or("?", |m| m.name());
+        let absolute = |p| self.town.absolute(p);
+        let site = self.town.site();
+        let kind = |triangle: u32| self.town.material(triangle).map_or("?", |material| material.name());
         for views in ["suns", "street"] {
             for set in ["PED", "AIR", "ROOF", "FACADE", "STREET"] {
                 let (mut missed, mut blocking) = (BTreeMap::<&str, usize>::new(), BTreeMap::<String, usize>::new());
@@ -227,7 +203,7 @@ impl CarvingSite {
                     let targets = &self.targets[set];
                     let answers = model.visible(question.viewer, targets)?;
                     for ((&target, &visible), &answer) in targets.iter().zip(&question.visible).zip(&answers) {
-                        let Some((towards, range)) = super::towards(question.viewer, target) else { continue };
+                        let Some((towards, range)) = question.viewer.line_of_sight(0, target) else { continue };
                         visible_count += usize::from(visible);
                         blocked_count += usize::from(!visible);
                         let place = [
@@ -236,11 +212,11 @@ impl CarvingSite {
                         ];
                         tallies[usize::from(visible)].add(place, visible == (answer == Answer::Blocked));
                         if !visible && answer == Answer::Visible {
-                            let hit = self.truth.first_hit(absolute(target), towards, range);
+                            let hit = self.town.truth.first_hit(absolute(target), towards, range);
                             *missed.entry(hit.map_or("?", |hit| kind(hit.triangle))).or_default() += 1;
                             let enters = hit.map_or(0.0, |hit| hit.range) + SKIN;
                             let inside = std::array::from_fn(|i| absolute(target)[i] + enters * towards[i]);
-                            let solid = self.truth.first_hit(inside, towards, f64::INFINITY).map(|hit| hit.range);
+                            let solid = self.town.truth.first_hit(inside, towards, f64::INFINITY).map(|hit| hit.range);
                             for (count, max) in thin.iter_mut().zip(THIN) {
                                 *count += usize::from(solid.is_some_and(|solid| solid < max));
                             }
@@ -251,8 +227,8 @@ impl CarvingSite {
                             let (source, radius) = (model.balls().source[row] as usize, model.balls().radii[row]);
                             let surface = site
                                 .surface_of_return(
-                                    absolute(self.scanner[source]),
-                                    absolute(self.cloud.positions[source]),
+                                    absolute(self.town.scanner[source]),
+                                    absolute(self.town.cloud.positions[source]),
                                 )
                                 .map_or("?", |(hit, _)| kind(hit.triangle));
                             let size = ["<.2", "<.5", "<1", "<2", ">2"]

@@ -1,15 +1,14 @@
 //! Lines of sight of a simulated town: what speaks for each, and the truth.
 
 use belvedere::Result;
-use belvedere::cloud::to_local;
+use belvedere::cast::to_index;
 use belvedere::control::Control;
 use belvedere::query::{BlockRule, Evidence, MedialScene, UnprovenAs};
 use belvedere::ray_index::Ray;
 use belvedere::view::to_sun;
-use belvedere_baselines::MethodInput;
 use belvedere_baselines::medial::{MedialParams, Outward, scene_model};
-use belvedere_baselines::simulated::surveyed;
-use belvedere_scenes::{Preset, QuerySet, QuerySite, Regime, TargetsOfKind, TriangleScene, Truth};
+use belvedere_baselines::simulated::{SurveyedScene, surveyed};
+use belvedere_scenes::{Preset, QuerySet, Regime, TargetsOfKind};
 use rayon::prelude::*;
 
 /// Class of points of buildings.
@@ -53,34 +52,24 @@ pub(crate) struct Case {
 
 /// The scene that a survey shows, and the truth.
 pub(crate) struct SurveyedTown {
-    town: TriangleScene,
+    pub(crate) town: SurveyedScene,
     pub(crate) scene: MedialScene,
-    pub(crate) truth: Truth,
-    pub(crate) origin: [f64; 3],
     /// Points of buildings, local metres.
     pub(crate) roof_points: Vec<[f32; 3]>,
-    bounds: [[f64; 3]; 2],
 }
 
 impl SurveyedTown {
     pub(crate) fn new(survey: &TownSurvey) -> Result<Self> {
         let params = survey.regime.town(survey.preset.params(EXTENT, survey.seed));
         let town = survey.regime.scene(&params);
-        let (cloud, scanner) = surveyed(&survey.regime.scan(&town, &params, survey.pulses_per_m2))?;
-        let input = MethodInput { cloud: &cloud, scanner: &scanner, models: &[] };
-        let model = scene_model(&input, Outward::Survey, &MedialParams::carved())?;
+        let survey = surveyed(&survey.regime.scan(&town, &params, survey.pulses_per_m2))?;
+        let town = SurveyedScene::new(town, survey);
+        let model = scene_model(&town.input(), Outward::Survey, &MedialParams::carved())?;
         let scene = model.scene(&BlockRule::carved(), UnprovenAs::Reported, &Control::none())?;
-        let (origin, bounds) = (cloud.frame.origin, cloud.bounds().unwrap_or_default());
-        let absolute = |p: [f32; 3]| std::array::from_fn(|i| f64::from(p[i]) + origin[i]);
-        let bounds = [bounds.low, bounds.high].map(absolute);
-        let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
-        let of_buildings = cloud.positions.iter().zip(classes).filter(|(_, class)| **class == BUILDING);
+        let classes = town.cloud.attributes.classification.as_deref().unwrap_or_default();
+        let of_buildings = town.cloud.positions.iter().zip(classes).filter(|(_, class)| **class == BUILDING);
         let roof_points = of_buildings.map(|(place, _)| *place).collect();
-        Ok(Self { truth: Truth::new(&town), town, scene, origin, roof_points, bounds })
-    }
-
-    pub(crate) fn site(&self) -> QuerySite<'_> {
-        QuerySite { scene: &self.town, truth: &self.truth, bounds: self.bounds }
+        Ok(Self { town, scene, roof_points })
     }
 }
 
@@ -89,7 +78,7 @@ impl TownSurvey {
     /// which some are in buildings and in the ground, are looked at by people and from an aircraft too.
     pub(crate) fn cases(&self) -> Result<Vec<Case>> {
         let surveyed = SurveyedTown::new(self)?;
-        let of_set = |set: QuerySet| surveyed.site().targets(set, TARGETS, self.seed);
+        let of_set = |set: QuerySet| surveyed.town.site().targets(set, TARGETS, self.seed);
         let TargetsOfKind { positions: people, eyes } = of_set(QuerySet::LinesOfSight);
         let mut cases = surveyed.between(QuerySet::LinesOfSight, &people, &eyes);
         for set in SETS.into_iter().filter(|set| *set != QuerySet::LinesOfSight) {
@@ -107,22 +96,21 @@ impl TownSurvey {
 
 /// Where an aircraft flies that is seen from a place in one of the directions of suns, chosen by the place.
 fn above(place: [f64; 3]) -> [f64; 3] {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "any of them will do")]
-    let number = (place[0].abs() * 1e3) as usize % SUNS_DEG.len();
-    let [azimuth, _] = SUNS_DEG[number];
+    let [azimuth, _] = SUNS_DEG[to_index(place[0].abs() * 1e3) % SUNS_DEG.len()];
     let towards = to_sun(azimuth.to_radians(), AIRCRAFT_ELEVATION_DEG.to_radians());
     std::array::from_fn(|i| place[i] + AIRCRAFT_RANGE * towards[i])
 }
 
 impl SurveyedTown {
-    fn local(&self, place: [f64; 3]) -> [f64; 3] {
-        to_local(place, self.origin).map(f64::from)
+    /// Local position as clouds store it, metres.
+    pub(crate) fn local(&self, place: [f64; 3]) -> [f64; 3] {
+        self.town.local(place).map(f64::from)
     }
 
     fn towards_suns(&self, set: QuerySet, places: &[[f64; 3]]) -> Vec<Case> {
         let of_sun = |[azimuth, elevation]: [f64; 2]| {
             let direction = to_sun(azimuth.to_radians(), elevation.to_radians());
-            let blocked = self.truth.occluded_towards_each(places, direction);
+            let blocked = self.town.truth.occluded_towards_each(places, direction);
             let lines = places.par_iter().zip(blocked).filter_map(|(place, is_blocked)| {
                 let sight = Ray { origin: self.local(*place), direction, ranges: [0.0, f64::INFINITY] };
                 self.case(set, &sight, !is_blocked)
@@ -135,7 +123,7 @@ impl SurveyedTown {
     fn between(&self, set: QuerySet, places: &[[f64; 3]], eyes: &[[f64; 3]]) -> Vec<Case> {
         let line = |(place, eye): (&[f64; 3], &[f64; 3])| {
             let sight = Ray::between(self.local(*place), self.local(*eye))?;
-            self.case(set, &sight, !self.truth.occluded(*place, *eye))
+            self.case(set, &sight, !self.town.truth.occluded(*place, *eye))
         };
         places.par_iter().zip(eyes).filter_map(line).collect()
     }

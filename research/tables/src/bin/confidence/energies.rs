@@ -12,7 +12,7 @@ use belvedere::apps::rows::RowBlock;
 use belvedere::apps::sum_errors::{Intervals, SumKind};
 use belvedere::apps::sun::{Site, Zone};
 use belvedere::apps::targets::Targets;
-use belvedere::cloud::to_local;
+use belvedere::cast::to_f32s;
 use belvedere::control::Control;
 use belvedere::frame::Frame;
 use belvedere::query::VisibilityMatrix;
@@ -56,7 +56,7 @@ pub(super) fn cases(survey: &TownSurvey, surveyed: &SurveyedTown) -> AnyResult<V
     let planes = planes(surveyed)?;
     for (radiation, name) in years()?.into_iter().zip(["energy of a year, clear sky", "energy of a year, clouds"]) {
         for set in SETS {
-            let found = surveyed.site().targets(set, TARGETS, survey.seed).positions;
+            let found = surveyed.town.site().targets(set, TARGETS, survey.seed).positions;
             cases.extend(of_places((set, name), &found, &radiation, surveyed)?);
         }
         cases.extend(of_planes(name, &planes, &radiation, surveyed)?);
@@ -69,7 +69,7 @@ fn exact(places: &[[f64; 3]], directions: &[[f64; 3]], surveyed: &SurveyedTown) 
     let width = directions.len().div_ceil(64);
     let mut words = vec![0_u64; width * places.len()];
     for (number, direction) in directions.iter().enumerate() {
-        let occluded = surveyed.truth.occluded_towards_each(places, *direction);
+        let occluded = surveyed.town.truth.occluded_towards_each(places, *direction);
         for (row, occluded) in occluded.into_iter().enumerate() {
             words[row * width + number / 64] |= u64::from(!occluded) << (number % 64);
         }
@@ -84,7 +84,7 @@ fn of_places(
     surveyed: &SurveyedTown,
 ) -> AnyResult<Vec<SumCase>> {
     let none = Control::none();
-    let positions: Vec<[f64; 3]> = found.iter().map(|p| to_local(*p, surveyed.origin).map(f64::from)).collect();
+    let positions: Vec<[f64; 3]> = found.iter().map(|p| surveyed.local(*p)).collect();
     let mut targets = Targets::of_places(&positions, Frame::default());
     let truth = exact(found, &radiation.directions(), surveyed)?;
     if set == QuerySet::Facades {
@@ -111,9 +111,7 @@ fn outward(truth: &VisibilityMatrix, directions: &[[f64; 3]]) -> Vec<[f32; 3]> {
         let free = directions.iter().enumerate().filter(|(number, _)| truth.is_free(row, *number));
         let [x, y] = free.fold([0.0, 0.0], |[x, y], (_, d)| [x + d[0], y + d[1]]);
         let length = x.hypot(y).max(1e-9);
-        #[expect(clippy::cast_possible_truncation, reason = "a unit vector")]
-        let normal = [(x / length) as f32, (y / length) as f32, 0.0];
-        normal
+        to_f32s([x / length, y / length, 0.0])
     };
     (0..truth.target_count()).map(of_row).collect()
 }
@@ -136,10 +134,7 @@ fn of_planes(
     let mut cases = Vec::new();
     for (plane, found) in planes.iter().zip(found) {
         let cells = plane.cells.middles();
-        let at = |(middle, _): &([f64; 3], usize)| {
-            let place = above_roof(*middle, plane.normal);
-            [0, 1, 2].map(|i| f64::from(place[i]) + surveyed.origin[i])
-        };
+        let at = |(middle, _): &([f64; 3], usize)| surveyed.town.absolute(above_roof(*middle, plane.normal));
         let places: Vec<[f64; 3]> = cells.iter().map(at).collect();
         let truth = exact(&places, &radiation.directions(), surveyed)?;
         let strings: Vec<usize> = cells.iter().map(|(_, string)| *string).collect();

@@ -21,7 +21,8 @@ mod sums;
 mod ways;
 
 use belvedere::apps::calibration::Calibration;
-use belvedere_scenes::{Preset, Regime};
+use belvedere_baselines::simulated;
+use belvedere_scenes::Regime;
 use cases::{Case, SETS, TownSurvey};
 use sums::SumCase;
 use ways::WayCase;
@@ -92,7 +93,7 @@ fn surveys(presets: &str, seeds: &str, densities: &str, regimes: &str) -> AnyRes
         for regime in regimes.split(',') {
             let regime = Regime::ALL.into_iter().find(|known| known.name() == regime).ok_or("no such scanner")?;
             for preset in presets.split(',') {
-                let preset = Preset::ALL.into_iter().find(|known| known.name() == preset).ok_or("no such town")?;
+                let preset = simulated::preset(preset)?;
                 for seed in seeds.split(',') {
                     surveys.push(TownSurvey { preset, seed: seed.parse()?, regime, pulses_per_m2: density.parse()? });
                 }

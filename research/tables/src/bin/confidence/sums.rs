@@ -6,7 +6,7 @@ use belvedere::apps::rows::RowBlock;
 use belvedere::apps::sky_view::SkyDirections;
 use belvedere::apps::sum_errors::{CLASSES, Outlines, SumKind, expected_measures};
 use belvedere::apps::targets::{Measure, Targets};
-use belvedere::cloud::to_local;
+use belvedere::cast::to_f32;
 use belvedere::control::Control;
 use belvedere::frame::Frame;
 use belvedere_scenes::QuerySet;
@@ -84,11 +84,11 @@ fn suns(declination_deg: f64) -> Vec<[f64; 3]> {
 /// Sums over what targets of a surveyed town see, and the truth.
 pub(super) fn cases(survey: &TownSurvey) -> AnyResult<Vec<SumCase>> {
     let surveyed = SurveyedTown::new(survey)?;
-    let SurveyedTown { scene, truth, origin, .. } = &surveyed;
+    let SurveyedTown { scene, town, .. } = &surveyed;
     let mut cases = energies::cases(survey, &surveyed)?;
     for set in SETS {
-        let found = surveyed.site().targets(set, TARGETS, survey.seed).positions;
-        let positions: Vec<[f64; 3]> = found.iter().map(|p| to_local(*p, *origin).map(f64::from)).collect();
+        let found = town.site().targets(set, TARGETS, survey.seed).positions;
+        let positions: Vec<[f64; 3]> = found.iter().map(|p| surveyed.local(*p)).collect();
         let targets = Targets::of_places(&positions, Frame::default());
         let are_inside: Vec<bool> = positions.iter().map(|&place| scene.is_inside_obstacle(place)).collect();
         for Sum { kind, name, directions, weights } in all_sums()? {
@@ -97,7 +97,7 @@ pub(super) fn cases(survey: &TownSurvey) -> AnyResult<Vec<SumCase>> {
             let all: f64 = weights.iter().sum();
             let mut truths = vec![0.0; found.len()];
             for (direction, weight) in directions.iter().zip(&weights) {
-                let blocked = truth.occluded_towards_each(&found, *direction);
+                let blocked = town.truth.occluded_towards_each(&found, *direction);
                 truths.iter_mut().zip(blocked).for_each(|(sum, blocked)| *sum += if blocked { 0.0 } else { *weight });
             }
             let block = RowBlock { rows: 0..found.len(), matrix, crowns: None };
@@ -146,8 +146,7 @@ pub(super) fn judge(cases: &[SumCase]) {
             let of_set = cases.iter().filter(|case| case.name == name && set.is_none_or(|set| case.set == set));
             let (mut held, mut width, mut count) = (0.0, 0.0, 0.0);
             for case in of_set {
-                #[expect(clippy::cast_possible_truncation, reason = "a share")]
-                let sums = Measure::new("sum", vec![case.found as f32]);
+                let sums = Measure::new("sum", vec![to_f32(case.found)]);
                 let measures = expected_measures("sum", &sums, |_| 1.0, case.kind, &[case.class]);
                 let [low, high] = [1, 2].map(|number: usize| f64::from(measures[number].values[0]));
                 // f32 rounds the ends

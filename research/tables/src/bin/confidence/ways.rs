@@ -4,7 +4,6 @@ use super::AnyResult;
 use super::cases::{SurveyedTown, TownSurvey};
 use belvedere::apps::horizon::{HorizonParams, horizon_intervals, horizons};
 use belvedere::apps::isovist::{IsovistParams, isovist, isovist_intervals, isovist_of};
-use belvedere::cloud::to_local;
 use belvedere::control::Control;
 use belvedere::view::to_sun;
 use belvedere_scenes::QuerySet;
@@ -31,8 +30,8 @@ pub(super) struct WayCase {
 /// Horizons and isovists of people in a surveyed town, and the truth.
 pub(super) fn cases(survey: &TownSurvey) -> AnyResult<Vec<WayCase>> {
     let surveyed = SurveyedTown::new(survey)?;
-    let places = surveyed.site().targets(QuerySet::Pedestrians, OBSERVERS, survey.seed).positions;
-    let local = |place: &[f64; 3]| to_local(*place, surveyed.origin).map(f64::from);
+    let places = surveyed.town.site().targets(QuerySet::Pedestrians, OBSERVERS, survey.seed).positions;
+    let local = |place: &[f64; 3]| surveyed.local(*place);
     let is_outside = |place: &&[f64; 3]| !surveyed.scene.is_inside_obstacle(local(place));
     let places: Vec<[f64; 3]> = places.iter().filter(is_outside).copied().collect();
     let eyes: Vec<[f64; 3]> = places.iter().map(local).collect();
@@ -52,7 +51,8 @@ fn of_horizons(surveyed: &SurveyedTown, places: &[[f64; 3]], eyes: &[[f64; 3]]) 
         let case = |(azimuth, interval): (usize, [f64; 2])| {
             let elevation = |step: usize| FRAC_PI_2 * (1.0 - 2.0 * step as f64 / ELEVATIONS as f64);
             let azimuth = TAU * azimuth as f64 / AZIMUTHS as f64;
-            let is_hidden = |step: &usize| surveyed.truth.occluded_towards(*place, to_sun(azimuth, elevation(*step)));
+            let is_hidden =
+                |step: &usize| surveyed.town.truth.occluded_towards(*place, to_sun(azimuth, elevation(*step)));
             let truth = (0..=ELEVATIONS).find(is_hidden).map_or(-FRAC_PI_2, elevation);
             // towns end in nothing, so that what is below the horizon is no horizon
             let [low, high] = interval.map(|end| end.to_degrees().max(0.0));
@@ -74,7 +74,7 @@ fn of_isovists(surveyed: &SurveyedTown, place: [f64; 3], eye: [f64; 3]) -> AnyRe
     let params = IsovistParams::default().with_max_range(REACH).with_step(2f64.to_radians());
     let seen = isovist(&surveyed.scene, eye, &params, &none)?;
     let Some(found) = isovist_intervals(&surveyed.scene, eye, &seen, &params, &none)? else { return Ok(Vec::new()) };
-    let range = |direction: [f64; 3]| surveyed.truth.first_hit(place, direction, REACH).map(|hit| hit.range);
+    let range = |direction: [f64; 3]| surveyed.town.truth.first_hit(place, direction, REACH).map(|hit| hit.range);
     let truth = isovist_of(&range, &params, &none)?;
     Ok(vec![
         WayCase { name: "area of the plan, m²", interval: found.plan_area, truth: truth.plan.area },

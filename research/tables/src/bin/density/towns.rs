@@ -6,8 +6,8 @@ use belvedere::cloud::to_local;
 use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_cloud};
 use belvedere::view::to_sun;
-use belvedere_baselines::simulated::flown;
-use belvedere_scenes::{AirborneParams, Preset, QuerySet, QuerySite, Truth, town};
+use belvedere_baselines::simulated::{SurveyedScene, preset};
+use belvedere_scenes::QuerySet;
 use npyz::{Deserialize, NpyFile};
 use std::fs::File;
 use std::io::Read;
@@ -75,21 +75,15 @@ impl JudgedTown {
     }
 
     fn simulated(kind: &str, seed: u64) -> AnyResult<Self> {
-        let preset = Preset::ALL.into_iter().find(|preset| preset.name() == kind).ok_or("no such kind of town")?;
-        let scene = town(&preset.params(EXTENT, seed));
-        let (cloud, _) = flown(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, DENSITY) })?;
-        let truth = Truth::new(&scene);
-        let origin = cloud.frame.origin;
-        let bounds = cloud.bounds().unwrap_or_default();
-        let corner = |v: [f32; 3]| std::array::from_fn(|i| f64::from(v[i]) + origin[i]);
-        let site = QuerySite { scene: &scene, truth: &truth, bounds: [corner(bounds.low), corner(bounds.high)] };
+        let town = SurveyedScene::flown(preset(kind)?, EXTENT, seed, DENSITY)?;
+        let site = town.site();
         let places = |set: QuerySet| site.targets(set, TARGETS, seed).positions;
         let set = |(name, kind): (&'static str, QuerySet)| {
             let places = places(kind);
             let blocked = SUNS_DEG.iter().map(|[azimuth, elevation]| {
-                truth.occluded_towards_each(&places, to_sun(azimuth.to_radians(), elevation.to_radians()))
+                town.truth.occluded_towards_each(&places, to_sun(azimuth.to_radians(), elevation.to_radians()))
             });
-            let targets = places.iter().map(|&p| to_local(p, origin)).collect();
+            let targets = places.iter().map(|&p| town.local(p)).collect();
             JudgedSet { name, blocked: blocked.collect(), targets }
         };
         let sets = SETS.into_iter().map(set).collect();
@@ -97,12 +91,12 @@ impl JudgedTown {
         let mut street = (Vec::new(), Vec::new(), Vec::new());
         for (number, &eye) in people.iter().enumerate() {
             for &other in &people[number + 1..] {
-                street.0.push(to_local(eye, origin));
-                street.1.push(to_local(other, origin));
-                street.2.push(truth.occluded(other, eye));
+                street.0.push(town.local(eye));
+                street.1.push(town.local(other));
+                street.2.push(town.truth.occluded(other, eye));
             }
         }
-        Ok(Self { cloud, sets, street })
+        Ok(Self { cloud: town.cloud, sets, street })
     }
 }
 

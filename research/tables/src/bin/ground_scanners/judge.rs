@@ -1,14 +1,14 @@
 //! A model of a cloud, compared with the exact town.
 
-use belvedere::control::{Control, StageEnd, Watcher};
+use belvedere::Result;
+use belvedere::control::Control;
 use belvedere::medial::CarvedParams;
 use belvedere::model::{BallParams, BallsReport, BuildReport, ModelParams, OrientBy, SceneModel};
 use belvedere::query::{Answer, MedialScene, UnprovenAs, Viewer, Visibility};
-use belvedere::{Bounds, PointCloud, Result};
-use belvedere_scenes::{QuerySet, QuerySite, TriangleScene, Truth};
+use belvedere_baselines::simulated::SurveyedScene;
+use belvedere_scenes::QuerySet;
 use std::collections::BTreeMap;
 use std::fmt;
-use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// People that look, and those that they look at; own points that they look at.
@@ -24,7 +24,6 @@ struct AnswerTally([[usize; 3]; 2]);
 pub(crate) struct ScannerResults {
     build_seconds: f64,
     query_seconds: f64,
-    peak_mib: Option<f64>,
     balls: usize,
     report: BuildReport,
     streets: AnswerTally,
@@ -34,54 +33,40 @@ pub(crate) struct ScannerResults {
     blockers: BTreeMap<&'static str, (usize, f64)>,
 }
 
-/// Builds the default model of `cloud`, whose points were measured from `scanner`, and queries what people in streets
-/// see.
-pub(crate) fn judge(
-    scene: &TriangleScene,
-    cloud: &PointCloud,
-    scanner: &[[f32; 3]],
-    seed: u64,
-) -> Result<ScannerResults> {
+/// Builds the default model of a survey, and queries what people in streets see.
+pub(crate) fn judge(town: &SurveyedScene, seed: u64) -> Result<ScannerResults> {
+    let SurveyedScene { truth, cloud, scanner, .. } = town;
     let params = ModelParams::default()
-        .with_orient(OrientBy::ScannerOfEachPoint(scanner.to_vec()))
+        .with_orient(OrientBy::ScannerOfEachPoint(scanner.clone()))
         .with_balls(BallParams::Carved(CarvedParams::default()));
     let start = Instant::now();
-    let (model, report) = SceneModel::build(cloud, &params, &Control::new(&Clock::default()))?;
+    let (model, report) = SceneModel::build(cloud, &params, &Control::none())?;
     let build_seconds = start.elapsed().as_secs_f64();
-    let peak_mib = peak_mib();
     let medial = model.scene(&model.rule(), UnprovenAs::Reported, &Control::none())?;
 
-    let truth = Truth::new(scene);
-    let origin = cloud.frame.origin;
-    let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + origin[i]) };
-    let Bounds { low, high } = cloud.bounds().unwrap_or_default();
-    let site = QuerySite { scene, truth: &truth, bounds: [absolute(low), absolute(high)] };
-    let targets: Vec<[f32; 3]> = site
-        .targets(QuerySet::Pedestrians, TARGETS, seed)
-        .positions
-        .iter()
-        .map(|&p| belvedere::cloud::to_local(p, origin))
-        .collect();
+    let site = town.site();
+    let positions = site.targets(QuerySet::Pedestrians, TARGETS, seed).positions;
+    let targets: Vec<[f32; 3]> = positions.iter().map(|&p| town.local(p)).collect();
     let step = (cloud.len() / OWN).max(1);
     let (own, outside): (Vec<[f32; 3]>, Vec<[f64; 3]>) = (0..cloud.len())
         .step_by(step)
         .filter_map(|row| {
             let p = cloud.positions[row];
-            Some((p, site.surface_of_return(absolute(*scanner.get(row)?), absolute(p))?.1))
+            Some((p, site.surface_of_return(town.absolute(*scanner.get(row)?), town.absolute(p))?.1))
         })
         .unzip();
     let (mut streets, mut of_own, mut blockers) = (AnswerTally::default(), AnswerTally::default(), BTreeMap::new());
     let mut query_seconds = 0.0;
     for eye in site.street_observers(EYES, seed) {
-        let local: [f64; 3] = std::array::from_fn(|i| eye[i] - origin[i]);
+        let local = town.eye(eye);
         let start = Instant::now();
         let answers = medial.visible(Viewer::Eye(local), &targets)?;
         query_seconds += start.elapsed().as_secs_f64();
         for (&target, answer) in targets.iter().zip(answers) {
-            let is_blocked = truth.occluded(absolute(target), eye);
+            let is_blocked = truth.occluded(town.absolute(target), eye);
             streets.count(is_blocked, answer);
             if !is_blocked && answer == Answer::Blocked {
-                blame(&medial, &model, &site, cloud, scanner, (target, local), &mut blockers);
+                blame(&medial, &model, town, (target, local), &mut blockers);
             }
         }
         let answers = medial.visible(Viewer::Eye(local), &own)?;
@@ -90,16 +75,14 @@ pub(crate) fn judge(
         }
     }
     let balls = model.balls().len();
-    Ok(ScannerResults { build_seconds, query_seconds, peak_mib, balls, report, streets, own: of_own, blockers })
+    Ok(ScannerResults { build_seconds, query_seconds, balls, report, streets, own: of_own, blockers })
 }
 
 /// Counts what lies at the point of the ball that blocks a line.
 fn blame(
     medial: &MedialScene,
     model: &SceneModel,
-    site: &QuerySite<'_>,
-    cloud: &PointCloud,
-    scanner: &[[f32; 3]],
+    town: &SurveyedScene,
     (target, eye): ([f32; 3], [f64; 3]),
     blockers: &mut BTreeMap<&'static str, (usize, f64)>,
 ) {
@@ -107,10 +90,9 @@ fn blame(
     let block = medial.first_block(target.map(f64::from), towards, range);
     let Some(ball) = block.and_then(|(blocker, _)| blocker.ball()) else { return };
     let row = model.balls().source[ball] as usize;
-    let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + cloud.frame.origin[i]) };
-    let surface = site.surface_of_return(absolute(scanner[row]), absolute(cloud.positions[row]));
-    let material =
-        surface.and_then(|(hit, _)| site.scene.materials.get(hit.triangle as usize)).map(|material| material.name());
+    let [scanner, place] = [town.scanner[row], town.cloud.positions[row]].map(|p| town.absolute(p));
+    let surface = town.site().surface_of_return(scanner, place);
+    let material = surface.and_then(|(hit, _)| town.material(hit.triangle)).map(|material| material.name());
     let of = blockers.entry(material.unwrap_or("nothing")).or_default();
     of.0 += 1;
     of.1 += f64::from(model.balls().radii[ball]);
@@ -149,10 +131,9 @@ impl fmt::Display for AnswerTally {
 
 impl fmt::Display for ScannerResults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let peak = self.peak_mib.map_or("unknown".to_owned(), |mib| format!("{mib:.0} MiB"));
         writeln!(
             f,
-            "  built in {:.1} s, at most {peak}; {} balls; queried in {:.1} s",
+            "  built in {:.1} s; {} balls; queried in {:.1} s",
             self.build_seconds, self.balls, self.query_seconds
         )?;
         if let Some(pulses) = &self.report.pulses {
@@ -169,27 +150,4 @@ impl fmt::Display for ScannerResults {
         }
         Ok(())
     }
-}
-
-/// Says on standard error how long each stage took.
-#[derive(Default)]
-struct Clock(Mutex<Option<Instant>>);
-
-impl Watcher for Clock {
-    fn begin(&self, _stage: &'static str, _total: usize) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(Instant::now());
-    }
-
-    fn end(&self, stage: &'static str, _end: StageEnd) {
-        if let Some(start) = *self.0.lock().unwrap_or_else(PoisonError::into_inner) {
-            eprintln!("    {:6.2} s {stage}", start.elapsed().as_secs_f64());
-        }
-    }
-}
-
-/// Most memory that the process has held, MiB; `None` where the system does not say.
-fn peak_mib() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-    line.split_whitespace().nth(1)?.parse::<f64>().ok().map(|kib| kib / 1024.0)
 }

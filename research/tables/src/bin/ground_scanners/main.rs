@@ -11,9 +11,10 @@
 mod judge;
 
 use belvedere::PointCloud;
-use belvedere_baselines::simulated::{flown, surveyed};
+use belvedere::cast::{to_index, to_row};
+use belvedere_baselines::simulated::{SurveyedScene, flown, preset, surveyed};
 use belvedere_scenes::{
-    AirborneParams, MobileParams, Preset, Stations, TerrestrialParams, TownParams, TriangleScene, scan_mobile,
+    AirborneParams, MobileParams, Stations, TerrestrialParams, TownParams, TriangleScene, scan_mobile,
     scan_terrestrial, town,
 };
 
@@ -27,14 +28,15 @@ fn main() -> AnyResult<()> {
     let word = |i: usize, usual: &'static str| arguments.get(i).map_or(usual, String::as_str);
     let extent: f64 = word(2, "110").parse()?;
     for name in word(1, "town").split(',') {
-        let preset = Preset::ALL.into_iter().find(|preset| preset.name() == name).ok_or("no such town")?;
+        let preset = preset(name)?;
         for seed in word(3, "77").split(',') {
             let params = preset.params(extent, seed.parse()?);
-            let scene = town(&params);
             for scanner in word(0, "tripods,car").split(',') {
-                let (cloud, positions) = scanned(scanner, &scene, &params, word(4, "1").parse()?)?;
-                let found = judge::judge(&scene, &cloud, &positions, params.seed)?;
-                println!("{name} {extent} m, seed {seed}, {scanner}: {} points\n{found}", cloud.len());
+                let scene = town(&params);
+                let survey = scanned(scanner, &scene, &params, word(4, "1").parse()?)?;
+                let town = SurveyedScene::new(scene, survey);
+                let found = judge::judge(&town, params.seed)?;
+                println!("{name} {extent} m, seed {seed}, {scanner}: {} points\n{found}", town.cloud.len());
             }
         }
     }
@@ -60,8 +62,7 @@ fn scanned(
         "car" => {
             let runs = params.lanes();
             let usual = MobileParams::default();
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a thousand at most")]
-            let pulses_per_line = (f64::from(usual.pulses_per_line) / coarser) as u32;
+            let pulses_per_line = to_row(to_index(f64::from(usual.pulses_per_line) / coarser));
             let line_rate = usual.line_rate / coarser;
             surveyed(&scan_mobile(scene, &MobileParams { seed, runs, pulses_per_line, line_rate, ..usual }))?
         }

@@ -11,11 +11,11 @@
 mod truth;
 
 use belvedere::PatchKind;
+use belvedere::Result;
 use belvedere::control::Control;
 use belvedere::planes::{BuildingSurfaces, PlaneParams, SurveyPoints, find};
-use belvedere::{Error, Parameter, Result};
-use belvedere_baselines::simulated::flown;
-use belvedere_scenes::{AirborneParams, Preset, Truth, town};
+use belvedere_baselines::simulated::{SurveyedScene, preset};
+use belvedere_scenes::Preset;
 use std::time::Instant;
 use truth::{FoundLine, Line, errors_of_walls, errors_on, lines_of};
 
@@ -31,12 +31,7 @@ fn main() -> Result<()> {
     println!("| town | pulses/m² | what | true, m | found | median, cm | 95 %, cm | outward, cm | error / deviation |");
     println!("|---|---|---|---|---|---|---|---|---|");
     for name in list(0, "town,old-town,towers") {
-        let preset = Preset::ALL.into_iter().find(|preset| preset.name() == name);
-        let preset = preset.ok_or_else(|| Error::InvalidParameter {
-            parameter: Parameter::MethodSetting,
-            value: name.clone(),
-            expected: "village, town, old-town, towers or park",
-        })?;
+        let preset = preset(&name)?;
         for density in list(1, "5,10,40").iter().filter_map(|density| density.parse::<f64>().ok()) {
             judge(preset, density, seed)?;
         }
@@ -46,11 +41,11 @@ fn main() -> Result<()> {
 
 /// Prints the rows of one town.
 fn judge(preset: Preset, density: f64, seed: u64) -> Result<()> {
-    let scene = town(&preset.params(EXTENT, seed));
-    let (cloud, scanner) = flown(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, density) })?;
+    let town = SurveyedScene::flown(preset, EXTENT, seed, density)?;
+    let SurveyedScene { scene, truth: exact, cloud, scanner, .. } = &town;
     let survey = SurveyPoints {
         positions: &cloud.positions,
-        scanner: &scanner,
+        scanner,
         attributes: &cloud.attributes,
         origin: cloud.frame.origin,
     };
@@ -58,9 +53,8 @@ fn judge(preset: Preset, density: f64, seed: u64) -> Result<()> {
     let start = Instant::now();
     let found = find(&survey, &params, &Control::none())?;
     let seconds = start.elapsed().as_secs_f64();
-    let exact = Truth::new(&scene);
-    let (edges, ridges) = lines_of(&scene, &exact);
-    let absolute = |ends: [[f64; 3]; 2]| ends.map(|p| std::array::from_fn(|i| p[i] + cloud.frame.origin[i]));
+    let (edges, ridges) = lines_of(scene, exact);
+    let absolute = |ends: [[f64; 3]; 2]| ends.map(|p| town.absolute_of(p));
     let sure = found.outlines.edges.iter().filter(|edge| edge.sd <= params.edges.max_sd);
     let found_edges: Vec<FoundLine> = sure.map(|edge| FoundLine { ends: absolute(edge.ends), sd: edge.sd }).collect();
     // a ridge is known as well as its planes
@@ -78,7 +72,7 @@ fn judge(preset: Preset, density: f64, seed: u64) -> Result<()> {
     println!("{head} edges of 5 m and more | {} |", errors_on(&pick(&edges, 5.0, f64::INFINITY), &found_edges));
     println!("{head} edges of 2 to 5 m | {} |", errors_on(&pick(&edges, 2.0, 5.0), &found_edges));
     println!("{head} ridges of 2 m and more | {} |", errors_on(&pick(&ridges, 2.0, f64::INFINITY), &found_ridges));
-    println!("{head} walls | {} |", errors_of_walls(&found, cloud.frame.origin, &exact));
+    println!("{head} walls | {} |", errors_of_walls(&found, cloud.frame.origin, exact));
     println!("{head} {} |", counts(&found, seconds, cloud.len()));
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! True edges, ridges and walls of a mesh, and the errors of those found.
 
+use belvedere::cast::{to_i64, to_index, to_row};
 use belvedere::planes::BuildingSurfaces;
 use belvedere::vector::{cross, dot, sub, unit};
 use belvedere_scenes::{Material, TriangleScene, Truth};
@@ -88,16 +89,13 @@ impl fmt::Display for Errors {
 fn quantile(values: &[f64], share: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a length")]
-    let place = (sorted.len().saturating_sub(1) as f64 * share) as usize;
+    let place = to_index(sorted.len().saturating_sub(1) as f64 * share);
     sorted.get(place).copied().unwrap_or(f64::NAN)
 }
 
 /// Pieces of so many metres in a length.
 fn pieces(length: f64) -> u32 {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "metres of a town")]
-    let count = (length / STEP).max(1.0) as u32;
-    count
+    to_row(to_index((length / STEP).max(1.0)))
 }
 
 /// The edges of the roofs of a scene, seen from above, and the convex lines in which two roofs meet.
@@ -106,8 +104,7 @@ pub(crate) fn lines_of(scene: &TriangleScene, exact: &Truth) -> (Vec<Line>, Vec<
     let height = |[x, y]: [f64; 2]| {
         exact.first_hit([x, y, top], [0.0, 0.0, -1.0], f64::INFINITY).map_or(f64::NEG_INFINITY, |hit| top - hit.range)
     };
-    #[expect(clippy::cast_possible_truncation, reason = "millimetres of a town")]
-    let key = |p: [f64; 3]| p.map(|v| (1000.0 * v).round() as i64);
+    let key = |p: [f64; 3]| p.map(|v| to_i64((1000.0 * v).round()));
     let mut sides: BTreeMap<[[i64; 3]; 2], Side> = BTreeMap::new();
     for number in (0..scene.triangles.len()).filter(|&number| scene.materials.get(number) == Some(&Material::Roof)) {
         let Some(corners) = scene.corners(number) else { continue };

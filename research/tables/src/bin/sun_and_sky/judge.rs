@@ -3,16 +3,14 @@
 #[path = "score.rs"]
 pub(crate) mod score;
 
-use belvedere::Bounds;
+use belvedere::Result;
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid, SurfaceParams, highest_points, top_surface};
 use belvedere::medial::MedialBalls;
 use belvedere::query::{Answer, BlockRule, BlockingTriangles, MedialScene, Viewer, Visibility};
-use belvedere::{PointCloud, Result};
-use belvedere_baselines::MethodInput;
 use belvedere_baselines::medial::{MedialParams, Outward, scene_model};
-use belvedere_baselines::simulated::flown;
-use belvedere_scenes::{AirborneParams, Material, Preset, QuerySet, QuerySite, TriangleScene, Truth, town};
+use belvedere_baselines::simulated::SurveyedScene;
+use belvedere_scenes::{Material, Preset, QuerySet};
 use score::{LightDirections, LightScore, Setting};
 use std::f64::consts::TAU;
 
@@ -47,10 +45,7 @@ impl JudgedTargets {
 
 /// A town, its survey and the balls made of it.
 pub(crate) struct LightTown {
-    pub(crate) scene: TriangleScene,
-    pub(crate) truth: Truth,
-    pub(crate) cloud: PointCloud,
-    pub(crate) scanner: Vec<[f32; 3]>,
+    pub(crate) town: SurveyedScene,
     pub(crate) balls: MedialBalls,
     triangles: Option<BlockingTriangles>,
     ground: Ground,
@@ -61,18 +56,14 @@ pub(crate) struct LightTown {
 impl LightTown {
     /// A town of `extent` metres flown over at eight pulses a square metre, and its ground in cells of `cell` metres.
     pub(crate) fn new(preset: Preset, extent: f64, cell: f64, seed: u64) -> Result<Self> {
-        let scene = town(&preset.params(extent, seed));
-        let (cloud, scanner) = flown(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, 8.0) })?;
-        let survey = MethodInput { cloud: &cloud, scanner: &scanner, models: &[] };
-        let model = scene_model(&survey, Outward::Survey, &MedialParams::carved())?;
+        let town = SurveyedScene::flown(preset, extent, seed, 8.0)?;
+        let model = scene_model(&town.input(), Outward::Survey, &MedialParams::carved())?;
         let triangles = model.triangles().cloned();
         let balls = model.into_parts().balls;
-        let truth = Truth::new(&scene);
-        let Bounds { low, high } = cloud.bounds().unwrap_or_default();
-        let on_map = |p: [f32; 3]| [f64::from(p[0]), f64::from(p[1])];
-        let grid = MapGrid::covering(on_map(low), on_map(high), cell, [cloud.frame.origin[0], cloud.frame.origin[1]])?;
-        let (ground, _) = Ground::of_cloud(&cloud, grid, &GroundParams::default(), &Control::none())?;
-        let mut town = Self { scene, truth, cloud, scanner, balls, triangles, ground, bare: Vec::new() };
+        let (low, high) = town.cloud.bounds().unwrap_or_default().on_map();
+        let [x, y, _] = town.cloud.frame.origin;
+        let grid = MapGrid::covering(low, high, cell, [x, y])?;
+        let (ground, _) = Ground::of_cloud(&town.cloud, grid, &GroundParams::default(), &Control::none())?;
         let site = town.site();
         let bare = (0..grid.len()).filter_map(|i| {
             let [x, y] = grid.center(i % grid.width, i / grid.width);
@@ -80,23 +71,8 @@ impl LightTown {
             let height = site.ground_height(at)?;
             (!site.is_inside([at[0], at[1], height + 0.05])).then_some(([x, y], height))
         });
-        town.bare = bare.collect();
-        Ok(town)
-    }
-
-    pub(crate) fn site(&self) -> QuerySite<'_> {
-        let Bounds { low, high } = self.cloud.bounds().unwrap_or_default();
-        let bounds = [low, high].map(|corner| self.absolute(corner));
-        QuerySite { scene: &self.scene, truth: &self.truth, bounds }
-    }
-
-    pub(crate) fn absolute(&self, p: [f32; 3]) -> [f64; 3] {
-        std::array::from_fn(|i| f64::from(p[i]) + self.cloud.frame.origin[i])
-    }
-
-    #[expect(clippy::cast_possible_truncation, reason = "local positions are f32")]
-    fn local(&self, p: [f64; 3]) -> [f32; 3] {
-        std::array::from_fn(|i| (p[i] - self.cloud.frame.origin[i]) as f32)
+        let bare = bare.collect();
+        Ok(Self { town, balls, triangles, ground, bare })
     }
 
     /// About `count` cells of the ground, `height` metres above it: the truth above the exact ground, the question
@@ -106,9 +82,9 @@ impl LightTown {
         let (mut exact, mut queried) = (Vec::new(), Vec::new());
         for &([x, y], z) in self.bare.iter().step_by(step) {
             let Some(found) = self.ground.height_at([x, y]) else { continue };
-            let [x, y] = [x + self.cloud.frame.origin[0], y + self.cloud.frame.origin[1]];
+            let [x, y] = [x + self.town.cloud.frame.origin[0], y + self.town.cloud.frame.origin[1]];
             exact.push([x, y, z + height]);
-            queried.push(self.local([x, y, found + self.cloud.frame.origin[2] + height]));
+            queried.push(self.town.local([x, y, found + self.town.cloud.frame.origin[2] + height]));
         }
         self.places(exact, queried, light)
     }
@@ -124,22 +100,26 @@ impl LightTown {
     ) -> Result<JudgedTargets> {
         let grid = self.ground.grid;
         let tops = match tops {
-            CellTops::Highest => highest_points(&self.cloud.positions, &self.ground),
+            CellTops::Highest => highest_points(&self.town.cloud.positions, &self.ground),
             CellTops::Surface => {
-                top_surface(&self.cloud.positions, &self.ground, &SurfaceParams::default(), &Control::none())?
+                top_surface(&self.town.cloud.positions, &self.ground, &SurfaceParams::default(), &Control::none())?
             }
         };
-        let above = self.site().bounds[1][2] + 100.0;
+        let above = self.town.site().bounds[1][2] + 100.0;
         let (mut exact, mut queried) = (Vec::new(), Vec::new());
         for (cell, &top) in tops.values().iter().enumerate() {
             let [x, y] = grid.center(cell % grid.width, cell / grid.width);
-            let at = [x + self.cloud.frame.origin[0], y + self.cloud.frame.origin[1]];
-            let Some(hit) = self.truth.first_hit([at[0], at[1], above], [0.0, 0.0, -1.0], f64::INFINITY) else {
+            let at = [x + self.town.cloud.frame.origin[0], y + self.town.cloud.frame.origin[1]];
+            let Some(hit) = self.town.truth.first_hit([at[0], at[1], above], [0.0, 0.0, -1.0], f64::INFINITY) else {
                 continue;
             };
-            if self.scene.materials.get(hit.triangle as usize) == Some(&Material::Roof) && top.is_finite() {
+            if self.town.material(hit.triangle) == Some(Material::Roof) && top.is_finite() {
                 exact.push([at[0], at[1], above - hit.range + height]);
-                queried.push(self.local([at[0], at[1], f64::from(top) + self.cloud.frame.origin[2] + height]));
+                queried.push(self.town.local([
+                    at[0],
+                    at[1],
+                    f64::from(top) + self.town.cloud.frame.origin[2] + height,
+                ]));
             }
         }
         let step = (queried.len() / count.max(1)).max(1);
@@ -157,20 +137,21 @@ impl LightTown {
 
     /// About `count` places 0.1 m outside roofs, whose position is known.
     pub(crate) fn roofs(&self, count: usize, light: &LightDirections) -> JudgedTargets {
-        let exact = self.site().targets(QuerySet::Roofs, count, 1).positions;
-        let queried = exact.iter().map(|&p| self.local(p)).collect();
+        let exact = self.town.site().targets(QuerySet::Roofs, count, 1).positions;
+        let queried = exact.iter().map(|&p| self.town.local(p)).collect();
         self.places(exact, queried, light)
     }
 
     /// About `count` returns from roofs: the truth on their surface, the question at the return.
     pub(crate) fn roof_returns(&self, count: usize, light: &LightDirections) -> JudgedTargets {
-        let site = self.site();
+        let site = self.town.site();
         let (mut exact, mut queried) = (Vec::new(), Vec::new());
-        for (&p, &scanner) in self.cloud.positions.iter().zip(&self.scanner).step_by(7) {
-            let Some((hit, outside)) = site.surface_of_return(self.absolute(scanner), self.absolute(p)) else {
+        for (&p, &scanner) in self.town.cloud.positions.iter().zip(&self.town.scanner).step_by(7) {
+            let Some((hit, outside)) = site.surface_of_return(self.town.absolute(scanner), self.town.absolute(p))
+            else {
                 continue;
             };
-            if self.scene.materials.get(hit.triangle as usize) == Some(&Material::Roof) && queried.len() < 4 * count {
+            if self.town.material(hit.triangle) == Some(Material::Roof) && queried.len() < 4 * count {
                 exact.push(outside);
                 queried.push(p);
             }
@@ -187,14 +168,14 @@ impl LightTown {
                 towards.push(direction);
             }
         }
-        let free = self.truth.first_hits(&from, &towards, f64::INFINITY).iter().map(Option::is_none).collect();
+        let free = self.town.truth.first_hits(&from, &towards, f64::INFINITY).iter().map(Option::is_none).collect();
         let settings = exact.iter().map(|&p| self.setting(p)).collect();
         JudgedTargets { exact, queried, settings, free }
     }
 
     fn material(&self, from: [f64; 3], towards: [f64; 3], range: f64) -> Option<Material> {
-        let hit = self.truth.first_hit(from, towards, range)?;
-        self.scene.materials.get(hit.triangle as usize).copied()
+        let hit = self.town.truth.first_hit(from, towards, range)?;
+        self.town.material(hit.triangle)
     }
 
     fn setting(&self, p: [f64; 3]) -> Setting {
@@ -254,7 +235,7 @@ impl LightTown {
         let scene = MedialScene::new(&self.balls, params)?.with_triangles(self.triangles.clone());
         let mut sums = std::collections::BTreeMap::<String, f64>::new();
         let width = light.directions.len();
-        let classes = self.cloud.attributes.classification.as_deref().unwrap_or_default();
+        let classes = self.town.cloud.attributes.classification.as_deref().unwrap_or_default();
         let near = |range: f64| match range {
             r if r < 1.0 => "< 1 m",
             r if r < 5.0 => "1 to 5 m",
@@ -274,10 +255,11 @@ impl LightTown {
                         format!("false shade: ball of class {} {} off", class.copied().unwrap_or(0), near(range))
                     }
                     None if !truly => {
-                        let Some(hit) = self.truth.first_hit(places.exact[target], direction, f64::INFINITY) else {
+                        let Some(hit) = self.town.truth.first_hit(places.exact[target], direction, f64::INFINITY)
+                        else {
                             continue;
                         };
-                        let material = self.scene.materials.get(hit.triangle as usize).map_or("", |m| m.name());
+                        let material = self.town.material(hit.triangle).map_or("", |m| m.name());
                         format!("false light: {material} {} off", near(hit.range))
                     }
                     _ => continue,

@@ -13,7 +13,7 @@ mod judge;
 
 use belvedere::query::BlockRule;
 use belvedere_baselines::dsm::{Dsm, DsmParams};
-use belvedere_scenes::Preset;
+use belvedere_baselines::simulated::preset;
 use judge::score::{ELEVATIONS_DEG, LightDirections, LightScore, Setting};
 use judge::{CellTops, JudgedTargets, LightTown};
 
@@ -24,11 +24,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (count, seed): (usize, u64) = (word(3, "4000").parse()?, word(4, "11").parse()?);
     let light = LightDirections::of_day(52f64.to_radians(), 23.44f64.to_radians(), 10.0, 577)?;
     for name in word(0, "village,town,old-town").split(',') {
-        let preset = Preset::ALL.into_iter().find(|preset| preset.name() == name).ok_or("no such town")?;
+        let preset = preset(name)?;
         let town = LightTown::new(preset, extent, cell, seed)?;
-        println!("{name}: {} points, {} balls", town.cloud.len(), town.balls.len());
+        println!("{name}: {} points, {} balls", town.town.cloud.len(), town.balls.len());
         let carved = BlockRule::carved();
-        let raster = Dsm::from_points(&town.cloud.positions, &DsmParams { cell: 0.5, ..DsmParams::default() })?;
+        let raster = Dsm::from_points(&town.town.cloud.positions, &DsmParams { cell: 0.5, ..DsmParams::default() })?;
         let ground = town.ground_cells(0.0, count, &light);
         let roofs = town.roofs(count, &light);
         let returns = town.roof_returns(count, &light);
@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let lift = if what.ends_with("higher") { 0.1 } else { 0.0 };
             let score = town.judge(places, &light, lift, &carved)?;
             println!("  {what} ({})", places.len());
-            let [mean, absolute] = LightTown::heights_off(places, town.cloud.frame.origin[2]);
+            let [mean, absolute] = LightTown::heights_off(places, town.town.cloud.frame.origin[2]);
             println!("    queried {mean:+.3} m too high, {absolute:.3} m off");
             print_score(&score);
             let raster = town.judge_other(&raster, places, &light)?;

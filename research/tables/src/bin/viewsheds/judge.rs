@@ -1,31 +1,27 @@
 //! Viewsheds of carved balls on a simulated town, against the rays of its exact mesh.
 
-use belvedere::Bounds;
+use belvedere::Result;
 use belvedere::apps::viewshed::{Observer, SightLimits, ViewshedParams, cell_targets, tested_height, viewshed};
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams, MapGrid};
 use belvedere::medial::MedialBalls;
 use belvedere::pulses::{FreeSegmentParams, FreeSegments};
 use belvedere::query::{Answer, BlockRule, BlockingTriangles, MedialScene, Proof, ProofParams};
-use belvedere::{PointCloud, Result};
-use belvedere_baselines::MethodInput;
 use belvedere_baselines::medial::{MedialParams, Outward, scene_model};
-use belvedere_baselines::simulated::flown;
-use belvedere_scenes::{AirborneParams, Preset, QuerySite, Truth, town};
+use belvedere_baselines::simulated::SurveyedScene;
+use belvedere_scenes::Preset;
 
 /// How far from an observer cells are judged, metres: beyond, few are seen by anybody in a street.
 const REACH: f64 = 150.0;
 
 /// A town, its survey and the balls made of it.
 pub(crate) struct ViewshedTown {
-    pub(crate) cloud: PointCloud,
+    pub(crate) town: SurveyedScene,
     pub(crate) balls: MedialBalls,
     triangles: Option<BlockingTriangles>,
     pub(crate) ground: Ground,
     /// Exact height of the ground in each cell, absolute, where it is bare of buildings.
     exact_ground: Vec<Option<f64>>,
-    truth: Truth,
-    scanner: Vec<[f32; 3]>,
     /// Eyes of people in streets, local metres.
     pub(crate) eyes: Vec<[f64; 3]>,
 }
@@ -63,32 +59,23 @@ impl ViewshedScore {
 impl ViewshedTown {
     /// A town of `extent` metres with cells of `cell` metres, and `eyes` people in its streets.
     pub(crate) fn new(preset: Preset, extent: f64, cell: f64, eyes: usize, seed: u64) -> Result<Self> {
-        let scene = town(&preset.params(extent, seed));
-        let (cloud, scanner) = flown(&scene, &AirborneParams { seed, ..AirborneParams::covering(&scene, 8.0) })?;
-        let origin = cloud.frame.origin;
-        let survey = MethodInput { cloud: &cloud, scanner: &scanner, models: &[] };
-        let model = scene_model(&survey, Outward::Survey, &MedialParams::carved())?;
+        let town = SurveyedScene::flown(preset, extent, seed, 8.0)?;
+        let origin = town.cloud.frame.origin;
+        let model = scene_model(&town.input(), Outward::Survey, &MedialParams::carved())?;
         let triangles = model.triangles().cloned();
         let balls = model.into_parts().balls;
-        let truth = Truth::new(&scene);
-        let Bounds { low, high } = cloud.bounds().unwrap_or_default();
-        let absolute = |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + origin[i]) };
-        let site = QuerySite { scene: &scene, truth: &truth, bounds: [absolute(low), absolute(high)] };
-        let on_map = |p: [f32; 3]| [f64::from(p[0]), f64::from(p[1])];
-        let grid = MapGrid::covering(on_map(low), on_map(high), cell, [origin[0], origin[1]])?;
-        let (ground, _) = Ground::of_cloud(&cloud, grid, &GroundParams::default(), &Control::none())?;
+        let (low, high) = town.cloud.bounds().unwrap_or_default().on_map();
+        let site = town.site();
+        let grid = MapGrid::covering(low, high, cell, [origin[0], origin[1]])?;
+        let (ground, _) = Ground::of_cloud(&town.cloud, grid, &GroundParams::default(), &Control::none())?;
         let exact_ground = (0..grid.len())
             .map(|i| {
                 let [x, y] = grid.center(i % grid.width, i / grid.width);
                 site.ground_height([x + origin[0], y + origin[1]])
             })
             .collect();
-        let eyes = site
-            .street_observers(eyes, seed)
-            .into_iter()
-            .map(|eye| std::array::from_fn(|i| eye[i] - origin[i]))
-            .collect();
-        Ok(Self { cloud, balls, triangles, ground, exact_ground, truth, scanner, eyes })
+        let eyes = site.street_observers(eyes, seed).into_iter().map(|eye| town.eye(eye)).collect();
+        Ok(Self { town, balls, triangles, ground, exact_ground, eyes })
     }
 
     /// What blocks: the balls, and the surfaces of buildings.
@@ -99,28 +86,30 @@ impl ViewshedTown {
     /// What people in the streets see of targets `height` metres above the ground.
     pub(crate) fn judge(&self, height: f64) -> Result<ViewshedScore> {
         let scene = self.blockers()?;
-        let (free_segments, _) =
-            FreeSegments::of_cloud(&self.cloud, &self.scanner, &FreeSegmentParams::default(), &Control::none())?;
+        let (free_segments, _) = FreeSegments::of_cloud(
+            &self.town.cloud,
+            &self.town.scanner,
+            &FreeSegmentParams::default(),
+            &Control::none(),
+        )?;
         let scene = scene.with_pulses(Proof::new(free_segments, &ProofParams::default())?);
         let targets = cell_targets(&self.ground, tested_height(height));
-        let origin = self.cloud.frame.origin;
         let mut score = ViewshedScore::default();
         for &eye in &self.eyes {
             let limits = SightLimits { distance: [0.0, REACH], ..SightLimits::default() };
             let observer = Observer { eye, limits };
             let seen = viewshed(&scene, &[observer], &targets, &ViewshedParams::default(), &Control::none())?;
-            let absolute = |p: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| p[i] + origin[i]) };
             let (mut both, mut either) = ([0, 0], [0, 0]);
             let queried = targets.iter().zip(&self.exact_ground).zip(&seen.answers);
             let queried: Vec<([f64; 3], Answer)> = queried
                 .filter(|(_, answer)| **answer != Answer::OutsideView)
                 .filter_map(|((target, ground), answer)| {
-                    let [x, y, _] = absolute(target.map(f64::from));
+                    let [x, y, _] = self.town.absolute(*target);
                     Some(([x, y, (*ground)? + height], *answer))
                 })
                 .collect();
             let places: Vec<[f64; 3]> = queried.iter().map(|(place, _)| *place).collect();
-            let occluded = self.truth.occluded_each(&places, absolute(eye));
+            let occluded = self.town.truth.occluded_each(&places, self.town.absolute_of(eye));
             for ((_, answer), occluded) in queried.iter().zip(occluded) {
                 let (seen, truly) = (*answer != Answer::Blocked, !occluded);
                 for i in 0..if *answer == Answer::Unproven { 1 } else { 2 } {

@@ -14,7 +14,7 @@ use belvedere::Bounds;
 use belvedere::apps::viewshed::{Observer, ViewshedParams, cell_targets, viewshed};
 use belvedere::control::Control;
 use belvedere::query::{EarthParams, random_pairs};
-use belvedere_scenes::Preset;
+use belvedere_baselines::simulated::preset;
 use judge::ViewshedTown;
 use std::time::Instant;
 
@@ -24,9 +24,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (extent, cell): (f64, f64) = (word(1, "300").parse()?, word(2, "0.5").parse()?);
     let eyes: usize = word(3, "10").parse()?;
     for name in word(0, "village,town,old-town").split(',') {
-        let preset = Preset::ALL.into_iter().find(|preset| preset.name() == name).ok_or("no such town")?;
+        let preset = preset(name)?;
         let town = ViewshedTown::new(preset, extent, cell, eyes, 11)?;
-        println!("{name}: {} points, {} balls, {} eyes", town.cloud.len(), town.balls.len(), town.eyes.len());
+        println!("{name}: {} points, {} balls, {} eyes", town.town.cloud.len(), town.balls.len(), town.eyes.len());
         for height in [0.0, 0.5, 1.7] {
             let score = town.judge(height)?;
             println!(
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             seconds.push(start.elapsed().as_secs_f64());
         }
         seconds.sort_by(f64::total_cmp);
-        let Bounds { low, high } = town.cloud.bounds().unwrap_or_default();
+        let Bounds { low, high } = town.town.cloud.bounds().unwrap_or_default();
         let pairs = random_pairs(low, high, 1_000_000, 1);
         let start = Instant::now();
         let sights = scene.lines_of_sight(&pairs, &EarthParams::default(), &Control::none())?;
