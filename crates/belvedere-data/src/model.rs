@@ -72,6 +72,27 @@ pub struct TreeParts {
     pub around: [[f64; 3]; 2],
 }
 
+/// Triangulated ground points of a cloud and its returns, sorted by squares on the map, as numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GroundParts {
+    /// Ground points in the order of their places, (G, 3), local metres.
+    pub points: Vec<[f32; 3]>,
+    /// Rows of the corners of the triangles, (T, 3).
+    pub triangles: Vec<[u32; 3]>,
+    /// Numbers of triangles that reach into many squares.
+    pub large: Vec<u32>,
+    /// South-west corner of the squares, their side, and the number of their columns and rows less one.
+    pub squares: [f64; 5],
+    /// First triangle, point and return of each square, and the number of each, (S + 1, 3).
+    pub starts: Vec<[u64; 3]>,
+    /// Numbers of triangles, by square.
+    pub triangles_of_squares: Vec<u32>,
+    /// Rows of points, by square.
+    pub points_of_squares: Vec<u32>,
+    /// Places of returns on the map, by square, local metres.
+    pub returns: Vec<[f32; 2]>,
+}
+
 impl ModelParts {
     /// The same with a further note on how they were made, such as the name of the input.
     #[must_use]

@@ -44,8 +44,8 @@ pub use arrays::write_npy::{write_npy_f32, write_npy_f32_2d, write_npy_u8, write
 pub use balls::files::{is_ball_file, read_balls, write_balls};
 #[cfg(feature = "npy")]
 pub use balls::{
-    read_kept_cloud, read_kept_model, read_kept_notes, read_kept_rasters, write_kept_cloud, write_kept_model,
-    write_kept_rasters,
+    read_kept_cloud, read_kept_ground, read_kept_model, read_kept_notes, read_kept_rasters, write_kept_cloud,
+    write_kept_ground, write_kept_model, write_kept_rasters,
 };
 pub use cloud_batches::{CloudBatch, CloudBatches, read_batches};
 pub use colors::{class_color, in_shadow, ramp, ramp_colors};

@@ -108,6 +108,12 @@ pub trait GroundStore: Send + Sync {
 
     /// Keeps ground that was made. Ground that cannot be kept is made again.
     fn keep(&self, params: &GroundParams, known: &KnownGround);
+
+    /// The index of the ground for grids of few cells, if it was kept.
+    fn find_index(&self, params: &GroundParams) -> Option<GroundBySquares>;
+
+    /// Keeps the index of the ground for grids of few cells.
+    fn keep_index(&self, index: &GroundBySquares);
 }
 
 /// Something that is made when first needed, and can fail.
@@ -256,7 +262,7 @@ impl Scene {
     }
 
     /// The ground on a grid. The last one is kept. From the second grid of few cells on, so are the points that show
-    /// the ground, by squares.
+    /// the ground, by squares; from the first one on where a store keeps them.
     ///
     /// # Errors
     /// Those of [`Scene::ground_cloud`] and [`Ground::of_cloud`].
@@ -268,15 +274,21 @@ impl Scene {
         let cloud = self.ground_cloud()?;
         let params = GroundParams { points, ..GroundParams::default() };
         let has_few = grid.len() <= FEW_CELLS;
-        if has_few && made.has_few {
-            let by_squares = match made.by_squares.take().filter(|kept| *kept.params() == params) {
+        let store = self.ground_store.as_deref();
+        if has_few && (made.has_few || store.is_some()) {
+            let last = made.by_squares.take().filter(|kept| *kept.params() == params);
+            let by_squares = match last.or_else(|| store.and_then(|store| store.find_index(&params))) {
                 Some(kept) => kept,
-                None => control.stage("computing ground", 0, || GroundBySquares::new(cloud, &params, control))?,
+                None => {
+                    let new = || GroundBySquares::new(cloud, &params, control);
+                    let index = control.stage("computing ground", 0, new)?;
+                    store.into_iter().for_each(|store| store.keep_index(&index));
+                    index
+                }
             };
             let (ground, report) = made.by_squares.insert(by_squares).make(grid, control)?;
             return Ok(Arc::new(KnownGround { ground, report }));
         }
-        let store = self.ground_store.as_deref();
         let known = match store.and_then(|store| store.find(&grid, &params)) {
             Some(known) => known,
             None => {

@@ -4,14 +4,19 @@ use super::{Ground, GroundParams, GroundReport, MapGrid, cells_near_returns, tes
 use crate::neighbors::NeighborIndex;
 use belvedere_data::cast::{to_index, to_row, to_u32};
 use belvedere_data::control::Control;
-use belvedere_data::{PointCloud, Result};
+use belvedere_data::model::GroundParts;
+use belvedere_data::raster::Raster;
+use belvedere_data::{Error, Parameter, PointCloud, Result};
 use rayon::prelude::*;
 use std::ops::RangeInclusive;
+use std::sync::OnceLock;
 
 /// Ground points in a square, about.
 const POINTS_OF_SQUARE: f64 = 32.0;
 /// Triangles that lie in more squares than this are kept beside the others.
 const MAX_SQUARES: usize = 64;
+/// Margin around a grid within which its nearest ground points are searched first, metres.
+const NEAR: f64 = 20.0;
 
 /// Index of the ground of a cloud for grids of few cells anywhere. Each grid takes a moment, where [`Ground::of_cloud`]
 /// reads the whole cloud again. The results are the same bits.
@@ -20,7 +25,8 @@ pub struct GroundBySquares {
     /// Report without cells.
     report: GroundReport,
     points: Vec<[f32; 3]>,
-    nearest: NeighborIndex,
+    /// Index of all points on the map, made for a grid without ground points near it.
+    nearest: OnceLock<NeighborIndex>,
     squares: Squares,
     /// Rows of the corners of the Delaunay triangles.
     triangles: Vec<[u32; 3]>,
@@ -28,6 +34,8 @@ pub struct GroundBySquares {
     of_squares: BySquare<u32>,
     /// Numbers of triangles that reach into many squares.
     large: Vec<u32>,
+    /// Rows of ground points, by their squares.
+    points_of_squares: BySquare<u32>,
     /// Returns on the map, by their squares.
     returns: BySquare<[f32; 2]>,
 }
@@ -41,14 +49,10 @@ impl GroundBySquares {
         params.check()?;
         let found = tested_points(cloud, params, control)?.in_order(cloud);
         let points = found.positions(cloud);
-        let flat = super::on_map(&points);
-        let ((triangles, nearest), shift) = rayon::join(
-            || rayon::join(|| triangulate::triangles(&points), || NeighborIndex::new(&flat, control)),
-            || found.shift(cloud, &points, control),
-        );
-        let (triangles, nearest) = (triangles?, nearest?);
+        let (triangles, shift) =
+            rayon::join(|| triangulate::triangles(&points), || found.shift(cloud, &points, control));
         let corners = |corners: &[usize; 3]| corners.map(to_row);
-        let triangles: Vec<[u32; 3]> = triangles.as_chunks::<3>().0.iter().map(corners).collect();
+        let triangles: Vec<[u32; 3]> = triangles?.as_chunks::<3>().0.iter().map(corners).collect();
         control.check()?;
         let squares = Squares::over(&points);
         let (mut of_squares, mut large) = (Vec::new(), Vec::new());
@@ -66,9 +70,59 @@ impl GroundBySquares {
         }
         let places = cloud.positions.iter().map(|p| [p[0], p[1]]).chain(cloud.cleared_places.iter().copied());
         let returns = places.map(|place| (squares.of(place.map(f64::from)), place)).collect();
-        let (of_squares, returns) = (BySquare::new(&squares, of_squares), BySquare::new(&squares, returns));
+        let rows = (0..).zip(&points).map(|(row, p)| (squares.of([p[0], p[1]].map(f64::from)), row)).collect();
+        let of_squares = BySquare::new(&squares, of_squares);
+        let (points_of_squares, returns) = (BySquare::new(&squares, rows), BySquare::new(&squares, returns));
         let report = found.report(points.len(), shift?);
-        Ok(Self { params: *params, report, points, nearest, squares, triangles, of_squares, large, returns })
+        let nearest = OnceLock::new();
+        let params = *params;
+        Ok(Self { params, report, points, nearest, squares, triangles, of_squares, large, points_of_squares, returns })
+    }
+
+    /// Returns the report on the ground points, and the index as numbers, for [`GroundBySquares::from_parts`].
+    #[must_use]
+    pub fn to_parts(&self) -> (GroundReport, GroundParts) {
+        let Squares { low, side, last } = self.squares;
+        let starts = [&self.of_squares.starts, &self.points_of_squares.starts, &self.returns.starts];
+        let of_square = |square: usize| starts.map(|starts| starts[square] as u64);
+        let parts = GroundParts {
+            points: self.points.clone(),
+            triangles: self.triangles.clone(),
+            large: self.large.clone(),
+            squares: [low[0], low[1], side, last[0], last[1]],
+            starts: (0..=self.squares.count()).map(of_square).collect(),
+            triangles_of_squares: self.of_squares.items.clone(),
+            points_of_squares: self.points_of_squares.items.clone(),
+            returns: self.returns.items.clone(),
+        };
+        (self.report, parts)
+    }
+
+    /// Creates the index from the numbers of another one.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`] and [`Error::InvalidParameter`] where the numbers do not belong together.
+    pub fn from_parts(params: &GroundParams, report: GroundReport, parts: GroundParts) -> Result<Self> {
+        let GroundParts { points, triangles, large, squares: [x, y, side, columns, rows], starts, .. } = parts;
+        let squares = Squares { low: [x, y], side, last: [columns, rows] };
+        let (expected, found) = (squares.count() + 1, starts.len());
+        if expected != found {
+            return Err(Error::LengthMismatch { what: "squares of ground", expected, found });
+        }
+        let starts_of = |column: usize| starts.iter().map(|starts| to_index(starts[column] as f64)).collect();
+        let of_squares = BySquare::from_parts(starts_of(0), parts.triangles_of_squares)?;
+        let points_of_squares = BySquare::from_parts(starts_of(1), parts.points_of_squares)?;
+        let returns = BySquare::from_parts(starts_of(2), parts.returns)?;
+        let is_row = |row: &u32| (*row as usize) < points.len();
+        let is_number = |number: &u32| (*number as usize) < triangles.len();
+        if !(triangles.as_flattened().par_iter().all(is_row)
+            && points_of_squares.items.par_iter().all(is_row)
+            && of_squares.items.par_iter().chain(&large).all(is_number))
+        {
+            return Err(Error::invalid(Parameter::Ground, "damaged", "an index with triangles of its points"));
+        }
+        let (params, nearest) = (*params, OnceLock::new());
+        Ok(Self { params, report, points, nearest, squares, triangles, of_squares, large, points_of_squares, returns })
     }
 
     /// Returns the parameters of the ground.
@@ -90,11 +144,42 @@ impl GroundBySquares {
         numbers.dedup();
         let triangles = numbers.iter().map(|&number| self.triangles[number as usize].map(|row| row as usize));
         let heights = triangulate::heights_of(triangles, &self.points, &grid);
-        let ground = Ground::near_points(&self.points, &self.nearest, (grid, heights), self.params.reach, control)?;
+        let ground = self.near_points((grid, heights), [low, high], control)?;
         let gap = self.params.max_gap_from_returns;
         let near = self.returns.items_within(&self.squares, low.map(|v| v - gap), high.map(|v| v + gap));
         let near = cells_near_returns(near.map(|place| place.map(f64::from)), &grid, gap);
         Ok(ground.known_near_returns(&near, self.report))
+    }
+}
+
+impl GroundBySquares {
+    /// [`Ground::near_points`] for a grid between two corners: among the points around it, and among all where a cell
+    /// has none there.
+    fn near_points(
+        &self,
+        (grid, heights): (MapGrid, Raster<f32>),
+        [low, high]: [[f64; 2]; 2],
+        control: &Control<'_>,
+    ) -> Result<Ground> {
+        let within = [low.map(|v| v - NEAR), high.map(|v| v + NEAR)];
+        let mut rows: Vec<u32> = self.points_of_squares.items_within(&self.squares, within[0], within[1]).collect();
+        // of equally near points the first of all counts
+        rows.sort_unstable();
+        let points: Vec<[f32; 3]> = rows.iter().map(|&row| self.points[row as usize]).collect();
+        let around = NeighborIndex::new(&super::on_map(&points), control)?;
+        let reach = self.params.reach;
+        let ground = Ground::near_points(&points, &around, (grid, heights.clone()), reach, control)?;
+        if ground.gaps.values().iter().all(|gap| f64::from(*gap) < NEAR) {
+            return Ok(ground);
+        }
+        let nearest = match self.nearest.get() {
+            Some(nearest) => nearest,
+            None => {
+                let made = NeighborIndex::new(&super::on_map(&self.points), control)?;
+                self.nearest.get_or_init(|| made)
+            }
+        };
+        Ground::near_points(&self.points, nearest, (grid, heights), reach, control)
     }
 }
 
@@ -167,6 +252,14 @@ impl<T: Copy + Send> BySquare<T> {
         Self { starts, items: items.into_iter().map(|(_, item)| item).collect() }
     }
 
+    fn from_parts(starts: Vec<usize>, items: Vec<T>) -> Result<Self> {
+        let (expected, found) = (starts.last().copied().unwrap_or_default(), items.len());
+        if expected != found || !starts.is_sorted() {
+            return Err(Error::LengthMismatch { what: "items of squares", expected, found });
+        }
+        Ok(Self { starts, items })
+    }
+
     /// Returns the items in the squares that a box reaches into.
     fn items_within(&self, squares: &Squares, low: [f64; 2], high: [f64; 2]) -> impl Iterator<Item = T> + Clone {
         let [columns, rows] = squares.squares_between(low, high);
@@ -208,7 +301,11 @@ mod tests {
         let cloud = cloud();
         for points in [super::super::GroundPoints::Classed, super::super::GroundPoints::Found] {
             let params = GroundParams { points, ..GroundParams::default() };
-            let kept = GroundBySquares::new(&cloud, &params, &Control::none()).unwrap();
+            let (report, parts) = GroundBySquares::new(&cloud, &params, &Control::none()).unwrap().to_parts();
+            let mut damaged = parts.clone();
+            damaged.triangles[7][1] = u32::MAX;
+            assert!(GroundBySquares::from_parts(&params, report, damaged).is_err());
+            let kept = GroundBySquares::from_parts(&params, report, parts).unwrap();
             let mut known = 0;
             for (number, cell) in (0..16).zip([0.25, 0.5, 1.7, 6.0].into_iter().cycle()) {
                 let middle = [0, 1].map(|axis| 170.0 * uniform(8, 2 * number + axis) - 25.0);

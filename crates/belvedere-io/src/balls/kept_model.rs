@@ -1,5 +1,5 @@
 //! Files of a cache, as archives of arrays: a model with all that takes long to make, the points of a cloud, and
-//! rasters. They are no exchange format: only the program that wrote them reads them.
+//! ground. They are no exchange format: only the program that wrote them reads them.
 
 use super::npz::{read_arrays, write_arrays};
 use crate::arrays::npz::{Number, array, has, invalid, open, rows, values, write_archive};
@@ -7,7 +7,7 @@ use crate::files::output::Output;
 use crate::files::source::{Input, Source};
 use belvedere_data::attribute_columns;
 use belvedere_data::cloud::{CloudFile, FileRows, GpsTimeKind};
-use belvedere_data::model::{DerivedParts, ModelParts, ProofParts, TreeParts};
+use belvedere_data::model::{DerivedParts, GroundParts, ModelParts, ProofParts, TreeParts};
 use belvedere_data::raster::Raster;
 use belvedere_data::{Error, Frame, PointCloud, Result};
 use bytemuck::Pod;
@@ -93,7 +93,19 @@ macro_rules! column_values {
     };
 }
 
-column_values! { u8: u8, u16: u16, u64: u64, f32: f32, f64: f64, [u16; 3]: u16, [f32; 2]: f32, [f32; 3]: f32, }
+column_values! {
+    u8: u8,
+    u16: u16,
+    u32: u32,
+    u64: u64,
+    f32: f32,
+    f64: f64,
+    [u16; 3]: u16,
+    [u32; 3]: u32,
+    [u64; 3]: u64,
+    [f32; 2]: f32,
+    [f32; 3]: f32,
+}
 
 fn write_column<T: ColumnValue, W: Write + Seek>(
     archive: &mut ZipWriter<W>,
@@ -188,6 +200,55 @@ pub fn read_kept_cloud<'a>(source: impl Into<Source<'a>>, frame: Frame) -> Resul
             Some((column, _)) => Err(invalid(format!("its column {column} does not fit its points"))),
             None => Ok(cloud),
         }
+    };
+    read().map_err(|error: io::Error| Error::malformed(&name, format!("damaged: {error}")))
+}
+
+/// Calls `$apply!` with the fields of [`GroundParts`] that are columns.
+macro_rules! ground_columns {
+    ($apply:ident) => {
+        $apply!(points, triangles, large, starts, triangles_of_squares, points_of_squares, returns)
+    };
+}
+
+/// Writes the ground of a cloud with notes, so that [`read_kept_ground`] reads the same numbers.
+///
+/// # Errors
+/// [`Error::Io`].
+pub fn write_kept_ground<'a>(output: impl Into<Output<'a>>, parts: &GroundParts, notes: &str) -> Result<()> {
+    output.into().write(|path, output| {
+        let arrays = |archive: &mut ZipWriter<_>| {
+            macro_rules! columns {
+                ($($column:ident),*) => {
+                    $(write_column(archive, stringify!($column), &parts.$column)?;)*
+                };
+            }
+            ground_columns!(columns);
+            write_column(archive, "squares", &parts.squares)?;
+            array(archive, "notes", &[notes.len() as u64], notes.bytes())
+        };
+        write_archive(output, arrays).map_err(Error::io(path))
+    })
+}
+
+/// Reads a file of [`write_kept_ground`].
+///
+/// # Errors
+/// [`Error::Io`], and [`Error::Malformed`] for a file that is damaged.
+pub fn read_kept_ground<'a>(source: impl Into<Source<'a>>) -> Result<(GroundParts, String)> {
+    let Input { name, reader, size } = source.into().open()?;
+    let read = || {
+        let archive = &mut open(reader, size)?;
+        let mut parts = GroundParts::default();
+        macro_rules! columns {
+            ($($column:ident),*) => {
+                $(parts.$column = read_column(archive, stringify!($column))?;)*
+            };
+        }
+        ground_columns!(columns);
+        let squares = read_column::<f64, _>(archive, "squares")?.try_into();
+        parts.squares = squares.map_err(|_| invalid("it has no squares".to_owned()))?;
+        Ok((parts, notes(archive)?))
     };
     read().map_err(|error: io::Error| Error::malformed(&name, format!("damaged: {error}")))
 }

@@ -22,8 +22,8 @@ mod write_ply;
 
 #[cfg(feature = "npy")]
 pub use kept_model::{
-    read_kept_cloud, read_kept_model, read_kept_notes, read_kept_rasters, write_kept_cloud, write_kept_model,
-    write_kept_rasters,
+    read_kept_cloud, read_kept_ground, read_kept_model, read_kept_notes, read_kept_rasters, write_kept_cloud,
+    write_kept_ground, write_kept_model, write_kept_rasters,
 };
 #[cfg(feature = "las")]
 pub(crate) use las::{las_has_balls, read_las, write_las};

@@ -7,10 +7,10 @@ use super::{BuiltScene, SceneOrigin};
 use crate::apps::ask::Remark;
 use crate::apps::ask::scene::{GroundStore, KnownGround};
 use crate::control::Control;
-use crate::ground::{Ground, GroundParams, GroundReport, MapGrid};
+use crate::ground::{Ground, GroundBySquares, GroundParams, GroundReport, MapGrid};
 use crate::io::{
-    ReadOptions, read_balls, read_kept_cloud, read_kept_model, read_kept_notes, read_kept_rasters, write_balls,
-    write_kept_cloud, write_kept_model, write_kept_rasters,
+    ReadOptions, read_balls, read_kept_cloud, read_kept_ground, read_kept_model, read_kept_notes, read_kept_rasters,
+    write_balls, write_kept_cloud, write_kept_ground, write_kept_model, write_kept_rasters,
 };
 use crate::model::{DerivedParts, ModelParams, ModelParts, SceneModel};
 use crate::raster::Raster;
@@ -367,6 +367,22 @@ impl GroundStore for GroundOfCloud {
         let is_sound = kept == *grid && (gaps.width(), gaps.height()) == (grid.width, grid.height);
         mark_as_used(&path);
         is_sound.then_some(KnownGround { ground: Ground { grid: kept, heights, gaps }, report })
+    }
+
+    fn find_index(&self, params: &GroundParams) -> Option<GroundBySquares> {
+        let path = self.cache.entry(&self.cloud.of_ground_index(params), GROUND)?;
+        let (parts, notes) = read_kept_ground(&path).ok()?;
+        mark_as_used(&path);
+        GroundBySquares::from_parts(params, serde_json::from_str(&notes).ok()?, parts).ok()
+    }
+
+    fn keep_index(&self, index: &GroundBySquares) {
+        let (report, parts) = index.to_parts();
+        let Ok(path) = self.cache.place(&self.cloud.of_ground_index(index.params()), GROUND) else { return };
+        let write = |notes: String| write_kept_ground(&path, &parts, &notes);
+        if serde_json::to_string(&report).is_ok_and(|notes| write(notes).is_ok()) {
+            self.cache.make_room(&path);
+        }
     }
 
     fn keep(&self, params: &GroundParams, known: &KnownGround) {

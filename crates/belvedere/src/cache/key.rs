@@ -81,6 +81,14 @@ impl CloudKey {
         key.finish()
     }
 
+    /// The name of the index of the ground of a cloud.
+    pub(super) fn of_ground_index(&self, params: &GroundParams) -> String {
+        let mut key = Key::new("ground index");
+        key.text(&self.0);
+        key.text(&format!("{params:?}"));
+        key.finish()
+    }
+
     /// The name of the ground of a cloud.
     pub(super) fn of_ground(&self, grid: &MapGrid, params: &GroundParams) -> String {
         let mut key = Key::new("ground");
