@@ -8,6 +8,9 @@ use crate::frame::{Bounds, Frame};
 use crate::sky_region::SkyRegion;
 use crate::{Error, Parameter, Result};
 
+/// ASPRS class of ground.
+pub const GROUND: u8 = 2;
+
 /// A point cloud.
 ///
 /// Positions are metres, x east, y north, z up, relative to the origin of its frame. f32 holds a tenth of a millimetre
@@ -185,6 +188,14 @@ attributes! {
     scanner_index: u16,
 }
 
+impl Attributes {
+    /// Returns the class of a point, if it is known.
+    #[must_use]
+    pub fn class_of(&self, row: usize) -> Option<u8> {
+        self.classification.as_deref()?.get(row).copied()
+    }
+}
+
 impl PointCloud {
     /// A cloud without attributes from coordinates in metres, (N, 3), f64; the origin is chosen near their centre.
     ///
@@ -279,11 +290,7 @@ impl PointCloud {
             return Err(Error::LengthMismatch { what, expected, found });
         }
         if let Some(p) = self.positions.iter().find(|p| p.iter().any(|v| !v.is_finite())) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Position,
-                value: format!("{p:?}"),
-                expected: "finite",
-            });
+            return Err(Error::invalid(Parameter::Position, format!("{p:?}"), "finite"));
         }
         Ok(())
     }

@@ -179,6 +179,12 @@ fn refusal(source: &std::io::Error) -> String {
 }
 
 impl Error {
+    /// [`Error::InvalidParameter`]: a value of a parameter that cannot be used, and what would do.
+    #[must_use]
+    pub fn invalid(parameter: Parameter, value: impl ToString, expected: &'static str) -> Self {
+        Self::InvalidParameter { parameter, value: value.to_string(), expected }
+    }
+
     /// Turns an error of the operating system into an [`Error::Io`] about `path`, for use in `map_err`.
     pub fn io(path: &Path) -> impl FnOnce(std::io::Error) -> Self + '_ {
         move |source| Self::Io { path: path.to_owned(), source }

@@ -89,7 +89,7 @@ impl RingFault {
                 "simple enough to be tested for crossings; simplify it in a GIS",
             ),
         };
-        Error::InvalidParameter { parameter, value, expected }
+        Error::invalid(parameter, value, expected)
     }
 }
 

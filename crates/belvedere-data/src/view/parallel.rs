@@ -18,7 +18,7 @@ impl View {
     /// # Source
     /// Peters, Ledoux & Biljecki 2015, section 3.2 and Figure 3.
     pub fn from_viewport(p0: [f64; 3], vx: [f64; 3], vy: [f64; 3], pixels_per_metre: f64) -> Result<Self> {
-        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
+        let invalid = |parameter, value: String, expected| Err(Error::invalid(parameter, value, expected));
         let (Some(right), Some(down)) = (unit(vx), unit(vy)) else {
             return invalid(Parameter::Viewport, format!("{vx:?}, {vy:?}"), "finite and longer than zero");
         };
@@ -60,18 +60,14 @@ impl View {
     /// As [`View::from_viewport`].
     pub fn parallel(forward: [f64; 3], low: [f64; 3], high: [f64; 3], pixel_size: f64) -> Result<Self> {
         let Some(forward) = unit(forward) else {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::ViewDirection,
-                value: format!("{forward:?}"),
-                expected: "finite and longer than zero",
-            });
+            return Err(Error::invalid(
+                Parameter::ViewDirection,
+                format!("{forward:?}"),
+                "finite and longer than zero",
+            ));
         };
         if !(pixel_size.is_finite() && pixel_size > 0.0) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::PixelSize,
-                value: pixel_size.to_string(),
-                expected: "above zero metres",
-            });
+            return Err(Error::invalid(Parameter::PixelSize, pixel_size, "above zero metres"));
         }
         let ViewFrame { right, down, .. } = ViewFrame::looking([0.0; 3], forward);
         let mut min = [f64::INFINITY; 3];

@@ -135,9 +135,7 @@ impl Proof {
     }
 
     fn of_pulses(pulses: ProofSource, nearness: f64, params: &ProofParams) -> Result<Self> {
-        let invalid = |parameter, value: f64, expected| {
-            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
-        };
+        let invalid = |parameter, value: f64, expected| Err(Error::invalid(parameter, value, expected));
         if !(nearness.is_finite() && nearness > 0.0) {
             return invalid(Parameter::PulseNearness, nearness, "finite and above zero metres");
         }
