@@ -1,5 +1,6 @@
 //! Point clouds: f32 positions relative to an f64 origin, with the attributes a laser file carries as columns.
 
+use crate::vector::box_around;
 use std::path::PathBuf;
 
 use crate::crs::Crs;
@@ -299,13 +300,6 @@ impl PointCloud {
 /// Middle of the bounding box of the finite `coordinates`, rounded to whole metres so that it prints short; zero if
 /// there is none.
 pub fn centre_rounded(coordinates: impl Iterator<Item = [f64; 3]>) -> [f64; 3] {
-    let mut low = [f64::INFINITY; 3];
-    let mut high = [f64::NEG_INFINITY; 3];
-    for c in coordinates.filter(|c| c.iter().all(|v| v.is_finite())) {
-        for i in 0..3 {
-            low[i] = low[i].min(c[i]);
-            high[i] = high[i].max(c[i]);
-        }
-    }
+    let [low, high] = box_around(coordinates.filter(|c| c.iter().all(|v| v.is_finite())));
     std::array::from_fn(|i| if low[i] <= high[i] { (low[i] / 2.0 + high[i] / 2.0).round() } else { 0.0 })
 }

@@ -4,6 +4,7 @@ use super::{Ground, GroundParams, GroundReport, MapGrid, cells_near_returns, tes
 use crate::neighbors::NeighborIndex;
 use belvedere_data::cast::{to_index, to_row, to_u32};
 use belvedere_data::control::Control;
+use belvedere_data::vector::box_around;
 use belvedere_data::{PointCloud, Result};
 use rayon::prelude::*;
 use std::ops::RangeInclusive;
@@ -108,13 +109,7 @@ struct Squares {
 
 impl Squares {
     fn over(points: &[[f32; 3]]) -> Self {
-        let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        for axis in 0..2 {
-            for p in points {
-                low[axis] = low[axis].min(p[axis].into());
-                high[axis] = high[axis].max(p[axis].into());
-            }
-        }
+        let [low, high] = box_around(points.iter().map(|&[x, y, _]| [x, y].map(f64::from)));
         let size = [0, 1].map(|axis| (high[axis] - low[axis]).max(0.0));
         let share = POINTS_OF_SQUARE / points.len().max(1) as f64;
         // no more squares than points, even in one line

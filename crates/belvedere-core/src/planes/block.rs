@@ -1,7 +1,7 @@
 //! The points of a block and its margin, in an order that follows from their positions.
 
 use super::line::clip;
-use belvedere_data::cast::{to_i64, to_index, to_row};
+use belvedere_data::cast::{to_ascending_bits, to_i64, to_index, to_row};
 use belvedere_data::cloud::GROUND;
 use belvedere_data::control::Control;
 use belvedere_data::patches::SurfacePatches;
@@ -228,7 +228,7 @@ impl Block {
         for row in block.rows {
             let at = survey.positions[row as usize];
             let cell = grid.number(std::array::from_fn(|i| f64::from(at[i]) - corner[i]));
-            keys.push((to_row(cell), at.map(ordered), row));
+            keys.push((to_row(cell), at.map(to_ascending_bits), row));
         }
         keys.sort_unstable_by_key(|key| (key.0, key.1));
         let mut returns: Vec<Return> = keys.iter().map(|key| read(key.2)).collect();
@@ -363,10 +363,4 @@ impl Block {
         }
         (range[0] < range[1]).then_some(range)
     }
-}
-
-/// A number whose order is that of coordinates, bit by bit.
-fn ordered(v: f32) -> u32 {
-    let bits = v.to_bits();
-    if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }

@@ -7,7 +7,7 @@ use crate::normals::moments::Moments;
 use belvedere_data::Result;
 use belvedere_data::cast::to_index;
 use belvedere_data::control::Control;
-use belvedere_data::vector::{sub, to_f32};
+use belvedere_data::vector::{box_around, sub, to_f32};
 use std::collections::BTreeMap;
 
 /// Neighbours that show whether a point lies on something flat, without itself.
@@ -235,14 +235,10 @@ impl Roofs {
     /// it.
     fn is_roof(&self, block: &Block, plane: &Plane, rows: &[usize], area: f64, params: &UnclassifiedParams) -> bool {
         let reach = params.ground_reach;
-        let (mut low, mut high, mut height) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2], 0.0);
-        for &row in rows {
-            let p = self.points[row];
-            for axis in 0..2 {
-                (low[axis], high[axis]) = (low[axis].min(p[axis] - reach), high[axis].max(p[axis] + reach));
-            }
-            height += p[2] / rows.len() as f64;
-        }
+        let points = rows.iter().map(|&row| self.points[row]);
+        let [low, high] = box_around(points.clone().map(|[x, y, _]| [x, y]));
+        let [low, high] = [low.map(|v| v - reach), high.map(|v| v + reach)];
+        let height = points.fold(0.0, |height, p| height + p[2] / rows.len() as f64);
         let is_above = || block.ground(low, high).is_some_and(|ground| height > ground + params.min_height);
         area >= params.min_area && plane.noise <= params.max_noise && is_above()
     }
