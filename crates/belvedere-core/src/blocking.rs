@@ -88,9 +88,7 @@ impl BlockRule {
     /// # Errors
     /// [`Error::InvalidParameter`] for a bias that is not finite and for a shell below zero.
     pub fn validate(&self) -> Result<()> {
-        let invalid = |parameter, value: f64, expected| {
-            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
-        };
+        let invalid = |parameter, value: f64, expected| Err(Error::invalid(parameter, value, expected));
         if !self.bias.is_finite() {
             return invalid(Parameter::DepthBias, self.bias, "finite");
         }

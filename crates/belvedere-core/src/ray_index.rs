@@ -112,11 +112,7 @@ impl RayIndex {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for corners in boxes {
             if !corners.as_flattened().iter().all(|v| v.is_finite()) {
-                return Err(Error::InvalidParameter {
-                    parameter: Parameter::Obstacle,
-                    value: format!("{corners:?}"),
-                    expected: "finite",
-                });
+                return Err(Error::invalid(Parameter::Obstacle, format!("{corners:?}"), "finite"));
             }
             for axis in 0..3 {
                 low[axis] = low[axis].min(f64::from(corners[0][axis]));
@@ -381,11 +377,7 @@ impl RayIndex {
 }
 
 fn damaged_tree() -> Error {
-    Error::InvalidParameter {
-        parameter: Parameter::Obstacle,
-        value: "a damaged tree".to_owned(),
-        expected: "one that holds every box once",
-    }
+    Error::invalid(Parameter::Obstacle, "a damaged tree", "one that holds every box once")
 }
 
 /// The node of [`RayIndex::node_words`].

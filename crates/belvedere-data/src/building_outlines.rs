@@ -140,8 +140,7 @@ impl BuildingOutlines {
         let lines = self.edges.iter().flat_map(|edge| edge.ends).chain(self.ridges.iter().flat_map(|ridge| ridge.ends));
         let walls =
             self.walls.iter().flat_map(|wall| [0, 1].map(|i| [wall.ends[i][0], wall.ends[i][1], wall.heights[i]]));
-        let invalid =
-            |value, expected| Err(Error::InvalidParameter { parameter: Parameter::Obstacle, value, expected });
+        let invalid = |value, expected| Err(Error::invalid(Parameter::Obstacle, value, expected));
         if let Some(place) = planes.chain(lines).chain(walls).find(|place| !is_near_f64(*place)) {
             let value = format!("a surface of a building at {place:?}, farther than {FARTHEST} m away");
             return invalid(value, "within 10000 km of the origin");

@@ -1,5 +1,6 @@
 //! Point clouds: f32 positions relative to an f64 origin, with the attributes a laser file carries as columns.
 
+use crate::vector::box_around;
 use std::path::PathBuf;
 
 use crate::crs::Crs;
@@ -7,6 +8,9 @@ pub use crate::frame::to_local;
 use crate::frame::{Bounds, Frame};
 use crate::sky_region::SkyRegion;
 use crate::{Error, Parameter, Result};
+
+/// ASPRS class of ground.
+pub const GROUND: u8 = 2;
 
 /// A point cloud.
 ///
@@ -194,6 +198,14 @@ macro_rules! attribute_columns {
 
 attribute_columns!(attributes);
 
+impl Attributes {
+    /// Returns the class of a point, if it is known.
+    #[must_use]
+    pub fn class_of(&self, row: usize) -> Option<u8> {
+        self.classification.as_deref()?.get(row).copied()
+    }
+}
+
 impl PointCloud {
     /// A cloud without attributes from coordinates in metres, (N, 3), f64; the origin is chosen near their centre.
     ///
@@ -288,11 +300,7 @@ impl PointCloud {
             return Err(Error::LengthMismatch { what, expected, found });
         }
         if let Some(p) = self.positions.iter().find(|p| p.iter().any(|v| !v.is_finite())) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Position,
-                value: format!("{p:?}"),
-                expected: "finite",
-            });
+            return Err(Error::invalid(Parameter::Position, format!("{p:?}"), "finite"));
         }
         Ok(())
     }
@@ -301,13 +309,6 @@ impl PointCloud {
 /// Middle of the bounding box of the finite `coordinates`, rounded to whole metres so that it prints short; zero if
 /// there is none.
 pub fn centre_rounded(coordinates: impl Iterator<Item = [f64; 3]>) -> [f64; 3] {
-    let mut low = [f64::INFINITY; 3];
-    let mut high = [f64::NEG_INFINITY; 3];
-    for c in coordinates.filter(|c| c.iter().all(|v| v.is_finite())) {
-        for i in 0..3 {
-            low[i] = low[i].min(c[i]);
-            high[i] = high[i].max(c[i]);
-        }
-    }
+    let [low, high] = box_around(coordinates.filter(|c| c.iter().all(|v| v.is_finite())));
     std::array::from_fn(|i| if low[i] <= high[i] { (low[i] / 2.0 + high[i] / 2.0).round() } else { 0.0 })
 }

@@ -304,15 +304,15 @@ fn invalid(text: &str) -> Error {
     if value.len() < text.len() {
         value.push('…');
     }
-    Error::InvalidParameter {
-        parameter: Parameter::Crs,
+    Error::invalid(
+        Parameter::Crs,
         value,
-        expected: if cfg!(feature = "crs") {
+        if cfg!(feature = "crs") {
             "a known EPSG code such as EPSG:28992, well-known text or a PROJ string"
         } else {
             "well-known text; this program was built without the cargo feature `crs`, which codes and PROJ strings need"
         },
-    }
+    )
 }
 
 /// Radius of the sphere of Web Mercator, metres.
@@ -413,11 +413,11 @@ impl Crs {
             }
         }
         Err(match is_named {
-            true => Error::InvalidParameter {
-                parameter: Parameter::ReferenceSystem,
-                value: format!("{}, whose place on earth is not known here", self.describe()),
-                expected: "a projected system by EPSG code or well-known text",
-            },
+            true => Error::invalid(
+                Parameter::ReferenceSystem,
+                format!("{}, whose place on earth is not known here", self.describe()),
+                "a projected system by EPSG code or well-known text",
+            ),
             false => Error::MissingAttribute {
                 attribute: "reference system",
                 needed_for: "projecting latitude and longitude",
@@ -434,10 +434,12 @@ impl GeographicProjection {
     /// [`Error::InvalidParameter`] for values that are no latitude and longitude or cannot be projected.
     pub fn project(&self, latitude: f64, longitude: f64) -> Result<[f64; 2]> {
         use std::f64::consts::{FRAC_PI_2, PI};
-        let invalid = |why: String| Error::InvalidParameter {
-            parameter: Parameter::LatitudeLongitude,
-            value: format!("{latitude}, {longitude} rad{why}"),
-            expected: "radians within the area of the reference system",
+        let invalid = |why: String| {
+            Error::invalid(
+                Parameter::LatitudeLongitude,
+                format!("{latitude}, {longitude} rad{why}"),
+                "radians within the area of the reference system",
+            )
         };
         if !(latitude.abs() <= FRAC_PI_2 && longitude.abs() <= 2.0 * PI) {
             return Err(invalid(String::new()));
@@ -458,10 +460,12 @@ impl GeographicProjection {
     /// # Errors
     /// [`Error::InvalidParameter`] for positions that the system cannot take back, and for systems without an inverse.
     pub fn unproject(&self, position: [f64; 2]) -> Result<[f64; 2]> {
-        let invalid = |why: String| Error::InvalidParameter {
-            parameter: Parameter::Position,
-            value: format!("{}, {} m{why}", position[0], position[1]),
-            expected: "within the area of the reference system",
+        let invalid = |why: String| {
+            Error::invalid(
+                Parameter::Position,
+                format!("{}, {} m{why}", position[0], position[1]),
+                "within the area of the reference system",
+            )
         };
         let back = |[x, y]: [f64; 2]| {
             let (longitude, latitude) = self

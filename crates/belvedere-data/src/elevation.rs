@@ -20,7 +20,7 @@ impl ElevationGrid {
     /// [`Error::InvalidParameter`] for fewer than 2 x 2 heights, none that is known, a cell that is not above zero, or
     /// a place that is not finite.
     pub fn new(mut heights: Raster<f32>, north_west: [f64; 2], cell: [f64; 2]) -> Result<Self> {
-        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
+        let invalid = |parameter, value: String, expected| Err(Error::invalid(parameter, value, expected));
         let (width, height) = (heights.width(), heights.height());
         if width < 2 || height < 2 {
             return invalid(Parameter::Terrain, format!("{width} x {height} cells"), "at least 2 x 2 cells");

@@ -78,7 +78,7 @@ impl FreeSegmentColumns {
                 return Err(Error::LengthMismatch { what, expected, found });
             }
         }
-        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
+        let invalid = |parameter, value: String, expected| Err(Error::invalid(parameter, value, expected));
         if let Some(start) = self.starts.iter().find(|start| !is_near(**start)) {
             return invalid(Parameter::Pulse, format!("from {start:?} on"), "within 10000 km of the origin");
         }

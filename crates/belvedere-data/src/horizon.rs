@@ -31,22 +31,14 @@ impl HorizonProfile {
         let mut rows: Vec<[f64; 2]> = rows.into_iter().collect();
         let is_wrong = |row: &&[f64; 2]| !(row[0].is_finite() && row[1].abs() <= FRAC_PI_2 + 1e-9);
         if let Some([azimuth, elevation]) = rows.iter().find(is_wrong) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Horizon,
-                value: format!(
-                    "a row of azimuth {}, elevation {} degrees",
-                    azimuth.to_degrees(),
-                    elevation.to_degrees()
-                ),
-                expected: "a finite azimuth and an elevation of -90 to 90 degrees",
-            });
+            return Err(Error::invalid(
+                Parameter::Horizon,
+                format!("a row of azimuth {}, elevation {} degrees", azimuth.to_degrees(), elevation.to_degrees()),
+                "a finite azimuth and an elevation of -90 to 90 degrees",
+            ));
         }
         if rows.is_empty() {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Horizon,
-                value: "without rows".to_owned(),
-                expected: "at least one azimuth with its elevation",
-            });
+            return Err(Error::invalid(Parameter::Horizon, "without rows", "at least one azimuth with its elevation"));
         }
         rows.iter_mut().for_each(|row| row[0] = row[0].rem_euclid(TAU));
         // the higher first, which stays of those with equal azimuths
@@ -64,8 +56,7 @@ impl HorizonProfile {
     ///   ([`HORIZON_ANGLES`]).
     pub fn of_degrees(rows: &[[f64; 2]]) -> Result<Self> {
         let profile = Self::new(rows.iter().map(|row| row.map(f64::to_radians)))?;
-        let refused =
-            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Horizon, value, expected });
+        let refused = |value: String, expected| Err(Error::invalid(Parameter::Horizon, value, expected));
         let ends = |column: usize| {
             let values = || rows.iter().map(|row| row[column]);
             [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]

@@ -94,9 +94,7 @@ impl ExtinctionVoxels {
         if expected != found {
             return Err(Error::LengthMismatch { what: "extinctions of voxels", expected, found });
         }
-        let invalid = |value: String, expected| {
-            Err(Error::InvalidParameter { parameter: Parameter::Transmissivity, value, expected })
-        };
+        let invalid = |value: String, expected| Err(Error::invalid(Parameter::Transmissivity, value, expected));
         if let Some(pair) = self.voxels.windows(2).find(|pair| pair[0] >= pair[1]) {
             return invalid(format!("voxel {:?} after {:?}", pair[1], pair[0]), "voxels in ascending order");
         }

@@ -113,7 +113,7 @@ impl ModelParts {
         if !(found == 0 || found == expected) {
             return Err(Error::LengthMismatch { what: "transmissions of balls", expected, found });
         }
-        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
+        let invalid = |parameter, value: String, expected| Err(Error::invalid(parameter, value, expected));
         if let Some(c) = self.balls.centers.iter().find(|c| !is_near(**c)) {
             return invalid(Parameter::Ball, format!("at {c:?}"), "within 10000 km of the origin");
         }

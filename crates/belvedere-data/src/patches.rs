@@ -107,11 +107,11 @@ impl SurfacePatches {
         }
         match self.triangles.as_flattened().iter().find(|corner| !is_near(**corner)) {
             None => Ok(()),
-            Some(corner) => Err(Error::InvalidParameter {
-                parameter: Parameter::Obstacle,
-                value: format!("a surface patch with a corner at {corner:?}, farther than {FARTHEST} m away"),
-                expected: "within 10000 km of the origin",
-            }),
+            Some(corner) => Err(Error::invalid(
+                Parameter::Obstacle,
+                format!("a surface patch with a corner at {corner:?}, farther than {FARTHEST} m away"),
+                "within 10000 km of the origin",
+            )),
         }
     }
 

@@ -1,5 +1,6 @@
 //! Polygons on the map.
 
+use crate::vector::box_around;
 use crate::{Error, Parameter};
 use std::ops::{ControlFlow, Range};
 
@@ -16,12 +17,7 @@ impl Footprint {
     /// Returns the lowest and the highest corner of the box around it; infinite without a corner.
     #[must_use]
     pub fn bounds(&self) -> [[f64; 2]; 2] {
-        let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        for corner in self.polygons.iter().flatten().flatten() {
-            bounds[0] = [0, 1].map(|axis| bounds[0][axis].min(corner[axis]));
-            bounds[1] = [0, 1].map(|axis| bounds[1][axis].max(corner[axis]));
-        }
-        bounds
+        box_around(self.polygons.iter().flatten().flatten().copied())
     }
 }
 
@@ -89,7 +85,7 @@ impl RingFault {
                 "simple enough to be tested for crossings; simplify it in a GIS",
             ),
         };
-        Error::InvalidParameter { parameter, value, expected }
+        Error::invalid(parameter, value, expected)
     }
 }
 
@@ -155,11 +151,8 @@ impl PolygonIndex {
                 let root = index.push(first, index.corners.len() - 1);
                 index.roots.push(root);
             }
-            let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-            for node in index.roots[start..].iter().map(|&root| &index.nodes[root]) {
-                low = [0, 1].map(|axis| low[axis].min(node.low[axis]));
-                high = [0, 1].map(|axis| high[axis].max(node.high[axis]));
-            }
+            let nodes = index.roots[start..].iter().map(|&root| &index.nodes[root]);
+            let [low, high] = box_around(nodes.flat_map(|node| [node.low, node.high]));
             if index.roots.len() > start {
                 leaves.push(PolygonNode { low, high, content: PolygonContent::One(start..index.roots.len()) });
             }
@@ -221,11 +214,7 @@ impl PolygonIndex {
     /// Appends the nodes of the sides between two corners; returns the number of the first.
     fn push(&mut self, first: usize, last: usize) -> usize {
         let number = self.nodes.len();
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for corner in &self.corners[first..=last] {
-            low = [0, 1].map(|axis| low[axis].min(corner[axis]));
-            high = [0, 1].map(|axis| high[axis].max(corner[axis]));
-        }
+        let [low, high] = box_around(self.corners[first..=last].iter().copied());
         self.nodes.push(RingNode { low, high, first, last, second: None });
         if last - first > LEAF {
             let middle = usize::midpoint(first, last);

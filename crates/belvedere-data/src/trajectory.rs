@@ -202,11 +202,11 @@ impl Trajectory {
                 let min = times.iter().copied().fold(f64::INFINITY, f64::min);
                 format!("{min} to {} s", times.iter().copied().fold(f64::NEG_INFINITY, f64::max))
             };
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Trajectory,
-                value: format!("from {}, the cloud from {}", span(&self.times), span(times)),
-                expected: "to cover the GPS times of the cloud",
-            });
+            return Err(Error::invalid(
+                Parameter::Trajectory,
+                format!("from {}, the cloud from {}", span(&self.times), span(times)),
+                "to cover the GPS times of the cloud",
+            ));
         }
         Ok((self.positions_by(&offset, times, cloud), offset))
     }
@@ -239,7 +239,7 @@ const MIN_BELOW: f64 = 0.1;
 /// Refuses scanner positions that cannot be those of points: in degrees, in another system, or at the height of the
 /// ground. Both (N, 3), local metres.
 fn check_above(positions: &[[f32; 3]], points: &[[f32; 3]]) -> Result<()> {
-    let invalid = |value, expected| Err(Error::InvalidParameter { parameter: Parameter::Trajectory, value, expected });
+    let invalid = |value, expected| Err(Error::invalid(Parameter::Trajectory, value, expected));
     let known: Vec<(&[f32; 3], &[f32; 3])> =
         positions.iter().zip(points).filter(|(p, _)| !p.iter().any(|v| v.is_nan())).collect();
     if known.is_empty() {

@@ -12,6 +12,13 @@ pub fn compare_places(a: &[f32; 3], b: &[f32; 3]) -> Ordering {
     (0..3).map(|i| (a[i] + 0.0).total_cmp(&(b[i] + 0.0))).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
 }
 
+/// Returns the lowest and the highest corner of the box around places; infinite, turned inside out, without places.
+pub fn box_around<const N: usize>(places: impl IntoIterator<Item = [f64; N]>) -> [[f64; N]; 2] {
+    places.into_iter().fold([[f64::INFINITY; N], [f64::NEG_INFINITY; N]], |[low, high], place| {
+        [std::array::from_fn(|i| low[i].min(place[i])), std::array::from_fn(|i| high[i].max(place[i]))]
+    })
+}
+
 /// `a − b`.
 #[must_use]
 #[inline]
@@ -90,5 +97,11 @@ mod tests {
         }
         assert_eq!(piece_in_box([[1.0, 2.0], [-1.0, 1.0]], [1.0, 0.0], endless), Some([1.0, 2.0]));
         assert_eq!(piece_in_box([[2.0, 1.0], [-1.0, 1.0]], [1.0, 0.0], endless), None);
+    }
+
+    #[test]
+    fn a_box_holds_its_places_and_that_of_none_is_turned_inside_out() {
+        assert_eq!(box_around([[1.0, 5.0], [3.0, -2.0]]), [[1.0, -2.0], [3.0, 5.0]]);
+        assert_eq!(box_around::<1>([]), [[f64::INFINITY], [f64::NEG_INFINITY]]);
     }
 }

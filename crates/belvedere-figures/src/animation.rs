@@ -23,20 +23,16 @@ const LONGEST: f64 = 65.535;
 /// W3C, Portable Network Graphics (PNG) Specification, third edition, 2025, sections 4.9 and 11.3.6.
 pub fn write_apng(path: &Path, frames: &[Picture], seconds_per_frame: f64) -> Result<()> {
     let Some(first) = frames.first() else {
-        return invalid(Parameter::Frames, "none".to_owned(), "at least one");
+        return Err(Error::invalid(Parameter::Frames, "none", "at least one"));
     };
     if let Some(other) = frames.iter().find(|frame| (frame.width, frame.height) != (first.width, first.height)) {
         let value = format!("{} x {} pixels after {} x {}", other.width, other.height, first.width, first.height);
-        return invalid(Parameter::Frames, value, "of the size of the first frame");
+        return Err(Error::invalid(Parameter::Frames, value, "of the size of the first frame"));
     }
     if !(0.001..=LONGEST).contains(&seconds_per_frame) {
-        return invalid(Parameter::FrameTime, format!("{seconds_per_frame} s"), "0.001 to 65.535 seconds");
+        return Err(Error::invalid(Parameter::FrameTime, format!("{seconds_per_frame} s"), "0.001 to 65.535 seconds"));
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked to be 1 to 65535 ms")]
     let milliseconds = (seconds_per_frame * 1000.0).round() as u16;
     write_frames(path, frames, milliseconds)
-}
-
-fn invalid<T>(parameter: Parameter, value: String, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { parameter, value, expected })
 }

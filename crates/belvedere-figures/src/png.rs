@@ -43,11 +43,7 @@ pub fn write_png(path: &Path, picture: &Picture) -> Result<()> {
 pub(super) fn write_frames(path: &Path, frames: &[Picture], milliseconds: u16) -> Result<()> {
     let (Some(first), Ok(count)) = (frames.first(), u32::try_from(frames.len())) else {
         let value = frames.len().to_string();
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::Frames,
-            value,
-            expected: "1 to 4294967295 in number",
-        });
+        return Err(Error::invalid(Parameter::Frames, value, "1 to 4294967295 in number"));
     };
     for frame in frames {
         checked_size(frame)?;
@@ -119,10 +115,10 @@ fn checked_size(picture: &Picture) -> Result<(u32, u32)> {
         (Ok(width @ 1..), Ok(height @ 1..)) if picture.rgb.len() == picture.width * picture.height * 3 => {
             Ok((width, height))
         }
-        _ => Err(Error::InvalidParameter {
-            parameter: Parameter::PictureSize,
-            value: format!("{} x {} pixels in {} bytes", picture.width, picture.height, picture.rgb.len()),
-            expected: "at least one pixel and three bytes per pixel",
-        }),
+        _ => Err(Error::invalid(
+            Parameter::PictureSize,
+            format!("{} x {} pixels in {} bytes", picture.width, picture.height, picture.rgb.len()),
+            "at least one pixel and three bytes per pixel",
+        )),
     }
 }

@@ -140,10 +140,8 @@ pub fn clean(cloud: &PointCloud, params: &CleanParams, control: &Control<'_>) ->
     if let Some((what, found)) = cloud.attributes.columns().into_iter().find(|&(_, length)| length != expected) {
         return Err(Error::LengthMismatch { what, expected, found });
     }
-    let count = u32::try_from(expected).map_err(|_| Error::InvalidParameter {
-        parameter: Parameter::PointCount,
-        value: expected.to_string(),
-        expected: "at most 4294967295; split the cloud into tiles",
+    let count = u32::try_from(expected).map_err(|_| {
+        Error::invalid(Parameter::PointCount, expected, "at most 4294967295; split the cloud into tiles")
     })?;
     if let Some(distance) = params.near_duplicate_distance {
         check_length(Parameter::DuplicateDistance, distance)?;

@@ -57,16 +57,16 @@ impl IsolatedPoints {
     pub(super) fn check(&self) -> Result<()> {
         if self.min_neighbors == 0 {
             let value = self.min_neighbors.to_string();
-            return Err(Error::InvalidParameter { parameter: Parameter::NeighborCount, value, expected: "at least 1" });
+            return Err(Error::invalid(Parameter::NeighborCount, value, "at least 1"));
         }
         match self.radius {
             IsolationRadius::Metres(metres) => check_length(Parameter::IsolationRadius, metres),
             IsolationRadius::SpacingMultiple(multiple) if multiple > 0.0 && multiple <= 1e4 => Ok(()),
-            IsolationRadius::SpacingMultiple(multiple) => Err(Error::InvalidParameter {
-                parameter: Parameter::IsolationRadius,
-                value: format!("{multiple} times the spacing"),
-                expected: "above 0 and at most 10000 times",
-            }),
+            IsolationRadius::SpacingMultiple(multiple) => Err(Error::invalid(
+                Parameter::IsolationRadius,
+                format!("{multiple} times the spacing"),
+                "above 0 and at most 10000 times",
+            )),
         }
     }
 
@@ -200,5 +200,5 @@ pub(super) fn check_length(parameter: Parameter, metres: f64) -> Result<()> {
     if metres > 0.0 && metres <= 1000.0 {
         return Ok(());
     }
-    Err(Error::InvalidParameter { parameter, value: metres.to_string(), expected: "above 0 and at most 1000 metres" })
+    Err(Error::invalid(parameter, metres, "above 0 and at most 1000 metres"))
 }

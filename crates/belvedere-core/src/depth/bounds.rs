@@ -70,11 +70,7 @@ pub struct DepthBounds {
 /// [`Error::InvalidParameter`] for 2³² balls or more, and [`Error::Cancelled`].
 pub fn depth_bounds(balls: &[Ball], view: &View, params: &BoundsParams, control: &Control<'_>) -> Result<DepthBounds> {
     if u32::try_from(balls.len()).is_err() {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::BallCount,
-            value: balls.len().to_string(),
-            expected: "below 2^32",
-        });
+        return Err(Error::invalid(Parameter::BallCount, balls.len(), "below 2^32"));
     }
     let ball = |i: usize| balls.get(i).copied().filter(|ball| ball.radius > 0.0 && ball.radius.is_finite());
     // what limits lines of sight is said by `start`

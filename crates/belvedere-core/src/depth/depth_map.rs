@@ -54,11 +54,7 @@ pub fn depth_map(
 ) -> Result<DepthMap> {
     balls.validate()?;
     if u32::try_from(balls.len()).is_err() {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::BallCount,
-            value: balls.len().to_string(),
-            expected: "below 2^32",
-        });
+        return Err(Error::invalid(Parameter::BallCount, balls.len(), "below 2^32"));
     }
     let usable = |i: usize| {
         let (center, radius) = (balls.centers[i], balls.radii[i]);
@@ -82,11 +78,11 @@ pub fn depth_map(
             tiles::draw(&Central::new(view, central::CentralSphere), size, count, usable, items, control)
         }
         (_, Profile::PaperCone) => {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::BallProfile,
-                value: "the paper's cone in a view from an eye".to_owned(),
-                expected: "the sphere; the paper defines its cone for parallel views only",
-            });
+            return Err(Error::invalid(
+                Parameter::BallProfile,
+                "the paper's cone in a view from an eye",
+                "the sphere; the paper defines its cone for parallel views only",
+            ));
         }
     }?;
     let around_eye_count = if view.is_central() {

@@ -7,6 +7,7 @@
 
 use crate::blocking::Ball;
 use belvedere_data::Result;
+use belvedere_data::cast::to_ascending_bits;
 use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use rayon::prelude::*;
@@ -197,17 +198,11 @@ impl TileLists {
         let mut keys: Vec<u64> = listed
             .iter()
             .chain(wide)
-            .map(|&i| u64::from(ascending_bits(S::nearest_depth(&splats[i as usize]))) << 32 | u64::from(i))
+            .map(|&i| u64::from(to_ascending_bits(S::nearest_depth(&splats[i as usize]))) << 32 | u64::from(i))
             .collect();
         keys.sort_unstable();
         keys
     }
-}
-
-/// Bits that ascend as the value does, below zero too.
-fn ascending_bits(value: f32) -> u32 {
-    let bits = value.to_bits();
-    if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }
 
 /// First and one past the last pixel whose centre may lie from `min` to `max`; one or two pixels too many at most.

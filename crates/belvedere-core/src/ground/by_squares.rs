@@ -6,6 +6,7 @@ use belvedere_data::cast::{to_index, to_row, to_u32};
 use belvedere_data::control::Control;
 use belvedere_data::model::GroundParts;
 use belvedere_data::raster::Raster;
+use belvedere_data::vector::box_around;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
 use rayon::prelude::*;
 use std::ops::RangeInclusive;
@@ -193,13 +194,7 @@ struct Squares {
 
 impl Squares {
     fn over(points: &[[f32; 3]]) -> Self {
-        let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        for axis in 0..2 {
-            for p in points {
-                low[axis] = low[axis].min(p[axis].into());
-                high[axis] = high[axis].max(p[axis].into());
-            }
-        }
+        let [low, high] = box_around(points.iter().map(|&[x, y, _]| [x, y].map(f64::from)));
         let size = [0, 1].map(|axis| (high[axis] - low[axis]).max(0.0));
         let share = POINTS_OF_SQUARE / points.len().max(1) as f64;
         // no more squares than points, even in one line

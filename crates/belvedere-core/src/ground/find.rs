@@ -51,28 +51,16 @@ impl FinderParams {
         let above_zero = [("cell", self.cell), ("slope", self.slope), ("window", self.window)];
         for (name, value) in above_zero {
             if !(value.is_finite() && value > 0.0) {
-                return Err(Error::InvalidParameter {
-                    parameter: Parameter::GroundDetection,
-                    value: format!("{name} of {value}"),
-                    expected: "above zero",
-                });
+                return Err(Error::invalid(Parameter::GroundDetection, format!("{name} of {value}"), "above zero"));
             }
         }
         if self.window / self.cell > 10_000.0 {
             let value = format!("a window of {} m at cells of {} m", self.window, self.cell);
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::GroundDetection,
-                value,
-                expected: "at most 10 000 cells",
-            });
+            return Err(Error::invalid(Parameter::GroundDetection, value, "at most 10 000 cells"));
         }
         for (name, value) in [("tolerance", self.tolerance), ("slope tolerance", self.slope_tolerance)] {
             if !(value.is_finite() && value >= 0.0) {
-                return Err(Error::InvalidParameter {
-                    parameter: Parameter::GroundDetection,
-                    value: format!("{name} of {value}"),
-                    expected: "zero or more",
-                });
+                return Err(Error::invalid(Parameter::GroundDetection, format!("{name} of {value}"), "zero or more"));
             }
         }
         Ok(())

@@ -36,7 +36,7 @@ impl MapGrid {
     /// [`Error::InvalidParameter`] for a cell that is not above zero or longer than the box and than 100 m, a box that
     /// is not finite, and more than 100 million cells.
     pub fn covering(low: [f64; 2], high: [f64; 2], cell: f64, origin: [f64; 2]) -> Result<Self> {
-        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
+        let invalid = |parameter, value: String, expected| Err(Error::invalid(parameter, value, expected));
         if !(cell.is_finite() && cell > 0.0) {
             return invalid(Parameter::Cell, cell.to_string(), "above zero metres");
         }

@@ -15,6 +15,7 @@ mod triangulate;
 pub(crate) use triangulate::sides;
 
 use belvedere_data::cast::{to_f32, to_index};
+use belvedere_data::cloud::GROUND;
 pub use by_squares::GroundBySquares;
 pub use find::{FinderParams, find_ground};
 pub(crate) use in_blocks::{GROUND_REACH, ground_in_blocks};
@@ -32,8 +33,6 @@ use belvedere_data::{Error, Parameter, PointCloud, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// ASPRS class of ground.
-const GROUND: u8 = 2;
 /// ASPRS classes of the surface of water, which is the ground there: without it heights would be interpolated from bank
 /// to bank, and boats float as high as the quays.
 const WATER: [u8; 2] = [9, 41];
@@ -76,11 +75,7 @@ impl GroundParams {
     fn check(&self) -> Result<()> {
         match [self.reach, self.max_gap_from_returns].into_iter().find(|reach| !(*reach > 0.0)) {
             None => Ok(()),
-            Some(value) => Err(Error::InvalidParameter {
-                parameter: Parameter::GroundReach,
-                value: value.to_string(),
-                expected: "above zero metres",
-            }),
+            Some(value) => Err(Error::invalid(Parameter::GroundReach, value, "above zero metres")),
         }
     }
 }
@@ -171,7 +166,7 @@ impl GroundRows {
             GroundPoints::Found => Ok(None),
             // what lies lower than ground around it is no error there
             _ if self.has_water => {
-                let is_ground = |row: &&u32| class_of(cloud, **row) == Some(GROUND);
+                let is_ground = |row: &&u32| cloud.attributes.class_of(**row as usize) == Some(GROUND);
                 let rows: Vec<u32> = self.rows.iter().filter(is_ground).copied().collect();
                 let points: Vec<[f32; 3]> =
                     rows.iter().filter_map(|&row| cloud.positions.get(row as usize).copied()).collect();
@@ -230,11 +225,6 @@ fn tested_points(cloud: &PointCloud, params: &GroundParams, control: &Control<'_
         rows.sort_unstable();
     }
     Ok(GroundRows { rows, from: GroundPoints::Classed, doubted_count, has_water })
-}
-
-/// Class of a point.
-fn class_of(cloud: &PointCloud, row: u32) -> Option<u8> {
-    cloud.attributes.classification.as_ref().and_then(|classes| classes.get(row as usize)).copied()
 }
 
 /// Points sorted by their coordinates: triangulations and the nearest of several points depend on the order.

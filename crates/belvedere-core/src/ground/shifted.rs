@@ -330,10 +330,8 @@ mod tests {
     use super::*;
     use belvedere_data::Attributes;
     use belvedere_data::cast::{to_f32, to_index, to_row};
+    use belvedere_data::cloud::GROUND;
     use belvedere_data::random::uniform;
-
-    /// Class of ground in LAS files.
-    const GROUND: u8 = 2;
 
     /// A point of a test: place, class and strip.
     type Return = ([f32; 3], u8, u16);

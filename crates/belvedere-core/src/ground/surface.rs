@@ -58,8 +58,7 @@ impl SurfaceParams {
     /// # Errors
     /// [`Error::InvalidParameter`] for one outside its range.
     pub fn validate(&self) -> Result<()> {
-        let invalid =
-            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Surface, value, expected });
+        let invalid = |value: String, expected| Err(Error::invalid(Parameter::Surface, value, expected));
         if !(3..=256).contains(&self.neighbors) {
             return invalid(format!("one of {} neighbours", self.neighbors), "one of 3 to 256");
         }

@@ -23,11 +23,7 @@ pub(super) fn heights(points: &[[f32; 3]], grid: &MapGrid) -> Result<Raster<f32>
 /// [`Error::InvalidParameter`] for a point that is not finite.
 pub(super) fn triangles(points: &[[f32; 3]]) -> Result<Vec<usize>> {
     if let Some(p) = points.iter().find(|p| !p.iter().all(|v| v.is_finite())) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::Position,
-            value: format!("{p:?}"),
-            expected: "finite",
-        });
+        return Err(Error::invalid(Parameter::Position, format!("{p:?}"), "finite"));
     }
     let on_map: Vec<Point> = points.iter().map(|p| Point { x: f64::from(p[0]), y: f64::from(p[1]) }).collect();
     Ok(triangulate(&on_map).triangles)

@@ -42,18 +42,14 @@ pub fn local_feature_size(
 ) -> Result<Vec<f32>> {
     let stop = Stop::new(control);
     if !(params.max_bisector_angle > 0.0) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::BisectorAngle,
-            value: params.max_bisector_angle.to_degrees().to_string(),
-            expected: "above 0 degrees",
-        });
+        return Err(Error::invalid(
+            Parameter::BisectorAngle,
+            params.max_bisector_angle.to_degrees(),
+            "above 0 degrees",
+        ));
     }
     if !(1..=64).contains(&params.neighbor_count) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::NeighborCount,
-            value: params.neighbor_count.to_string(),
-            expected: "1 to 64",
-        });
+        return Err(Error::invalid(Parameter::NeighborCount, params.neighbor_count, "1 to 64"));
     }
     let mut reliable = Vec::new();
     for balls in sides {
@@ -76,11 +72,7 @@ fn reliable_centers(
     control: &Control<'_>,
 ) -> Result<Vec<[f32; 3]>> {
     let stop = Stop::new(control);
-    let missing = |i: u32| Error::InvalidParameter {
-        parameter: Parameter::Ball,
-        value: i.to_string(),
-        expected: "an index into the points the balls were made from",
-    };
+    let missing = |i: u32| Error::invalid(Parameter::Ball, i, "an index into the points the balls were made from");
     let point = |i: u32| positions.get(i as usize).copied().ok_or_else(|| missing(i));
     let mut centers = Vec::new();
     let mut bisectors = Vec::new();
@@ -176,15 +168,15 @@ pub fn simplify(positions: &[[f32; 3]], feature_sizes: &[f32], params: &Simplify
     let [least, most] = params.density_limits;
     for (parameter, value) in [(Parameter::Spacing, params.spacing), (Parameter::Cell, params.cell_size)] {
         if !(value > 0.0 && value.is_finite()) {
-            return Err(Error::InvalidParameter { parameter, value: value.to_string(), expected: "above 0" });
+            return Err(Error::invalid(parameter, value, "above 0"));
         }
     }
     if !(least >= 0.0 && most >= least) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::DensityLimits,
-            value: format!("{least} to {most}"),
-            expected: "0 or more, in ascending order",
-        });
+        return Err(Error::invalid(
+            Parameter::DensityLimits,
+            format!("{least} to {most}"),
+            "0 or more, in ascending order",
+        ));
     }
     let low = positions.iter().fold([f32::INFINITY; 3], |low, p| std::array::from_fn(|i| low[i].min(p[i])));
     let cell_of = |p: [f32; 3]| -> [i32; 3] {

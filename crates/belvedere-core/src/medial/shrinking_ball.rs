@@ -89,9 +89,7 @@ impl ShrinkParams {
     /// # Errors
     /// [`Error::InvalidParameter`] for the first parameter out of its range.
     pub fn check(&self) -> Result<()> {
-        let invalid = |parameter, value: f64, expected| {
-            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
-        };
+        let invalid = |parameter, value: f64, expected| Err(Error::invalid(parameter, value, expected));
         let radius = self.initial_radius;
         if !(radius > 0.0 && radius <= 1e5) {
             return invalid(Parameter::InitialRadius, radius.into(), "above 0 and at most 100000 metres");

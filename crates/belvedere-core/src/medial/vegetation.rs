@@ -45,7 +45,7 @@ pub(super) fn find_vegetation(
     let stop = Stop::new(control);
     if !(1..=256).contains(&params.neighbors) {
         let value = params.neighbors.to_string();
-        return Err(Error::InvalidParameter { parameter: Parameter::NeighborCount, value, expected: "1 to 256" });
+        return Err(Error::invalid(Parameter::NeighborCount, value, "1 to 256"));
     }
     let class = |row: usize| attributes.classification.as_ref().and_then(|classes| classes.get(row)).copied();
     let returns = |row: usize| attributes.return_count.as_ref().and_then(|counts| counts.get(row)).copied();

@@ -3,7 +3,7 @@
 
 use super::SceneModel;
 use super::cleared_area::ClearedArea;
-use super::clearing::{Clearing, class_of};
+use super::clearing::Clearing;
 use crate::ground::MapGrid;
 use crate::medial::MedialBalls;
 use crate::neighbors::NeighborIndex;
@@ -64,7 +64,7 @@ impl SceneModel {
         let Some(grid) = grid_over(area, cloud)? else { return Ok((self, cloud.clone(), report)) };
         let clearing = Clearing::new(area, cloud, grid, control)?;
         let is_cleared: Vec<bool> =
-            (0..cloud.len()).map(|row| clearing.clears(cloud.positions[row], class_of(cloud, row))).collect();
+            (0..cloud.len()).map(|row| clearing.clears(cloud.positions[row], cloud.attributes.class_of(row))).collect();
         report.points_cleared = is_cleared.iter().filter(|&&is_cleared| is_cleared).count();
         control.check()?;
         let rows: Vec<u32> =

@@ -1,13 +1,11 @@
 //! Areas and classes to clear.
 
 use belvedere_data::cast::to_i64;
+use belvedere_data::cloud::GROUND;
 use belvedere_data::polygon::{PolygonIndex, simple_rings};
 use belvedere_data::{Bounds, Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-
-/// ASPRS class of ground.
-pub(super) const GROUND: u8 = 2;
 /// Side of the squares whose polygons are cleared together, metres: columns of the usual width over one are fewer than
 /// [`MAX_CELLS`].
 const AREA_SIDE: f64 = 256.0;
@@ -67,9 +65,7 @@ impl ClearedArea {
     /// [`Error::InvalidParameter`] for a polygon beside `bounds`, for one that is none, and for the class of the
     /// ground.
     pub fn rectangle_on(&self, bounds: &Bounds, origin: [f64; 3]) -> Result<Option<([f64; 2], [f64; 2])>> {
-        let invalid = |value: String, expected| {
-            Err(Error::InvalidParameter { parameter: Parameter::ClearedArea, value, expected })
-        };
+        let invalid = |value: String, expected| Err(Error::invalid(Parameter::ClearedArea, value, expected));
         match self {
             Self::Class(GROUND) => return invalid("class 2".to_owned(), "a class that stands on the ground"),
             Self::Class(_) => return Ok(None),

@@ -1,8 +1,9 @@
 //! Effect of clearing an area at a place: removes a point, cuts a ball, or closes the ground.
 
-use super::cleared_area::{ClearedArea, GROUND};
+use super::cleared_area::ClearedArea;
 use crate::ground::{Ground, GroundParams, GroundPoints, MapGrid, ground_points};
 use belvedere_data::cast::to_index;
+use belvedere_data::cloud::GROUND;
 use belvedere_data::control::Control;
 use belvedere_data::polygon::PolygonIndex;
 use belvedere_data::raster::Raster;
@@ -185,7 +186,8 @@ impl Clearing {
         let around = if matches!(self.area, IndexedArea::Class(_)) { AROUND_OF_CLASS } else { AROUND };
         let reach = to_index(around / grid.cell);
         let mut highest = Raster::filled(grid.width, grid.height, f32::NEG_INFINITY);
-        let standing = (0..cloud.len()).filter(|&row| self.stands_in(cloud.positions[row], class_of(cloud, row)));
+        let standing =
+            (0..cloud.len()).filter(|&row| self.stands_in(cloud.positions[row], cloud.attributes.class_of(row)));
         for position in standing.map(|row| cloud.positions[row]) {
             let cell = grid.cell_of([f64::from(position[0]), f64::from(position[1])]);
             if let Some([column, row]) = cell
@@ -216,9 +218,4 @@ impl Clearing {
         }
         tops
     }
-}
-
-/// The class of a point.
-pub(super) fn class_of(cloud: &PointCloud, row: usize) -> Option<u8> {
-    cloud.attributes.classification.as_deref().and_then(|classes| classes.get(row)).copied()
 }

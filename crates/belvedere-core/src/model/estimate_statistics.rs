@@ -54,7 +54,7 @@ impl SurveyStatistics {
             _ => {
                 let value = "a scanner, a trajectory or a mesh that is given".to_owned();
                 let expected = "auto, pulses or up where a survey is built in parts";
-                return Err(Error::InvalidParameter { parameter: Parameter::Orientation, value, expected });
+                return Err(Error::invalid(Parameter::Orientation, value, expected));
             }
         };
         let (positions, report) = control.stage("estimating scanner positions", along_lines.len(), || {

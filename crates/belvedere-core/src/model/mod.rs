@@ -111,11 +111,7 @@ impl SceneModel {
     pub fn from_parts(parts: ModelParts) -> Result<Self> {
         parts.validate()?;
         if let Some(side) = parts.provenance.get("side").filter(|side| *side == "exterior") {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::BallSide,
-                value: side.clone(),
-                expected: "interior, because exterior balls block nothing",
-            });
+            return Err(Error::invalid(Parameter::BallSide, side, "interior, because exterior balls block nothing"));
         }
         let vegetation = vegetation_of_transmission(&parts.transmission);
         let triangles = BlockingTriangles::of_patches(&parts.patches, None)?;

@@ -59,8 +59,7 @@ impl TerrainReport {
 pub fn check_terrain(terrain: &ElevationGrid, name: &str, cloud: Bounds, frame: &Frame) -> Result<()> {
     let ([west, south], [east, north]) = terrain.on_map();
     let (low, high) = cloud.on_map();
-    let invalid =
-        |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::Terrain, value, expected });
+    let invalid = |value: String, expected| Err(Error::invalid(Parameter::Terrain, value, expected));
     if west > low[0] || south > low[1] || east < high[0] || north < high[1] {
         let file = |[x, y]: [f64; 2]| {
             let [x, y, _] = frame.file_from_local([x, y, 0.0]);

@@ -66,11 +66,7 @@ impl NeighborIndex {
     /// As [`NeighborIndex::new`].
     pub fn with_instructions(points: &[[f32; 3]], instructions: Instructions, control: &Control<'_>) -> Result<Self> {
         if u32::try_from(points.len()).is_err() {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::PointCount,
-                value: points.len().to_string(),
-                expected: "below 2^32; split the cloud into tiles",
-            });
+            return Err(Error::invalid(Parameter::PointCount, points.len(), "below 2^32; split the cloud into tiles"));
         }
         check_positions(points)?;
         let instructions = if instructions == Instructions::detect() { instructions } else { Instructions::Scalar };
@@ -157,9 +153,7 @@ impl NeighborIndex {
 /// A squared distance must not overflow: (2e18)² · 3 is below the largest f32.
 fn check_positions(points: &[[f32; 3]]) -> Result<()> {
     match points.iter().find(|p| !p.iter().all(|v| v.abs() < 1e18)) {
-        Some(p) => {
-            Err(Error::InvalidParameter { parameter: Parameter::Position, value: format!("{p:?}"), expected: "finite" })
-        }
+        Some(p) => Err(Error::invalid(Parameter::Position, format!("{p:?}"), "finite")),
         None => Ok(()),
     }
 }

@@ -1,5 +1,6 @@
 //! Normals by principal components of the nearest neighbours.
 
+use super::moments::Moments;
 use super::{Normals, Scatter};
 use crate::neighbors::{Neighbor, NeighborIndex};
 use belvedere_data::cast::to_f32;
@@ -43,7 +44,7 @@ impl Neighborhood {
 
     /// The most neighbours that are looked at.
     fn largest(self) -> Result<usize> {
-        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
+        let invalid = |parameter, value: String, expected| Err(Error::invalid(parameter, value, expected));
         match self {
             Self::Fixed { k } if (3..=256).contains(&k) => Ok(k),
             Self::Fixed { k } => invalid(Parameter::NeighborCount, k.to_string(), "3 to 256"),
@@ -191,38 +192,6 @@ struct Plane {
     offset: f32,
     /// Root mean square distance of the neighbourhood from it, metres.
     roughness: f32,
-}
-
-/// Sums over a neighbourhood, relative to its first point, from which its covariance follows at any size.
-#[derive(Clone, Copy, Default)]
-struct Moments {
-    count: f64,
-    sum: [f64; 3],
-    /// xx, yy, zz, xy, yz, zx
-    products: [f64; 6],
-}
-
-impl Moments {
-    fn add(&mut self, p: [f64; 3]) {
-        let [x, y, z] = p;
-        self.count += 1.0;
-        for (sum, v) in self.sum.iter_mut().zip(p) {
-            *sum += v;
-        }
-        for (sum, v) in self.products.iter_mut().zip([x * x, y * y, z * z, x * y, y * z, z * x]) {
-            *sum += v;
-        }
-    }
-
-    fn mean(&self) -> [f64; 3] {
-        self.sum.map(|s| s / self.count)
-    }
-
-    fn covariance(&self) -> [f64; 6] {
-        let mean = self.mean();
-        let product = |i: usize, a: usize, b: usize| self.products[i] / self.count - mean[a] * mean[b];
-        [product(0, 0, 0), product(1, 1, 1), product(2, 2, 2), product(3, 0, 1), product(4, 1, 2), product(5, 2, 0)]
-    }
 }
 
 fn relative(positions: &[[f32; 3]], neighbor: &Neighbor, base: [f32; 3]) -> [f64; 3] {

@@ -1,6 +1,7 @@
 //! Surface normals: estimated from neighbourhoods, then oriented outward.
 
 pub mod estimate;
+pub(crate) mod moments;
 pub mod orient;
 pub mod oriented;
 mod reference_mesh;

@@ -335,11 +335,7 @@ fn by_nearest_scanner(
 fn check_finite(scanners: &[[f64; 3]]) -> Result<()> {
     if scanners.is_empty() || scanners.iter().flatten().any(|v| !v.is_finite()) {
         let value = format!("{scanners:?}");
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::ScannerPositions,
-            value,
-            expected: "at least one, finite",
-        });
+        return Err(Error::invalid(Parameter::ScannerPositions, value, "at least one, finite"));
     }
     Ok(())
 }
@@ -371,10 +367,12 @@ fn by_mesh(
     mesh: &Mesh,
     control: &Control<'_>,
 ) -> Result<Vec<Option<NormalSign>>> {
-    let reference = ReferenceMesh::new(mesh, cloud.frame.origin, control)?.ok_or_else(|| Error::InvalidParameter {
-        parameter: Parameter::Mesh,
-        value: format!("{} triangles without area", mesh.triangles.len()),
-        expected: "at least one triangle with an area",
+    let reference = ReferenceMesh::new(mesh, cloud.frame.origin, control)?.ok_or_else(|| {
+        Error::invalid(
+            Parameter::Mesh,
+            format!("{} triangles without area", mesh.triangles.len()),
+            "at least one triangle with an area",
+        )
     })?;
     each(cloud, vectors, control, |_, position, normal| match reference.verdict(position, normal) {
         MeshVerdict::Face(outward) => Some(NormalSign::new(SignSource::Face, outward)),

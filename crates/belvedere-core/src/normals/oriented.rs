@@ -41,11 +41,7 @@ impl OrientedCloud {
             }
         }
         if let Some(p) = positions.iter().find(|p| p.iter().any(|v| !v.is_finite())) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Position,
-                value: format!("{p:?}"),
-                expected: "finite",
-            });
+            return Err(Error::invalid(Parameter::Position, format!("{p:?}"), "finite"));
         }
         for ((normal, quality), confidence) in normals.iter_mut().zip(&mut quality).zip(&mut confidence) {
             let unit = unit_or_zero(*normal);

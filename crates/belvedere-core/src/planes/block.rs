@@ -1,7 +1,8 @@
 //! The points of a block and its margin, in an order that follows from their positions.
 
 use super::line::clip;
-use belvedere_data::cast::{to_i64, to_index, to_row};
+use belvedere_data::cast::{to_ascending_bits, to_i64, to_index, to_row};
+use belvedere_data::cloud::GROUND;
 use belvedere_data::control::Control;
 use belvedere_data::patches::SurfacePatches;
 use belvedere_data::{Attributes, Error, Result};
@@ -12,8 +13,6 @@ use std::collections::BTreeMap;
 pub(super) const BLOCK: f64 = 64.0;
 /// Side of the cells in which points of a block are looked up, metres.
 const CELL: f64 = 2.0;
-/// Class of points on the ground.
-const GROUND: u8 = 2;
 /// Classes of bridge decks: that of ASPRS, and that of the Dutch AHN.
 const DECKS: [u8; 2] = [17, 26];
 /// Minimum upward part of the direction to a scanner that flies, as a share.
@@ -184,7 +183,7 @@ fn is_first(survey: &SurveyPoints<'_>, row: usize) -> bool {
 
 /// Returns whether a point lies on a building.
 fn building(survey: &SurveyPoints<'_>, row: usize) -> Building {
-    match class(survey, row) {
+    match survey.attributes.class_of(row) {
         Some(SurfacePatches::CLASS) => Building::Yes,
         Some(0 | 1) if returns(survey, row) <= 1 => Building::Unknown,
         _ => Building::No,
@@ -193,12 +192,7 @@ fn building(survey: &SurveyPoints<'_>, row: usize) -> Building {
 
 /// Returns true if the class of a point is none of ground, plants, noise, water and wires.
 fn is_structure(survey: &SurveyPoints<'_>, row: usize) -> bool {
-    class(survey, row).is_some_and(|class| !matches!(class, 2..=5 | 7..=9 | 13..=16 | 18 | 20 | 40..=45))
-}
-
-/// Class of a point.
-fn class(survey: &SurveyPoints, row: usize) -> Option<u8> {
-    survey.attributes.classification.as_ref().and_then(|classes| classes.get(row)).copied()
+    survey.attributes.class_of(row).is_some_and(|class| !matches!(class, 2..=5 | 7..=9 | 13..=16 | 18 | 20 | 40..=45))
 }
 
 /// Number of returns of the pulse of a point, 1 where it is unknown.
@@ -223,8 +217,8 @@ impl Block {
                 lean: if is_flown { [way[0] / way[2], way[1] / way[2]] } else { [f64::NAN; 2] },
                 building: building(survey, row),
                 is_structure: is_structure(survey, row),
-                is_deck: class(survey, row).is_some_and(|class| DECKS.contains(&class)),
-                is_ground: class(survey, row) == Some(GROUND),
+                is_deck: survey.attributes.class_of(row).is_some_and(|class| DECKS.contains(&class)),
+                is_ground: survey.attributes.class_of(row) == Some(GROUND),
                 is_first: is_first(survey, row),
                 is_split: returns(survey, row) > 1,
             }
@@ -234,7 +228,7 @@ impl Block {
         for row in block.rows {
             let at = survey.positions[row as usize];
             let cell = grid.number(std::array::from_fn(|i| f64::from(at[i]) - corner[i]));
-            keys.push((to_row(cell), at.map(ordered), row));
+            keys.push((to_row(cell), at.map(to_ascending_bits), row));
         }
         keys.sort_unstable_by_key(|key| (key.0, key.1));
         let mut returns: Vec<Return> = keys.iter().map(|key| read(key.2)).collect();
@@ -369,10 +363,4 @@ impl Block {
         }
         (range[0] < range[1]).then_some(range)
     }
-}
-
-/// A number whose order is that of coordinates, bit by bit.
-fn ordered(v: f32) -> u32 {
-    let bits = v.to_bits();
-    if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }

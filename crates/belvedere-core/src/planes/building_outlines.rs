@@ -6,6 +6,7 @@ use super::ridges::RidgeLine;
 use super::roof_planes::Roofs;
 use super::walls::WallLine;
 use belvedere_data::building_outlines::{BuildingOutlines, Edge, Ridge, RoofPlane, Wall};
+use belvedere_data::vector::box_around;
 use std::collections::BTreeMap;
 
 /// A plane that points lie on.
@@ -38,16 +39,9 @@ pub(super) fn of_block(
     let (mut found, mut points) = (BuildingOutlines::default(), Vec::new());
     let mut row_of = vec![None; roofs.planes.len()];
     for (number, roof) in roofs.planes.iter().enumerate() {
-        let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-        let mut is_here = false;
-        for &row in &roof.rows {
-            let p = roofs.points[row];
-            is_here |= block.holds([p[0], p[1]]);
-            for axis in 0..3 {
-                bounds[0][axis] = bounds[0][axis].min(p[axis]);
-                bounds[1][axis] = bounds[1][axis].max(p[axis]);
-            }
-        }
+        let points_of = || roof.rows.iter().map(|&row| roofs.points[row]);
+        let bounds = box_around(points_of());
+        let is_here = points_of().any(|[x, y, _]| block.holds([x, y]));
         if is_here {
             row_of[number] = Some(found.planes.len());
             points.extend(points_on(block, roofs.returns_of(roof), Surface::Roof(found.planes.len())));

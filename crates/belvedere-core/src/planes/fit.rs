@@ -1,16 +1,8 @@
 //! Planes through points by least squares.
 
 use crate::normals::estimate::min_component;
+use crate::normals::moments::Moments;
 use belvedere_data::vector::dot;
-
-/// Sums of points from which their plane follows; those of two sets add up.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Sums {
-    pub(super) count: f64,
-    sum: [f64; 3],
-    /// xx, yy, zz, xy, yz, zx
-    products: [f64; 6],
-}
 
 /// A plane through points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,39 +15,14 @@ pub(super) struct Plane {
     pub(super) noise: f64,
 }
 
-impl Sums {
-    pub(super) fn add(&mut self, p: [f64; 3]) {
-        let [x, y, z] = p;
-        self.count += 1.0;
-        for (sum, v) in self.sum.iter_mut().zip(p) {
-            *sum += v;
-        }
-        for (sum, v) in self.products.iter_mut().zip([x * x, y * y, z * z, x * y, y * z, z * x]) {
-            *sum += v;
-        }
-    }
-
-    pub(super) fn plus(&self, other: &Self) -> Self {
-        Self {
-            count: self.count + other.count,
-            sum: std::array::from_fn(|i| self.sum[i] + other.sum[i]),
-            products: std::array::from_fn(|i| self.products[i] + other.products[i]),
-        }
-    }
-
-    pub(super) fn mean(&self) -> [f64; 3] {
-        self.sum.map(|v| v / self.count)
-    }
-
+impl Moments {
     /// The plane, `None` for fewer than three points.
     pub(super) fn plane(&self) -> Option<Plane> {
         if self.count < 3.0 {
             return None;
         }
         let mean = self.mean();
-        let of = |i: usize, a: usize, b: usize| self.products[i] / self.count - mean[a] * mean[b];
-        let covariance = [of(0, 0, 0), of(1, 1, 1), of(2, 2, 2), of(3, 0, 1), of(4, 1, 2), of(5, 2, 0)];
-        let (values, normal) = min_component(covariance);
+        let (values, normal) = min_component(self.covariance());
         let normal = if normal[2] < 0.0 { normal.map(|v| -v) } else { normal };
         normal.iter().all(|v| v.is_finite()).then(|| Plane {
             normal,

@@ -9,7 +9,7 @@ use super::ridges::{RidgeLine, convex};
 use super::roof_planes::Roofs;
 use belvedere_data::cast::to_index;
 use belvedere_data::patches::PatchKind;
-use belvedere_data::vector::to_f32;
+use belvedere_data::vector::{box_around, to_f32};
 
 /// Parameters of the leaves of roofs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,15 +135,10 @@ impl Cover {
         let roof = &roofs.planes[plane];
         let spacing = roof.spacing;
         let reach = params.beside_spacings * spacing;
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for p in samples.inside.iter().chain(&samples.split) {
-            for axis in 0..2 {
-                low[axis] = low[axis].min(p[axis] - reach);
-                high[axis] = high[axis].max(p[axis] + reach);
-            }
-        }
+        let [low, high] = box_around(samples.inside.iter().chain(&samples.split).copied());
         // cells of one grid, wherever the roof begins
-        let low = low.map(|v| (v / params.cell).floor() * params.cell);
+        let low = low.map(|v| ((v - reach) / params.cell).floor() * params.cell);
+        let high = high.map(|v| v + reach);
         let size = [0, 1].map(|axis| to_index(((high[axis] - low[axis]) / params.cell).ceil().max(1.0)));
         let mut cover = Self { low, size, cell: params.cell, counts: Vec::new() };
         let (mut to_return, mut to_passed) =

@@ -1,12 +1,13 @@
 //! Planes of roofs: points that go on flat from each other.
 
 use super::block::{Block, Building};
-use super::fit::{Plane, Sums};
+use super::fit::Plane;
 use crate::neighbors::NeighborIndex;
+use crate::normals::moments::Moments;
 use belvedere_data::Result;
 use belvedere_data::cast::to_index;
 use belvedere_data::control::Control;
-use belvedere_data::vector::{sub, to_f32};
+use belvedere_data::vector::{box_around, sub, to_f32};
 use std::collections::BTreeMap;
 
 /// Neighbours that show whether a point lies on something flat, without itself.
@@ -202,7 +203,7 @@ impl Roofs {
         for (plane, mut rows) in planes.iter().zip(rows) {
             let max = 3.0 * plane.noise.max(self.noise);
             rows.retain(|&row| plane.distance_above(self.points[row]).abs() <= max);
-            let mut sums = Sums::default();
+            let mut sums = Moments::default();
             rows.iter().for_each(|&row| sums.add(self.points[row]));
             let Some(plane) = sums.plane() else { continue };
             if rows.len() < min_points || plane.normal[2] < params.min_up {
@@ -234,14 +235,10 @@ impl Roofs {
     /// it.
     fn is_roof(&self, block: &Block, plane: &Plane, rows: &[usize], area: f64, params: &UnclassifiedParams) -> bool {
         let reach = params.ground_reach;
-        let (mut low, mut high, mut height) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2], 0.0);
-        for &row in rows {
-            let p = self.points[row];
-            for axis in 0..2 {
-                (low[axis], high[axis]) = (low[axis].min(p[axis] - reach), high[axis].max(p[axis] + reach));
-            }
-            height += p[2] / rows.len() as f64;
-        }
+        let points = rows.iter().map(|&row| self.points[row]);
+        let [low, high] = box_around(points.clone().map(|[x, y, _]| [x, y]));
+        let [low, high] = [low.map(|v| v - reach), high.map(|v| v + reach)];
+        let height = points.fold(0.0, |height, p| height + p[2] / rows.len() as f64);
         let is_above = || block.ground(low, high).is_some_and(|ground| height > ground + params.min_height);
         area >= params.min_area && plane.noise <= params.max_noise && is_above()
     }
@@ -258,7 +255,7 @@ impl<'a> Patchwork<'a> {
         for &row in index.tree_order() {
             let row = row as usize;
             index.k_nearest(places[row], NEIGHBORS + 1, &mut found);
-            let mut sums = Sums::default();
+            let mut sums = Moments::default();
             // sums of small numbers keep their digits
             sums.add([0.0; 3]);
             let others = found.iter().map(|near| near.index).filter(|&near| near as usize != row);
@@ -317,7 +314,7 @@ impl<'a> Patchwork<'a> {
         let base = self.points[seed];
         let own = self.local[seed];
         let mut plane = Plane { offset: 0.0, ..own };
-        let (mut sums, mut next, mut fit_at) = (Sums::default(), 0, 8);
+        let (mut sums, mut next, mut fit_at) = (Moments::default(), 0, 8);
         rows.clear();
         rows.push(seed);
         plane_of[seed] = number;
@@ -373,8 +370,8 @@ impl<'a> Patchwork<'a> {
         self.sums(plane_of, count).iter().map(|sums| sums.plane().unwrap_or_default()).collect()
     }
 
-    fn sums(&self, plane_of: &[Option<u32>], count: usize) -> Vec<Sums> {
-        let mut sums = vec![Sums::default(); count];
+    fn sums(&self, plane_of: &[Option<u32>], count: usize) -> Vec<Moments> {
+        let mut sums = vec![Moments::default(); count];
         for (point, plane) in self.points.iter().zip(plane_of) {
             if let Some(plane) = plane {
                 sums[*plane as usize].add(*point);

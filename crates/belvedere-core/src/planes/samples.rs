@@ -4,6 +4,7 @@ use super::block::Block;
 use super::ridges::{RidgeLine, convex};
 use super::roof_planes::Roofs;
 use belvedere_data::cast::to_index;
+use belvedere_data::vector::box_around;
 
 /// Parameters of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,13 +75,8 @@ struct Near {
 impl Near {
     /// The cells within about `reach` of points.
     fn new(points: &[[f64; 2]], reach: f64) -> Self {
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for p in points {
-            for axis in 0..2 {
-                low[axis] = low[axis].min(p[axis] - reach);
-                high[axis] = high[axis].max(p[axis] + reach);
-            }
-        }
+        let [low, high] = box_around(points.iter().copied());
+        let [low, high] = [low.map(|v| v - reach), high.map(|v| v + reach)];
         let cell = reach / 2.0;
         let size = [0, 1].map(|axis| to_index((high[axis] - low[axis]) / cell) + 1);
         let mut near = Self { low, cell, size, holds: vec![false; size[0] * size[1]] };

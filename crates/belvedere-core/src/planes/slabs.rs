@@ -10,6 +10,7 @@ use super::patches::{Patch, fan};
 use super::roof_planes::Roofs;
 use belvedere_data::cast::{to_i64, to_u32};
 use belvedere_data::patches::PatchKind;
+use belvedere_data::vector::box_around;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
@@ -126,7 +127,7 @@ fn is_slab(block: &Block, roofs: &Roofs, number: usize, params: &SlabParams) -> 
         [params.around, params.open_radius].map(|[metres, spacings]| metres.max(spacings * roof.spacing));
     let own = PlanIndex::new(of_rows().map(|found| found.p), around);
     let cells: BTreeSet<[i64; 2]> = of_rows().map(|found| cell([found.p[0], found.p[1]], params.cell)).collect();
-    let [low, high] = bounds(of_rows());
+    let [low, high] = box_around(of_rows().map(|found| found.p));
     let mut walls = Vec::new();
     block.each_in([low[0] - open, low[1] - open], [high[0] + open, high[1] + open], |_, found| {
         if found.is_solid() && roof.plane.distance_above(found.p) < -params.thickness - params.below {
@@ -149,16 +150,6 @@ fn is_slab(block: &Block, roofs: &Roofs, number: usize, params: &SlabParams) -> 
         });
     });
     proven.len() as f64 >= params.min_share * cells.len() as f64
-}
-
-/// Lowest and highest coordinates of returns.
-fn bounds<'a>(returns: impl Iterator<Item = &'a Return>) -> [[f64; 3]; 2] {
-    let [mut low, mut high] = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    for found in returns {
-        low = [0, 1, 2].map(|axis| low[axis].min(found.p[axis]));
-        high = [0, 1, 2].map(|axis| high[axis].max(found.p[axis]));
-    }
-    [low, high]
 }
 
 /// Calls `visit` with places along a pulse at these depths below a plane, a step apart.
@@ -238,7 +229,7 @@ pub(super) fn close(
 fn rows_of(block: &Block, roofs: &Roofs, number: usize, leaves: &[Leaf], params: &SlabParams) -> Vec<u32> {
     let roof = &roofs.planes[number];
     let own: Vec<&Leaf> = leaves.iter().filter(|leaf| leaf.plane == number).collect();
-    let [low, high] = bounds(roofs.returns_of(roof).map(|row| &block.returns[row]));
+    let [low, high] = box_around(roofs.returns_of(roof).map(|row| &block.returns[row]).map(|found| found.p));
     let reach = roof.spacing;
     let mut rows = Vec::new();
     block.each_in([0, 1].map(|i| low[i] - reach), [0, 1].map(|i| high[i] + reach), |row, at| {

@@ -1,6 +1,8 @@
 //! Estimates of the scanner position for parts of flight lines, and their acceptance.
 
 use belvedere_data::{Error, Parameter, Result};
+use std::fmt::Display;
+use std::ops::RangeInclusive;
 
 /// Parameters of [`SensorPositions::from_returns`](super::SensorPositions::from_returns).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,19 +96,23 @@ impl PartVerdict {
 
 impl SensorEstimateParams {
     pub(super) fn validate(&self) -> Result<()> {
-        let check = |what: &str, value: f64, range: std::ops::RangeInclusive<f64>, expected| {
-            let wrong = || {
-                let value = format!("{value} for the {what}");
-                Error::InvalidParameter { parameter: Parameter::ScannerEstimate, value, expected }
-            };
-            range.contains(&value).then_some(()).ok_or_else(wrong)
-        };
-        check("part of a flight line", self.part_s, 0.5..=60.0, "0.5 to 60 s")?;
-        check("minimum length of a pulse", self.min_length, 0.5..=50.0, "0.5 to 50 m")?;
-        check("deviation of the vertical speed", self.vertical_speed_sd, 0.1..=100.0, "0.1 to 100 m/s")?;
-        check("deviation of the acceleration", self.acceleration_sd, 0.01..=100.0, "0.01 to 100 m/s2")?;
-        check("minimum number of pulses", self.min_pair_count as f64, 6.0..=1e5, "6 to 100000")
+        check_range("part of a flight line", self.part_s, 0.5..=60.0, "0.5 to 60 s")?;
+        check_range("minimum length of a pulse", self.min_length, 0.5..=50.0, "0.5 to 50 m")?;
+        check_range("deviation of the vertical speed", self.vertical_speed_sd, 0.1..=100.0, "0.1 to 100 m/s")?;
+        check_range("deviation of the acceleration", self.acceleration_sd, 0.01..=100.0, "0.01 to 100 m/s2")?;
+        check_range("minimum number of pulses", self.min_pair_count as f64, 6.0..=1e5, "6 to 100000")
     }
+}
+
+/// Refuses a parameter `what` of the search for scanners that lies outside `range`.
+pub(super) fn check_range<T: PartialOrd + Display>(
+    what: &str,
+    value: T,
+    range: RangeInclusive<T>,
+    expected: &'static str,
+) -> Result<()> {
+    let wrong = || Error::invalid(Parameter::ScannerEstimate, format!("{value} for the {what}"), expected);
+    range.contains(&value).then_some(()).ok_or_else(wrong)
 }
 
 /// Acceptance thresholds for scan angles.

@@ -17,11 +17,7 @@ const SAME_PLACE: f64 = 100.0;
 /// times of the week from different weeks.
 pub fn path_samples(paths: &[LinePath], origin: [f64; 3], step: f64) -> Result<Vec<TrajectorySample>> {
     if !(0.01..=2.0).contains(&step) {
-        return Err(Error::InvalidParameter {
-            parameter: Parameter::TimeStep,
-            value: step.to_string(),
-            expected: "0.01 to 2 s",
-        });
+        return Err(Error::invalid(Parameter::TimeStep, step, "0.01 to 2 s"));
     }
     let mut samples = Vec::new();
     for (own, path) in paths.iter().enumerate() {
@@ -67,11 +63,11 @@ fn has_better(paths: &[LinePath], own: usize, stretch: &Stretch, time: f64, plac
         } else {
             let apart = (0..3).map(|i| (its[i] - place[i]).powi(2)).sum::<f64>().sqrt();
             if apart > SAME_PLACE {
-                return Err(Error::InvalidParameter {
-                    parameter: Parameter::Trajectory,
-                    value: format!("two lines {apart:.0} m apart at {time} s"),
-                    expected: "of one flight: process flight lines of different days separately",
-                });
+                return Err(Error::invalid(
+                    Parameter::Trajectory,
+                    format!("two lines {apart:.0} m apart at {time} s"),
+                    "of one flight: process flight lines of different days separately",
+                ));
             }
             (sd(there), other) < (sd(stretch), own)
         };

@@ -1,8 +1,9 @@
 //! Pulses that are assumed to fall straight down, where the position of the scanner is unknown.
 
+use super::flight_parts::check_range;
+use belvedere_data::Result;
 use belvedere_data::cast::to_cell;
 use belvedere_data::control::{Control, Stop};
-use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 
 /// Height of the assumed scanner above its point, metres: a usual flying height, above everything.
@@ -42,15 +43,8 @@ pub fn vertical_pulses(
     control: &Control<'_>,
 ) -> Result<Vec<[f32; 3]>> {
     let stop = Stop::new(control);
-    let check = |what: &str, value: f32, range: std::ops::RangeInclusive<f32>, expected| {
-        let wrong = || {
-            let value = format!("{value} for the {what}");
-            Error::InvalidParameter { parameter: Parameter::ScannerEstimate, value, expected }
-        };
-        range.contains(&value).then_some(()).ok_or_else(wrong)
-    };
-    check("search radius of points above", params.reach, 0.05..=10.0, "0.05 to 10 m")?;
-    check("minimum height of points above", params.rise, 0.0..=100.0, "0 to 100 m")?;
+    check_range("search radius of points above", params.reach, 0.05..=10.0, "0.05 to 10 m")?;
+    check_range("minimum height of points above", params.rise, 0.0..=100.0, "0 to 100 m")?;
     let cell = |p: &[f32; 3]| [p[0], p[1]].map(|v| to_cell(f64::from(v / params.reach)));
     // by cell, the highest of each first
     let mut cells: Vec<([i32; 2], [f32; 3])> = positions.par_iter().map(|p| (cell(p), *p)).collect();
@@ -117,7 +111,10 @@ mod tests {
     #[test]
     fn parameters_out_of_range_are_refused() {
         for params in [VerticalParams { reach: 0.0, rise: 0.5 }, VerticalParams { reach: 0.5, rise: f32::NAN }] {
-            assert!(matches!(vertical_pulses(&[], &params, &Control::none()), Err(Error::InvalidParameter { .. })));
+            assert!(matches!(
+                vertical_pulses(&[], &params, &Control::none()),
+                Err(belvedere_data::Error::InvalidParameter { .. })
+            ));
         }
     }
 }

@@ -98,11 +98,11 @@ impl BallTree {
     pub fn part(&self, part: Range<usize>) -> Result<Self> {
         match (self.balls.get(part.clone()), self.rows.get(part.clone())) {
             (Some(balls), Some(rows)) => Self::ordered(balls, rows, &self.rule),
-            _ => Err(Error::InvalidParameter {
-                parameter: Parameter::Ball,
-                value: format!("a part of a tree: {part:?}"),
-                expected: "within the balls of the tree",
-            }),
+            _ => Err(Error::invalid(
+                Parameter::Ball,
+                format!("a part of a tree: {part:?}"),
+                "within the balls of the tree",
+            )),
         }
     }
 

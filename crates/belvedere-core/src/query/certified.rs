@@ -84,7 +84,7 @@ impl MedialScene {
 
 /// Refuses views of no or of several viewers.
 fn check_views(views: &[View]) -> Result<()> {
-    let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
+    let invalid = |parameter, value: String, expected| Err(Error::invalid(parameter, value, expected));
     let Some((first, others)) = views.split_first() else {
         return invalid(Parameter::View, "missing".to_owned(), "given");
     };
@@ -116,11 +116,11 @@ impl<'a> CertifiedMap<'a> {
         check_views(views)?;
         let params = scene.params();
         if params.profile != Profile::Sphere {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::BallProfile,
-                value: "the paper's cone".to_owned(),
-                expected: "the sphere, for certified answers",
-            });
+            return Err(Error::invalid(
+                Parameter::BallProfile,
+                "the paper's cone",
+                "the sphere, for certified answers",
+            ));
         }
         let bounds_of = |view: &View| {
             let start = match scope {

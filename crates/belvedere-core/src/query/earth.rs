@@ -65,18 +65,10 @@ impl EarthParams {
     /// [`Error::InvalidParameter`] for one outside its range.
     pub fn validate(&self) -> Result<()> {
         if !(0.0..1.0).contains(&self.refraction) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Refraction,
-                value: self.refraction.to_string(),
-                expected: "from 0 to below 1 (usually 0.143)",
-            });
+            return Err(Error::invalid(Parameter::Refraction, self.refraction, "from 0 to below 1 (usually 0.143)"));
         }
         if !(self.radius.is_finite() && self.radius > 0.0) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::EarthRadius,
-                value: self.radius.to_string(),
-                expected: "above zero metres",
-            });
+            return Err(Error::invalid(Parameter::EarthRadius, self.radius, "above zero metres"));
         }
         Ok(())
     }

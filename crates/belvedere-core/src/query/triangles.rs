@@ -66,8 +66,7 @@ impl BlockingTriangles {
         coverage: Option<&Coverage>,
         before: Option<&Self>,
     ) -> Result<Self> {
-        let invalid =
-            |value: String, expected| Err(Error::InvalidParameter { parameter: Parameter::AddedMesh, value, expected });
+        let invalid = |value: String, expected| Err(Error::invalid(Parameter::AddedMesh, value, expected));
         let mut added: Vec<Corners> = Vec::with_capacity(mesh.triangles.len());
         for number in 0..mesh.triangles.len() {
             let Some(corners) = mesh.corners(number) else {

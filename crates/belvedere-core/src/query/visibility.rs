@@ -62,11 +62,11 @@ impl Viewer<'_> {
         };
         let zero = matches!(self, Self::Direction(d) if d.iter().all(|&v| v == 0.0));
         if zero || !vector.iter().all(|v| v.is_finite()) {
-            return Err(Error::InvalidParameter {
+            return Err(Error::invalid(
                 parameter,
-                value: format!("{vector:?}"),
-                expected: "finite, and longer than zero where it is a direction",
-            });
+                format!("{vector:?}"),
+                "finite, and longer than zero where it is a direction",
+            ));
         }
         Ok(())
     }

@@ -174,7 +174,7 @@ impl Crs {
     pub fn check_given(&self, of_file: &Self, coordinates: [f64; 2], path: &Path) -> Result<()> {
         let refused = |value| {
             let expected = "that of the file, or insisted on with the override of the reference system";
-            Err(Error::InvalidParameter { parameter: Parameter::Crs, value, expected })
+            Err(Error::invalid(Parameter::Crs, value, expected))
         };
         let (own, file) = (self.describe(), path.display());
         if let Comparison::Apart(how) = self.compare(of_file, coordinates) {

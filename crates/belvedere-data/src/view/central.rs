@@ -15,18 +15,18 @@ fn checked_eye(eye: [f64; 3]) -> Result<[f64; 3]> {
     if eye.iter().all(|v| v.is_finite()) {
         return Ok(eye);
     }
-    Err(Error::InvalidParameter { parameter: Parameter::Eye, value: format!("{eye:?}"), expected: "finite" })
+    Err(Error::invalid(Parameter::Eye, format!("{eye:?}"), "finite"))
 }
 
 fn checked_size(size_px: [usize; 2]) -> Result<[usize; 2]> {
     let is_short = size_px.iter().all(|side| *side <= MAX_SIDE);
     match size_px[0].checked_mul(size_px[1]) {
         Some(1..=MAX_PIXEL_COUNT) if is_short => Ok(size_px),
-        _ => Err(Error::InvalidParameter {
-            parameter: Parameter::PictureSize,
-            value: format!("{} x {} pixels", size_px[0], size_px[1]),
-            expected: "at least one pixel, at most 65536 on a side and 268435456 pixels in all",
-        }),
+        _ => Err(Error::invalid(
+            Parameter::PictureSize,
+            format!("{} x {} pixels", size_px[0], size_px[1]),
+            "at least one pixel, at most 65536 on a side and 268435456 pixels in all",
+        )),
     }
 }
 
@@ -48,18 +48,14 @@ impl View {
         far: f64,
     ) -> Result<Self> {
         let Some(forward) = unit(sub(look_at, checked_eye(eye)?)) else {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::LookAt,
-                value: format!("{look_at:?}"),
-                expected: "finite and different from the eye",
-            });
+            return Err(Error::invalid(Parameter::LookAt, format!("{look_at:?}"), "finite and different from the eye"));
         };
         if !(fov > 0.0 && fov <= WIDEST) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::FieldOfView,
-                value: format!("{} degrees", fov.to_degrees()),
-                expected: "above 0 and at most 175 degrees; a hemispherical view sees more",
-            });
+            return Err(Error::invalid(
+                Parameter::FieldOfView,
+                format!("{} degrees", fov.to_degrees()),
+                "above 0 and at most 175 degrees; a hemispherical view sees more",
+            ));
         }
         let size_px = checked_size(size_px)?;
         let focal_px = size_px[0] as f64 / 2.0 / (fov / 2.0).tan();
@@ -77,18 +73,14 @@ impl View {
     /// 0 and at most 170°. Also if the picture is empty or has more than [`MAX_PIXEL_COUNT`] pixels.
     pub fn fisheye(eye: [f64; 3], axis: [f64; 3], half_angle: f64, size_px: usize) -> Result<Self> {
         let Some(forward) = unit(axis) else {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::ViewDirection,
-                value: format!("{axis:?}"),
-                expected: "finite and longer than zero",
-            });
+            return Err(Error::invalid(Parameter::ViewDirection, format!("{axis:?}"), "finite and longer than zero"));
         };
         if !(half_angle > 0.0 && half_angle <= WIDEST_HALF) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::FieldOfView,
-                value: format!("half of {} degrees", 2.0 * half_angle.to_degrees()),
-                expected: "half of an angle above 0 and at most 340 degrees; two maps cover all directions",
-            });
+            return Err(Error::invalid(
+                Parameter::FieldOfView,
+                format!("half of {} degrees", 2.0 * half_angle.to_degrees()),
+                "half of an angle above 0 and at most 340 degrees; two maps cover all directions",
+            ));
         }
         let size_px = checked_size([size_px; 2])?;
         let radius_px = size_px[0] as f64 / 2.0 / (half_angle / 2.0).tan();

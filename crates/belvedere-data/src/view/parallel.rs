@@ -2,7 +2,7 @@
 
 use super::{MAX_PIXEL_COUNT, MAX_SIDE, Projection, View, ViewFrame};
 use crate::cast::to_index;
-use crate::vector::{cross, dot, unit};
+use crate::vector::{box_around, cross, dot, unit};
 use crate::{Error, Parameter, Result};
 
 impl View {
@@ -18,7 +18,7 @@ impl View {
     /// # Source
     /// Peters, Ledoux & Biljecki 2015, section 3.2 and Figure 3.
     pub fn from_viewport(p0: [f64; 3], vx: [f64; 3], vy: [f64; 3], pixels_per_metre: f64) -> Result<Self> {
-        let invalid = |parameter, value: String, expected| Err(Error::InvalidParameter { parameter, value, expected });
+        let invalid = |parameter, value: String, expected| Err(Error::invalid(parameter, value, expected));
         let (Some(right), Some(down)) = (unit(vx), unit(vy)) else {
             return invalid(Parameter::Viewport, format!("{vx:?}, {vy:?}"), "finite and longer than zero");
         };
@@ -60,29 +60,20 @@ impl View {
     /// As [`View::from_viewport`].
     pub fn parallel(forward: [f64; 3], low: [f64; 3], high: [f64; 3], pixel_size: f64) -> Result<Self> {
         let Some(forward) = unit(forward) else {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::ViewDirection,
-                value: format!("{forward:?}"),
-                expected: "finite and longer than zero",
-            });
+            return Err(Error::invalid(
+                Parameter::ViewDirection,
+                format!("{forward:?}"),
+                "finite and longer than zero",
+            ));
         };
         if !(pixel_size.is_finite() && pixel_size > 0.0) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::PixelSize,
-                value: pixel_size.to_string(),
-                expected: "above zero metres",
-            });
+            return Err(Error::invalid(Parameter::PixelSize, pixel_size, "above zero metres"));
         }
         let ViewFrame { right, down, .. } = ViewFrame::looking([0.0; 3], forward);
-        let mut min = [f64::INFINITY; 3];
-        let mut max = [f64::NEG_INFINITY; 3];
-        for corner in 0..8 {
+        let [min, max] = box_around((0..8).map(|corner| {
             let p: [f64; 3] = std::array::from_fn(|i| if corner >> i & 1 == 0 { low[i] } else { high[i] });
-            for (axis, v) in [right, down, forward].into_iter().enumerate() {
-                min[axis] = min[axis].min(dot(v, p));
-                max[axis] = max[axis].max(dot(v, p));
-            }
-        }
+            [right, down, forward].map(|axis| dot(axis, p))
+        }));
         let eye = std::array::from_fn(|i| min[0] * right[i] + min[1] * down[i] + min[2] * forward[i]);
         // half a pixel of room keeps points on the edge of the box inside the picture
         let span = |axis: usize| (max[axis] - min[axis]).max(0.0) + 0.5 * pixel_size;

@@ -138,11 +138,11 @@ impl View {
     /// it.
     pub fn with_limits(mut self, nearest: f64, farthest: f64) -> crate::Result<Self> {
         if !(nearest >= 0.0 && nearest.is_finite() && farthest > nearest) {
-            return Err(crate::Error::InvalidParameter {
-                parameter: Parameter::DepthLimits,
-                value: format!("{nearest} and {farthest} m"),
-                expected: "near 0 or more, and far above near",
-            });
+            return Err(crate::Error::invalid(
+                Parameter::DepthLimits,
+                format!("{nearest} and {farthest} m"),
+                "near 0 or more, and far above near",
+            ));
         }
         match &mut self.projection {
             Projection::Orthographic { .. } => {}

@@ -114,21 +114,21 @@ impl Weather {
         }
         let on_earth = self.latitude.abs() <= 90f64.to_radians() && self.longitude.abs() <= 360f64.to_radians();
         if !on_earth || !self.height.is_finite() {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Weather,
-                value: format!("at {}, {}", self.latitude.to_degrees(), self.longitude.to_degrees()),
-                expected: "at latitude -90 to 90 and longitude -360 to 360 degrees",
-            });
+            return Err(Error::invalid(
+                Parameter::Weather,
+                format!("at {}, {}", self.latitude.to_degrees(), self.longitude.to_degrees()),
+                "at latitude -90 to 90 and longitude -360 to 360 degrees",
+            ));
         }
         let mut instants: Vec<f64> = self.steps.iter().map(|step| step.instant).collect();
         instants.sort_unstable_by(f64::total_cmp);
         let repeated = instants.windows(2).filter(|pair| pair[0] >= pair[1]).count();
         if repeated > 0 {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Weather,
-                value: format!("{repeated} of {} rows with the time of another row", self.steps.len()),
-                expected: "one row for each time, or their energy counts twice",
-            });
+            return Err(Error::invalid(
+                Parameter::Weather,
+                format!("{repeated} of {} rows with the time of another row", self.steps.len()),
+                "one row for each time, or their energy counts twice",
+            ));
         }
         for step in &self.steps {
             let values = [step.ghi, step.dni, step.dhi];
@@ -138,11 +138,11 @@ impl Weather {
                 || !(step.hours > 0.0)
                 || step.hours > 8784.0
             {
-                return Err(Error::InvalidParameter {
-                    parameter: Parameter::Weather,
-                    value: format!("a row of {step:?}"),
-                    expected: "finite, not below zero, and global radiation or both of its parts",
-                });
+                return Err(Error::invalid(
+                    Parameter::Weather,
+                    format!("a row of {step:?}"),
+                    "finite, not below zero, and global radiation or both of its parts",
+                ));
             }
         }
         Ok(())

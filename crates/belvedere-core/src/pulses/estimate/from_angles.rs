@@ -54,7 +54,7 @@ pub(in crate::pulses) fn paths_from_angles(
 ) -> Result<(Vec<LinePath>, Vec<ScanAnglePart>)> {
     if !(0.5..=60.0).contains(&params.part_s) {
         let value = format!("{} for the part of a flight line", params.part_s);
-        return Err(Error::InvalidParameter { parameter: Parameter::ScannerEstimate, value, expected: "0.5 to 60 s" });
+        return Err(Error::invalid(Parameter::ScannerEstimate, value, "0.5 to 60 s"));
     }
     let attributes = &cloud.attributes;
     let (Some(times), Some(angles)) = (&attributes.gps_time, &attributes.scan_angle) else {

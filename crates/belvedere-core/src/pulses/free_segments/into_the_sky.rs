@@ -5,6 +5,7 @@ use super::segment::{FreeSegment, SegmentsByAxis};
 use super::tree::SegmentAxis;
 use belvedere_data::control::Control;
 use belvedere_data::sky_region::SkyRegion;
+use belvedere_data::vector::box_around;
 use belvedere_data::{PointCloud, Result};
 
 /// Spacing of the far ends of these pulses, metres. Every place between them is then within 0.36 m of a pulse, half of
@@ -28,16 +29,13 @@ impl FreeSegments {
     /// This project's own.
     pub fn into_the_sky(&self, cloud: &PointCloud, control: &Control<'_>) -> Result<Self> {
         let mut by_way = SegmentsByAxis::default();
-        let [mut low, mut high] = [[f32::INFINITY; 2], [f32::NEG_INFINITY; 2]];
-        for start in self.lower_ends() {
-            low = [0, 1].map(|axis| low[axis].min(start[axis]));
-            high = [0, 1].map(|axis| high[axis].max(start[axis]));
-        }
+        let [low, high] = box_around(self.lower_ends().map(|start| start.map(f64::from)));
         for region in &cloud.sky_regions {
             control.check()?;
             let Some(&scanner) = cloud.scanner_positions.get(usize::from(region.scanner)) else { continue };
+            let scanner = scanner.map(f64::from);
             if (0..2).all(|axis| (low[axis]..=high[axis]).contains(&scanner[axis])) {
-                self.add_region(region, scanner.map(f64::from), &mut by_way);
+                self.add_region(region, scanner, &mut by_way);
             }
         }
         Self::index(by_way, None, self.top, control)

@@ -324,11 +324,11 @@ impl MedialScene {
         control: &Control<'_>,
     ) -> Result<Vec<f32>> {
         let Some(proof) = &self.proof else {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Certainty,
-                value: "given".to_owned(),
-                expected: "left out for scenes whose pulses are not known",
-            });
+            return Err(Error::invalid(
+                Parameter::Certainty,
+                "given",
+                "left out for scenes whose pulses are not known",
+            ));
         };
         let mut found = vec![f32::NAN; count];
         found.par_chunks_mut(CHUNK).enumerate().try_for_each(|(chunk, found)| {
@@ -359,11 +359,11 @@ impl Certainty {
         if least > 0.5 && least <= 1.0 {
             return Ok(Self(to_f32(least)));
         }
-        Err(Error::InvalidParameter {
-            parameter: Parameter::Certainty,
-            value: least.to_string(),
-            expected: "above 0.5 and at most 1: the least probability of what is more likely",
-        })
+        Err(Error::invalid(
+            Parameter::Certainty,
+            least,
+            "above 0.5 and at most 1: the least probability of what is more likely",
+        ))
     }
 
     /// Returns true if a target with this probability is certainly visible; false for NaN.

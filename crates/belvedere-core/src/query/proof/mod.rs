@@ -10,6 +10,7 @@ use crate::pulses::{FreeSegmentColumns, FreeSegments, lower_ends};
 use belvedere_data::cast::to_cell;
 use belvedere_data::control::Control;
 use belvedere_data::model::ProofParts;
+use belvedere_data::vector::box_around;
 use belvedere_data::{Error, Parameter, Result};
 use rayon::prelude::*;
 use seen_space::SeenSpace;
@@ -135,9 +136,7 @@ impl Proof {
     }
 
     fn of_pulses(pulses: ProofSource, nearness: f64, params: &ProofParams) -> Result<Self> {
-        let invalid = |parameter, value: f64, expected| {
-            Err(Error::InvalidParameter { parameter, value: value.to_string(), expected })
-        };
+        let invalid = |parameter, value: f64, expected| Err(Error::invalid(parameter, value, expected));
         if !(nearness.is_finite() && nearness > 0.0) {
             return invalid(Parameter::PulseNearness, nearness, "finite and above zero metres");
         }
@@ -208,13 +207,7 @@ impl Proof {
             }
         };
         control.check()?;
-        let mut extent = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        for start in free_segments.lower_ends() {
-            for axis in 0..2 {
-                extent[0][axis] = extent[0][axis].min(f64::from(start[axis]));
-                extent[1][axis] = extent[1][axis].max(f64::from(start[axis]));
-            }
-        }
+        let extent = box_around(free_segments.lower_ends().map(|[x, y, _]| [x, y].map(f64::from)));
         let seen_space = SeenSpace::new(&free_segments, extent, self.nearness);
         if let Some(kept) = &kept {
             seen_space.take(&kept.seen_space);

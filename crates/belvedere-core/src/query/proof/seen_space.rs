@@ -439,6 +439,7 @@ mod tests {
     use crate::pulses::FreeSegmentParams;
     use belvedere_data::control::Control;
     use belvedere_data::random::uniform;
+    use belvedere_data::vector::box_around;
     use belvedere_data::vector::{dot, length, sub, to_f32};
 
     #[test]
@@ -481,13 +482,7 @@ mod tests {
             .collect();
         let (free_segments, _) =
             FreeSegments::new(&returns, &scanner, &FreeSegmentParams::default(), &Control::none()).unwrap();
-        let mut extent = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        for start in free_segments.lower_ends() {
-            for axis in 0..2 {
-                extent[0][axis] = extent[0][axis].min(f64::from(start[axis]));
-                extent[1][axis] = extent[1][axis].max(f64::from(start[axis]));
-            }
-        }
+        let extent = box_around(free_segments.lower_ends().map(|[x, y, _]| [x, y].map(f64::from)));
         let space = SeenSpace::new(&free_segments, extent, 1.1);
         let ends: Vec<[[f64; 3]; 2]> = (0..free_segments.len())
             .filter_map(|number| {

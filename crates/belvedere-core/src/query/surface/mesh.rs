@@ -44,11 +44,7 @@ impl MeshTargetParams {
     /// [`Error::InvalidParameter`] for a lift that is not finite or below zero.
     pub fn validate(&self) -> Result<()> {
         if !(self.lift >= 0.0 && self.lift.is_finite()) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::SampleOffset,
-                value: self.lift.to_string(),
-                expected: "0 metres or more",
-            });
+            return Err(Error::invalid(Parameter::SampleOffset, self.lift, "0 metres or more"));
         }
         Ok(())
     }

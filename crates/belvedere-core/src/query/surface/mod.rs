@@ -60,7 +60,7 @@ impl SurfacePieces {
     /// for vertices that are not finite or lie 10 000 km or more from the origin.
     pub fn of_mesh(mesh: &Mesh, origin: [f64; 3], spacing: f64, seed: u64) -> Result<Self> {
         if !(spacing.is_finite() && spacing > 0.0) {
-            return invalid(Parameter::Spacing, spacing.to_string(), "above zero metres");
+            return Err(Error::invalid(Parameter::Spacing, spacing, "above zero metres"));
         }
         let local: Vec<Option<[[f64; 3]; 3]>> = (0..mesh.triangles.len())
             .map(|t| mesh.corners(t).map(|corners| corners.map(|corner| sub(corner, origin))))
@@ -68,7 +68,11 @@ impl SurfacePieces {
         let mut expected = 0.0;
         for corners in local.iter().flatten() {
             if !corners.as_flattened().iter().all(|v| v.abs() < 1e7) {
-                return invalid(Parameter::MeshVertex, format!("{:?}", corners[0]), "within 10 000 km of the scene");
+                return Err(Error::invalid(
+                    Parameter::MeshVertex,
+                    format!("{:?}", corners[0]),
+                    "within 10 000 km of the scene",
+                ));
             }
             let [a, b, c] = *corners;
             let longest = length(sub(b, a)).max(length(sub(c, b))).max(length(sub(a, c)));
@@ -77,7 +81,7 @@ impl SurfacePieces {
         }
         if !(expected <= MAX_PIECES as f64) {
             let value = format!("{spacing} m, which makes about {expected:.0} samples");
-            return invalid(Parameter::Spacing, value, "large enough for at most 50 million samples");
+            return Err(Error::invalid(Parameter::Spacing, value, "large enough for at most 50 million samples"));
         }
         let of_face = |(face, corners): (usize, &Option<[[f64; 3]; 3]>)| {
             let mut pieces = Vec::new();
@@ -122,7 +126,7 @@ impl SurfacePieces {
             return Err(Error::LengthMismatch { what: "normals", expected: points.len(), found: normals.len() });
         }
         if !(max_radius.is_finite() && max_radius > 0.0) {
-            return invalid(Parameter::PointRadius, max_radius.to_string(), "above zero metres");
+            return Err(Error::invalid(Parameter::PointRadius, max_radius, "above zero metres"));
         }
         let index = NeighborIndex::new(points, control)?;
         let max_area = std::f64::consts::PI * max_radius * max_radius;
@@ -197,10 +201,6 @@ impl SurfacePieces {
         }
         sums.into_iter().map(|[sum, area]| sum / area).collect()
     }
-}
-
-fn invalid<T>(parameter: Parameter, value: String, expected: &'static str) -> Result<T> {
-    Err(Error::InvalidParameter { parameter, value, expected })
 }
 
 /// A triangle in pieces without a side longer than `spacing`, neighbours after each other: slices across its longest

@@ -67,11 +67,7 @@ impl<'a> FreeLines<'a> {
     /// [`Error::InvalidParameter`] for a direction that is not of unit length (to a millionth).
     pub fn new(targets: &[[f32; 3]], directions: &'a [[f64; 3]]) -> Result<Self> {
         if let Some(bad) = directions.iter().find(|direction| !((length(**direction) - 1.0).abs() < 1e-6)) {
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Direction,
-                value: format!("{bad:?}"),
-                expected: "a vector of length 1",
-            });
+            return Err(Error::invalid(Parameter::Direction, format!("{bad:?}"), "a vector of length 1"));
         }
         let tree = Arc::new(TargetTree::new(targets));
         let row: Vec<u64> = directions.chunks(WORD).map(|part| u64::MAX >> (WORD - part.len())).collect();
@@ -138,11 +134,7 @@ impl<'a> FreeLines<'a> {
     pub fn hide_behind_balls(&mut self, scene: &MedialScene, columns: &[usize], control: &Control<'_>) -> Result<()> {
         if let Some(bad) = columns.iter().find(|&&column| column >= self.directions.len()) {
             let value = format!("of column {bad}");
-            return Err(Error::InvalidParameter {
-                parameter: Parameter::Direction,
-                value,
-                expected: "of a column that there is",
-            });
+            return Err(Error::invalid(Parameter::Direction, value, "of a column that there is"));
         }
         if scene.ball_count() == 0 || columns.is_empty() {
             return Ok(());
