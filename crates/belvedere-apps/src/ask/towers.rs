@@ -1,6 +1,6 @@
 //! Towers: how much of wind turbines, masts and other tall things is seen.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::context::Context;
 use super::north::{AzimuthNorth, North};
 use super::observers::{check_height, stand};
@@ -264,13 +264,7 @@ impl Ask for TowersQuestion {
         }
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<TowersResults>> {
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         let towers = self.stand(scene, context, control)?;
         let height = self.observer_height.unwrap_or(OBSERVER_HEIGHT);
         if self.wirelines && matches!(places, Places::Cells(_) | Places::Own(_) | Places::Mesh(..)) {
