@@ -125,8 +125,7 @@ impl SunCalendarQuestion {
 }
 
 fn refused<T>(value: &str) -> Result<T> {
-    let expected = "windows one by one, or places";
-    Err(Error::invalid(Parameter::Targets, value, expected))
+    Err(Error::invalid(Parameter::Targets, value, "windows one by one, or places"))
 }
 
 impl Ask for SunCalendarQuestion {
