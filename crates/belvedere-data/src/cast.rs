@@ -70,6 +70,14 @@ pub fn to_row(index: usize) -> u32 {
     u32::try_from(index).unwrap_or(u32::MAX)
 }
 
+/// Returns bits that ascend as numbers do, below zero too.
+#[inline]
+#[must_use]
+pub const fn to_ascending_bits(value: f32) -> u32 {
+    let bits = value.to_bits();
+    if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -83,6 +91,7 @@ mod tests {
         assert_eq!([to_u8(256.0), to_u8(-1.0)], [255, 0]);
         assert_eq!([to_u32(1e10), to_u32(-1.0)], [u32::MAX, 0]);
         assert_eq!([to_cell(-0.5), to_cell(2.9), to_cell(1e12)], [-1, 2, i32::MAX / 4]);
+        assert!([-f32::INFINITY, -2.0, -0.5, 0.0, 1e-40, 3.0].map(to_ascending_bits).is_sorted());
         assert_eq!([to_row(7), to_row(usize::MAX)], [7, u32::MAX]);
     }
 }
