@@ -102,8 +102,7 @@ impl GlareParams {
     /// [`Error::InvalidParameter`].
     pub fn validate(&self) -> Result<()> {
         let invalid = |parameter, radians: f64, expected| {
-            let value = format!("{} degrees", radians.to_degrees());
-            Err(Error::invalid(parameter, value, expected))
+            Err(Error::invalid(parameter, format!("{} degrees", radians.to_degrees()), expected))
         };
         if !(0.0..=0.2).contains(&self.scatter) {
             return invalid(Parameter::Scatter, self.scatter, "0 to 11.4 degrees");

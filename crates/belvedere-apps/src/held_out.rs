@@ -216,8 +216,7 @@ impl HeldOutParams {
             return Err(Error::invalid(Parameter::HeldOutShare, self.share, "above 0 and below 1, such as 0.1"));
         }
         let wrong = |name: &str, value: String, expected| {
-            let value = format!("{value} for the {name}");
-            Err(Error::invalid(Parameter::MethodSetting, value, expected))
+            Err(Error::invalid(Parameter::MethodSetting, format!("{value} for the {name}"), expected))
         };
         if !(0.0..=10.0).contains(&self.clearance) {
             return wrong("clearance before the first return", self.clearance.to_string(), "0 to 10 m");

@@ -147,8 +147,7 @@ pub fn azimuth_count(step: f64) -> Result<usize> {
 /// Those of [`Crs::grid_projection`], and where the place has no latitude or lies far outside of the area of use.
 pub fn convergence(crs: &Crs, position: [f64; 2]) -> Result<f64> {
     if let Some(value) = far_outside(crs, position) {
-        let expected = "one whose area of use holds the scene";
-        return Err(Error::invalid(Parameter::ReferenceSystem, value, expected));
+        return Err(Error::invalid(Parameter::ReferenceSystem, value, "one whose area of use holds the scene"));
     }
     let by_place = crs.geographic_projection().and_then(|projection| convergence_of(&projection, position));
     by_place.or_else(|error| match crs.grid_projection() {

@@ -93,14 +93,12 @@ fn span_and_step([observer, target]: [[f64; 3]; 2], step: Option<f64>) -> Result
     let span = (target[0] - observer[0]).hypot(target[1] - observer[1]);
     if !(span.is_finite() && span > 0.0 && observer[2].is_finite() && target[2].is_finite()) {
         let value = format!("{observer:?} to {target:?}");
-        let expected = "finite, and at different positions on the map";
-        return Err(Error::invalid(Parameter::ProfileLine, value, expected));
+        return Err(Error::invalid(Parameter::ProfileLine, value, "finite, and at different positions on the map"));
     }
     let step = step.unwrap_or((span / 1000.0).max(0.1));
     if !(step > 0.0 && span / step <= MAX_ROWS) {
         let value = format!("{step} m on {span} m");
-        let expected = "above zero, and large enough for a million rows";
-        return Err(Error::invalid(Parameter::ProfileStep, value, expected));
+        return Err(Error::invalid(Parameter::ProfileStep, value, "above zero, and large enough for a million rows"));
     }
     Ok((span, step))
 }

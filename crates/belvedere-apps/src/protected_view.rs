@@ -82,8 +82,7 @@ pub fn protected_view(
     control: &Control<'_>,
 ) -> Result<ProtectedView> {
     if !(params.max_range > 0.0) {
-        let value = params.max_range.to_string();
-        return Err(Error::invalid(Parameter::MaxDistance, value, "above zero metres"));
+        return Err(Error::invalid(Parameter::MaxDistance, params.max_range, "above zero metres"));
     }
     let mut limits = vec![f64::INFINITY; grid.len()];
     let mut viewpoints = Vec::with_capacity(eyes.len());

@@ -295,8 +295,7 @@ pub fn fold_blocks(
     mut fold: impl FnMut(RowBlock<'_>) -> Result<()>,
 ) -> Result<()> {
     if block == 0 {
-        let value = "0".to_owned();
-        return Err(Error::invalid(Parameter::TargetCount, value, "1 or more"));
+        return Err(Error::invalid(Parameter::TargetCount, "0", "1 or more"));
     }
     for (number, of_block) in targets.chunks(block).enumerate() {
         control.check()?;

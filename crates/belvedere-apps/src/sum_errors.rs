@@ -219,9 +219,8 @@ pub fn class_of(is_inside_obstacle: bool, moved_share: f64) -> u8 {
     if is_inside_obstacle {
         return 0;
     }
-    #[expect(clippy::cast_possible_truncation, reason = "ten at most")]
-    let class = 1 + MOVED_CLASSES.iter().take_while(|end| moved_share >= **end).count() as u8;
-    class
+    let end = MOVED_CLASSES.iter().take_while(|end| moved_share >= **end).count();
+    u8::try_from(1 + end).unwrap_or(u8::MAX)
 }
 
 /// Returns measures of the true value of `sums` of a kind, each at most `max`: the expected value and the ends of the

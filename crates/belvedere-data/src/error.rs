@@ -2,12 +2,19 @@
 
 use crate::parameter::Parameter;
 use crate::shown::{ShownPath, printable};
-use std::fmt::Display;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Result of every fallible function of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
+
+/// Checks that there are as many values as things that have one.
+///
+/// # Errors
+/// [`Error::LengthMismatch`].
+pub fn check_length(what: &'static str, expected: usize, found: usize) -> Result<()> {
+    if expected == found { Ok(()) } else { Err(Error::LengthMismatch { what, expected, found }) }
+}
 
 /// Error, with the offending value and advice.
 #[derive(Debug, thiserror::Error)]
@@ -179,18 +186,10 @@ fn refusal(source: &std::io::Error) -> String {
     }
 }
 
-/// Checks that there are as many values as things that have one.
-///
-/// # Errors
-/// [`Error::LengthMismatch`].
-pub fn check_length(what: &'static str, expected: usize, found: usize) -> Result<()> {
-    if expected == found { Ok(()) } else { Err(Error::LengthMismatch { what, expected, found }) }
-}
-
 impl Error {
-    /// Creates an [`Error::InvalidParameter`].
+    /// [`Error::InvalidParameter`]: a value of a parameter that cannot be used, and what would do.
     #[must_use]
-    pub fn invalid(parameter: Parameter, value: impl Display, expected: &'static str) -> Self {
+    pub fn invalid(parameter: Parameter, value: impl ToString, expected: &'static str) -> Self {
         Self::InvalidParameter { parameter, value: value.to_string(), expected }
     }
 

@@ -28,6 +28,9 @@ pub struct Answers<F> {
     pub report: Report,
 }
 
+/// Answers to a question of a type.
+pub type Answered<Q> = Result<Answers<<Q as Ask>::Found>>;
+
 /// A question.
 pub trait Ask {
     /// Type of the results beside measures.
@@ -43,13 +46,7 @@ pub trait Ask {
     ///
     /// # Errors
     /// Those of the question.
-    fn answer(
-        &self,
-        scene: &Scene,
-        places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<Self::Found>>;
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self>;
 }
 
 /// Puts a question about places to a scene.
@@ -57,21 +54,17 @@ pub trait Ask {
 /// # Errors
 /// Those of the question: [`InvalidParameter`](belvedere_data::Error::InvalidParameter) for values that are not
 /// possible, and [`Cancelled`](belvedere_data::Error::Cancelled).
-pub fn ask<Q: Ask>(scene: &Scene, question: &Q, places: &Places, control: &Control<'_>) -> Result<Answers<Q::Found>> {
+pub fn ask<Q: Ask>(scene: &Scene, question: &Q, places: &Places, control: &Control<'_>) -> Answered<Q> {
     question.check()?;
     let mut context = Context::default();
     scene.whereabouts().remark(&mut context);
     context.add(scene.remark_on_terrain());
     context.add(scene.remark_on_ground_cloud());
-    remarks_on_model(scene.model()).into_iter().for_each(|remark| context.add(Some(remark)));
-    for remark in remarks_on_survey(&scene.model().findings(), scene.frame()) {
-        context.add(Some(remark));
-    }
+    let of_survey = remarks_on_survey(&scene.model().findings(), scene.frame());
+    remarks_on_model(scene.model()).into_iter().chain(of_survey).for_each(|remark| context.add(Some(remark)));
     context.add(remark_on_reliability(scene.model().parts()));
     let answers = question.answer(scene, places, &mut context, control)?;
-    for sentence in sentences(&context.report.at, &answers.measures) {
-        context.headline(sentence);
-    }
+    sentences(&context.report.at, &answers.measures).into_iter().for_each(|sentence| context.headline(sentence));
     Ok(answers.with(context))
 }
 

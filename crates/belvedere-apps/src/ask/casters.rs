@@ -52,8 +52,7 @@ fn number_of(obstacle: SunObstacle) -> u8 {
 /// Refuses faces of a mesh, over which numbers would be averaged, and more meshes than there are numbers.
 pub(super) fn check_casters(places: &Places, scene: &Scene) -> Result<()> {
     if matches!(places, Places::Mesh(..)) {
-        let value = "faces of a mesh".to_owned();
-        return Err(Error::invalid(Parameter::Targets, value, "cells or points, where casters are wanted"));
+        return Err(Error::invalid(Parameter::Targets, "faces of a mesh", "cells or points, where casters are wanted"));
     }
     match scene.model().added().map_or(0, |added| added.names().len()) {
         count if count > usize::from(u8::MAX - FIRST_MESH) => Err(Error::invalid(

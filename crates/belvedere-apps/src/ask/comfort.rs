@@ -1,6 +1,6 @@
 //! Comfort: sun and sky of walkers on routes, and of windows.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::context::Context;
 use super::places::{Places, test_edge};
 use super::remark::Remark;
@@ -173,13 +173,7 @@ impl Ask for ComfortQuestion {
         }
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        _places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<ComfortResults>> {
+    fn answer(&self, scene: &Scene, _places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         let sky = self.sky.directions()?;
         let (schedule, zone) = self.schedule(scene, context)?;
         let north = self.place.north.of_scene(scene);

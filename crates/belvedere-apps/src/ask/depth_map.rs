@@ -1,6 +1,6 @@
 //! Depth map: the distance to the first surface for each pixel of a view.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::context::Context;
 use super::places::Places;
 use super::remark::Remark;
@@ -107,13 +107,7 @@ impl Ask for DepthMapQuestion {
         Ok(())
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        _: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<DepthMapResults>> {
+    fn answer(&self, scene: &Scene, _: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         let from = ViewFrom::given(self.from)?;
         context.add(from.remark(scene.model().coverage().as_ref()));
         let view = from.section();

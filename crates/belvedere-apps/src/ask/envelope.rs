@@ -1,6 +1,6 @@
 //! The solar envelope: how high one may build on a parcel without taking protected sun from others.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::context::Context;
 use super::known_ground::KnownGround;
 use super::places::Places;
@@ -297,13 +297,7 @@ impl Ask for EnvelopeQuestion {
         self.params.validate()
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        _places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<EnvelopeResults>> {
+    fn answer(&self, scene: &Scene, _places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         let suns = self.suns(scene, context)?;
         let parcel = Parcel::new(&self.parcel)?;
         let [wide, narrow] = self.grids(&parcel, scene)?;

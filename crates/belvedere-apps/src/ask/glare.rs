@@ -1,6 +1,6 @@
 //! Glare: sun that panels and glass reflect to observers.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::context::Context;
 use super::observers::{Eyes, Observers, check_height};
 use super::places::Places;
@@ -161,13 +161,7 @@ impl Ask for GlareQuestion {
         days.check(&self.place)
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<GlareResults>> {
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         let (schedule, zone, site) = self.schedule(scene, context)?;
         let north = self.place.north.of_scene(scene);
         context.north(&north);

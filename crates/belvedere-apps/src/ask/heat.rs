@@ -1,6 +1,6 @@
 //! Heat: radiant temperature and thermal stress of people at places, over the hours of days of weather.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::context::{Context, spread};
 use super::places::Places;
 use super::remark::Remark;
@@ -277,13 +277,7 @@ impl Ask for HeatQuestion {
         self.dated().check(&self.place)
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<OnTargets>> {
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         let weather = self.weather()?;
         let (balls, points) = (scene.model().balls(), &scene.cloud().positions);
         if !are_made_from(balls, points) {

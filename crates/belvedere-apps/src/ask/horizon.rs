@@ -1,6 +1,6 @@
 //! Horizon: above which elevation the sky is free around observers.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::context::Context;
 use super::how_sure::check_interval_scene;
 use super::north::North;
@@ -83,13 +83,7 @@ impl Ask for HorizonQuestion {
         self.azimuth_count().map(|_| ())
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<HorizonResults>> {
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         check_interval_scene(self.interval, scene, control)?;
         let azimuth_count = self.azimuth_count()?;
         let Observers { eyes, blockers } =

@@ -1,6 +1,6 @@
 //! Irradiance: the energy that sun and sky send to places, and to the planes of roofs.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::context::{Context, spread};
 use super::how_sure::{check_interval, check_interval_scene};
 use super::places::Places;
@@ -392,13 +392,7 @@ impl Ask for IrradianceQuestion {
         self.place.check().map(|_| ())
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<IrradianceResults>> {
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         check_interval_scene(self.interval, scene, control)?;
         let intervals = Intervals::wanted(self.interval);
         let station = self.radiation.weather().map(|weather| [weather.latitude, weather.longitude]);

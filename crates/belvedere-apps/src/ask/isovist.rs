@@ -1,6 +1,6 @@
 //! Isovist: the space that observers see, in numbers.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::context::{Context, spread};
 use super::how_sure::check_interval_scene;
 use super::north::North;
@@ -70,13 +70,7 @@ impl Ask for IsovistsQuestion {
         self.params().validate()
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<IsovistsResults>> {
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         check_interval_scene(self.interval, scene, control)?;
         let params = self.params();
         let Observers { eyes, blockers } =

@@ -1,6 +1,6 @@
 //! Landmark: from where one thing is seen, and how much of it.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::cells::cells_of;
 use super::context::Context;
 use super::how_sure::remark_from_ground;
@@ -241,13 +241,7 @@ impl Ask for LandmarkQuestion {
         self.params().validate()
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        _: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<LandmarkResults>> {
+    fn answer(&self, scene: &Scene, _: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         if self.unproven.is_some_and(|unproven| unproven != UnprovenAs::Visible) {
             scene.check_proof()?;
         }

@@ -1,6 +1,6 @@
 //! Lines of sight: whether the observers of pairs see their targets, and the first obstacle of each.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::cells::GridCells;
 use super::context::Context;
 use super::how_sure::HowSure;
@@ -220,13 +220,7 @@ impl Ask for LinesOfSightQuestion {
         self.wave().map(|_| ())
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<SightsResults>> {
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         if self.unproven.is_some() {
             scene.check_proof()?;
         }

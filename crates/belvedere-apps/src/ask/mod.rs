@@ -71,7 +71,7 @@ mod window_views;
 pub mod windows;
 
 pub use crate::shadow::UNPROVEN;
-pub use answers::{Answers, Ask, ask};
+pub use answers::{Answered, Answers, Ask, ask};
 pub use calibrate::calibrate;
 pub use cameras::{
     CameraGoal, CameraLens, CameraTargets, CamerasQuestion, CamerasResults, Candidates, ChosenCamera, GivenCamera,

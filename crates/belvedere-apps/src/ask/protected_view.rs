@@ -1,6 +1,6 @@
 //! Protected views: how high one may build without entering the view of a landmark.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::context::Context;
 use super::known_ground::KnownGround;
 use super::observers::{Eyes, note_enclosed, skip_unfit, stand};
@@ -112,13 +112,7 @@ impl Ask for ProtectedViewQuestion {
         Ok(())
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<ProtectedViewResults>> {
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         let Places::Cells(cells) = places else {
             let what = "what protected views limit are the cells of a grid";
             return Err(Error::UnsupportedTargets { method: "protected view", what });

@@ -1,6 +1,6 @@
 //! Shadow: light of one or more suns at places.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::casters::{casters, check_casters};
 use super::context::{Context, spread};
 use super::how_sure::HowSure;
@@ -132,13 +132,7 @@ impl Ask for ShadowQuestion {
         self.suns.check(&self.place)
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<ShadowResults>> {
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         self.how_sure.check_scene(scene)?;
         if self.casters {
             check_casters(places, scene)?;

@@ -1,6 +1,6 @@
 //! Sky view: how much of the sky places see.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::context::{Context, spread};
 use super::how_sure::{check_interval, check_interval_scene};
 use super::places::Places;
@@ -68,13 +68,7 @@ impl Ask for SkyViewQuestion {
         self.sky.directions().map(|_| ())
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<OnTargets>> {
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         check_interval_scene(self.interval, scene, control)?;
         let sky = self.sky.directions()?;
         let trees = (&self.trees, None, UnprovenAs::Visible);

@@ -78,8 +78,7 @@ pub fn end_on_map(given: [f64; 2], crs: &Crs, bounds: [[f64; 2]; 2]) -> Result<[
     let [latitude, longitude] = given;
     if projected([longitude, latitude], crs).is_some_and(|place| is_within(place, bounds, MARGIN / crs.metres_per_unit))
     {
-        let value = format!("{latitude}, {longitude}");
-        return Err(Error::invalid(Parameter::Position, value, SWAPPED));
+        return Err(Error::invalid(Parameter::Position, format!("{latitude}, {longitude}"), SWAPPED));
     }
     Ok(given)
 }
@@ -139,8 +138,7 @@ fn on_terrain(given: [f64; 2], scene: &Scene) -> Result<[f64; 2]> {
         Some(_) => SWAPPED,
         None => "on the points of the cloud, or on the terrain beyond it",
     };
-    let value = format!("{latitude}, {longitude}");
-    Err(Error::invalid(Parameter::Position, value, expected))
+    Err(Error::invalid(Parameter::Position, format!("{latitude}, {longitude}"), expected))
 }
 
 impl Standing {

@@ -1,6 +1,6 @@
 //! Sun calendars: from when to when the sun shines at windows and places, and what shades them otherwise.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::context::{Context, spread};
 use super::places::{Places, test_edge};
 use super::scene::Scene;
@@ -125,8 +125,7 @@ impl SunCalendarQuestion {
 }
 
 fn refused<T>(value: &str) -> Result<T> {
-    let expected = "windows one by one, or places";
-    Err(Error::invalid(Parameter::Targets, value, expected))
+    Err(Error::invalid(Parameter::Targets, value, "windows one by one, or places"))
 }
 
 impl Ask for SunCalendarQuestion {
@@ -140,13 +139,7 @@ impl Ask for SunCalendarQuestion {
         self.days.check(&self.place)
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<SunCalendarResults>> {
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         let (schedule, rule, zone, site) = self.schedule(scene, context)?;
         let north = self.place.north.of_scene(scene);
         let (targets, windows) = self.targets(north.of_grid, (scene, places), context, control)?;

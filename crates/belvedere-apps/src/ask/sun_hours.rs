@@ -4,7 +4,7 @@ mod hourly_sun;
 
 pub use hourly_sun::HourlySun;
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::context::{Context, spread};
 use super::how_sure::{check_interval, check_interval_scene, knows_intervals};
 use super::places::Places;
@@ -157,13 +157,7 @@ impl Ask for SunHoursQuestion {
         self.days.check(&self.place)
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<OnTargets>> {
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         check_interval_scene(self.interval, scene, control)?;
         // a single place costs little more with its interval
         let is_single = matches!(places, Places::At(..));

@@ -1,6 +1,6 @@
 //! Position of the sun above a scene.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::context::Context;
 use super::places::Places;
 use super::scene::Scene;
@@ -40,13 +40,7 @@ impl Ask for SunPositionQuestion {
         self.times.iter().try_for_each(|time| self.place.instant(time, &zone).map(|_| ()))
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        _places: &Places,
-        context: &mut Context,
-        _control: &Control<'_>,
-    ) -> Result<Answers<Vec<SunStands>>> {
+    fn answer(&self, scene: &Scene, _places: &Places, context: &mut Context, _control: &Control<'_>) -> Answered<Self> {
         let site = self.place.site(scene, context, None)?;
         let zone = self.place.clock(&site, &self.times, context)?;
         let stands = |time: &String| {

@@ -1,6 +1,6 @@
 //! Survey plan: the stations that would prove most of the unproven lines of sight of a question.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::cameras::CameraSite;
 use super::cameras::Candidates;
 use super::cells::GridCells;
@@ -284,13 +284,7 @@ impl Ask for SurveyPlanQuestion {
         self.scanner().validate()
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<SurveyPlanResults>> {
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         if scene.model().pulses().is_none() {
             return Err(missing_pulses());
         }

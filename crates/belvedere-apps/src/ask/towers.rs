@@ -1,6 +1,6 @@
 //! Towers: how much of wind turbines, masts and other tall things is seen.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::context::Context;
 use super::north::{AzimuthNorth, North};
 use super::observers::{check_height, stand};
@@ -105,8 +105,7 @@ impl GivenTower {
 
     fn check(&self, number: usize) -> Result<()> {
         let refused = |value: String, expected| {
-            let value = format!("{} with {value}", self.name(number));
-            Err(Error::invalid(Parameter::Tower, value, expected))
+            Err(Error::invalid(Parameter::Tower, format!("{} with {value}", self.name(number)), expected))
         };
         if !(self.tip > 0.0 && self.tip <= MAX_HEIGHT) {
             return refused(format!("a tip of {} m", self.tip), "a tip above its base, at most 1000 metres");
@@ -142,8 +141,7 @@ impl TowersQuestion {
         let middle = [0, 1].map(|i| f64::midpoint(low[i], high[i]));
         let one = |(number, (given, foot)): (usize, (&GivenTower, [f64; 3]))| {
             let refused = |value: &str, expected| {
-                let value = format!("{}, {value}", given.name(number));
-                Err(Error::invalid(Parameter::Tower, value, expected))
+                Err(Error::invalid(Parameter::Tower, format!("{}, {value}", given.name(number)), expected))
             };
             if !((foot[0] - middle[0]).hypot(foot[1] - middle[1]) <= MAX_AWAY) {
                 return refused("more than 150 km from the cloud", "in the coordinates of the cloud, or in degrees");
@@ -264,13 +262,7 @@ impl Ask for TowersQuestion {
         }
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<TowersResults>> {
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         let towers = self.stand(scene, context, control)?;
         let height = self.observer_height.unwrap_or(OBSERVER_HEIGHT);
         if self.wirelines && matches!(places, Places::Cells(_) | Places::Own(_) | Places::Mesh(..)) {

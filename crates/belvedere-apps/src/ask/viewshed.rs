@@ -9,7 +9,7 @@ pub use limits::{StandingObserver, ViewLimits};
 pub use question::{ViewshedQuestion, ViewshedTargets};
 pub use seen_targets::FarSeen;
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::cells::GridCells;
 use super::context::Context;
 use super::known_ground::KnownGround;
@@ -284,13 +284,7 @@ impl Ask for ViewshedQuestion {
         }
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        _: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<ViewshedResults>> {
+    fn answer(&self, scene: &Scene, _: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         self.check_observers()?;
         self.how_sure.check_scene(scene)?;
         if self.unproven.is_some_and(|unproven| unproven != UnprovenAs::Visible) {

@@ -1,6 +1,6 @@
 //! Window views: kinds and ranges of the surfaces seen from windows.
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::context::{Context, spread};
 use super::north::North;
 use super::places::{Places, test_edge};
@@ -138,13 +138,7 @@ impl Ask for WindowViewsQuestion {
         self.windows.check()
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        _: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<WindowViewsResults>> {
+    fn answer(&self, scene: &Scene, _: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         if self.unproven.is_some() {
             scene.check_proof()?;
         }

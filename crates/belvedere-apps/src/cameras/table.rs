@@ -25,8 +25,7 @@ impl CoverageTable {
         for (camera, list) in covered.iter().enumerate() {
             for &target in list {
                 if target >= target_count {
-                    let expected = "the number of a target, counted from 0";
-                    return Err(Error::invalid(Parameter::Target, target, expected));
+                    return Err(Error::invalid(Parameter::Target, target, "the number of a target, counted from 0"));
                 }
                 bits[camera * words + target / 64] |= 1 << (target % 64);
             }

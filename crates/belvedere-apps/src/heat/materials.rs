@@ -144,7 +144,6 @@ impl SurfaceParams {
         if (0.0..=2.0).contains(&self.warming) {
             return Ok(());
         }
-        let value = self.warming.to_string();
-        Err(Error::invalid(Parameter::GroundWarming, value, "0 to 2"))
+        Err(Error::invalid(Parameter::GroundWarming, self.warming, "0 to 2"))
     }
 }

@@ -46,8 +46,7 @@ pub(super) fn row_of_step(weather: &Weather, step: &WeatherStep) -> f64 {
 pub fn weather_instants(weather: &Weather, site: &Site, parts: usize) -> Result<Vec<Instant>> {
     weather.validate()?;
     if !(1..=MAX_PARTS).contains(&parts) {
-        let value = parts.to_string();
-        return Err(Error::invalid(Parameter::WeatherParts, value, "1 to 120"));
+        return Err(Error::invalid(Parameter::WeatherParts, parts, "1 to 120"));
     }
     let of_steps: Vec<Vec<Instant>> = weather
         .steps

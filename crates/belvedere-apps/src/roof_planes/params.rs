@@ -53,8 +53,7 @@ impl RoofPlaneParams {
         let lengths = [self.distance, self.reach, self.cell];
         let is_usable = |v: &f64| *v > 0.0 && *v < 1000.0;
         if let Some(bad) = lengths.iter().find(|v| !is_usable(v)) {
-            let value = bad.to_string();
-            return Err(Error::invalid(Parameter::RoofLength, value, "above 0 to 1000 m"));
+            return Err(Error::invalid(Parameter::RoofLength, bad, "above 0 to 1000 m"));
         }
         if self.cell < MIN_CELL {
             let expected = "cells of 0.1 m or more";

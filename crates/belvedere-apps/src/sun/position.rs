@@ -257,8 +257,11 @@ fn correction(site: &Site, refraction: Refraction) -> Result<Option<RefractionCo
         Refraction::Air { pressure, temperature } => [pressure, temperature],
     };
     if !(-90.0..=60.0).contains(&temperature) {
-        let value = format!("of {temperature} degrees");
-        return Err(Error::invalid(Parameter::Air, value, "of -90 to 60 degrees Celsius"));
+        return Err(Error::invalid(
+            Parameter::Air,
+            format!("of {temperature} degrees"),
+            "of -90 to 60 degrees Celsius",
+        ));
     }
     RefractionCorrection::new(pressure, temperature).map(Some).map_err(|_| {
         Error::invalid(Parameter::Air, format!("of {pressure} hPa"), "of a pressure above 0, up to 2000 hPa")

@@ -236,8 +236,7 @@ fn checked(angle: f64) -> Result<f64> {
     if angle > 0.0 && angle <= 5f64.to_radians() {
         return Ok(angle);
     }
-    let value = angle.to_degrees().to_string();
-    Err(Error::invalid(Parameter::SunTolerance, value, "above 0 to 5 degrees"))
+    Err(Error::invalid(Parameter::SunTolerance, angle.to_degrees().to_string(), "above 0 to 5 degrees"))
 }
 
 /// Angle between unit vectors, exact for small ones, radians.

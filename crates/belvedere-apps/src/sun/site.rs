@@ -99,8 +99,7 @@ impl Site {
             other => other?,
         };
         if let Some(value) = far_outside(crs, position) {
-            let expected = "one whose area of use holds the scene";
-            return Err(Error::invalid(Parameter::ReferenceSystem, value, expected));
+            return Err(Error::invalid(Parameter::ReferenceSystem, value, "one whose area of use holds the scene"));
         }
         let [latitude, longitude] = projection.unproject(position)?;
         let height = height.clamp(LOWEST, HIGHEST);

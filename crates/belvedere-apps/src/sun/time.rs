@@ -132,8 +132,7 @@ impl Date {
     /// [`Error::InvalidParameter`] for days that do not exist, and years outside 1000 to 3000.
     pub fn new(year: i16, month: i8, day: i8) -> Result<Self> {
         if !YEARS.contains(&year) {
-            let value = year.to_string();
-            return Err(Error::invalid(Parameter::Year, value, "1000 to 2999"));
+            return Err(Error::invalid(Parameter::Year, year, "1000 to 2999"));
         }
         Self::checked(jiff::civil::Date::new(year, month, day).ok(), &format!("{year:04}-{month:02}-{day:02}"))
     }

@@ -107,8 +107,7 @@ pub fn sun_hours(
     }
     check_normals(normals, matrix.target_count())?;
     if !(0.0..=24.0).contains(&params.sufficient_hours) {
-        let value = params.sufficient_hours.to_string();
-        return Err(Error::invalid(Parameter::SufficientHours, value, "0 to 24"));
+        return Err(Error::invalid(Parameter::SufficientHours, params.sufficient_hours, "0 to 24"));
     }
     let sufficient = (params.sufficient_hours - ROUNDING, params.counted);
     let day_count = schedule.days.len().max(1) as f64;

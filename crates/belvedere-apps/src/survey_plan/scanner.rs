@@ -38,8 +38,11 @@ impl ScannerParams {
             return Err(Error::invalid(Parameter::MaxDistance, self.max_range, "finite and above zero metres"));
         }
         if !(self.angular_step > 0.0 && self.angular_step <= FRAC_PI_2) {
-            let expected = "above 0, and at most 90";
-            return Err(Error::invalid(Parameter::AngleStep, self.angular_step.to_degrees(), expected));
+            return Err(Error::invalid(
+                Parameter::AngleStep,
+                self.angular_step.to_degrees(),
+                "above 0, and at most 90",
+            ));
         }
         Ok(())
     }

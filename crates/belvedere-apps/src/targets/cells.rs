@@ -76,8 +76,7 @@ impl Targets {
         control: &Control<'_>,
     ) -> Result<(Self, CellReport)> {
         if !(params.height >= 0.0 && params.height.is_finite()) {
-            let value = params.height.to_string();
-            return Err(Error::invalid(Parameter::HeightAboveGround, value, "0 metres or more"));
+            return Err(Error::invalid(Parameter::HeightAboveGround, params.height, "0 metres or more"));
         }
         if params.level == CellLevel::Surface {
             ground.heights = control.stage("computing top surface", 0, || {

@@ -10,7 +10,7 @@ pub use lens::CameraLens;
 pub(super) use site::CameraSite;
 pub use targets::{CameraTargets, PrivatePlaces};
 
-use super::answers::{Answers, Ask};
+use super::answers::{Answered, Answers, Ask};
 use super::cells::GridCells;
 use super::context::Context;
 use super::how_sure::remark_from_ground;
@@ -291,13 +291,7 @@ impl Ask for CamerasQuestion {
         self.targets.check()
     }
 
-    fn answer(
-        &self,
-        scene: &Scene,
-        places: &Places,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Answers<CamerasResults>> {
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         if self.unproven.is_some() {
             scene.check_proof()?;
         }
