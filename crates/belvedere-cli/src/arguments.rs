@@ -91,6 +91,14 @@ pub(crate) fn refuse<T>(what: impl Into<String>) -> anyhow::Result<T> {
     Err(Usage(what.into()).into())
 }
 
+/// Refuses the first of `flags` that was given; `why` follows its name.
+pub(crate) fn refuse_given(flags: &[(&str, bool)], why: &str) -> anyhow::Result<()> {
+    match flags.iter().find(|(_, is_given)| *is_given) {
+        Some((flag, _)) => refuse(format!("{flag} {why}")),
+        None => Ok(()),
+    }
+}
+
 /// Visibility analysis directly on point clouds
 #[derive(Parser)]
 #[command(

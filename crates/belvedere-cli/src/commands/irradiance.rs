@@ -3,7 +3,7 @@
 mod hours;
 mod planes;
 
-use crate::arguments::{Global, IrradianceArguments, SkyOutputs, SkyPlaces, refuse};
+use crate::arguments::{Global, IrradianceArguments, SkyOutputs, SkyPlaces, refuse_given};
 use crate::in_tiles::TypedCells;
 use crate::inputs::radiation;
 use crate::outputs::formats::warn_of_geojson;
@@ -32,10 +32,7 @@ fn refuse_flags_of_places(arguments: &IrradianceArguments, outputs: &SkyOutputs)
         ("--spacing", spacing.is_some()),
         ("--facing", facing.is_some()),
     ];
-    match given.into_iter().find(|(_, is_given)| *is_given) {
-        Some((flag, _)) => refuse(format!("{flag} needs -o")),
-        None => Ok(()),
-    }
+    refuse_given(&given, "needs -o")
 }
 
 pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Summary> {

@@ -1,6 +1,6 @@
 //! `belvedere query`.
 
-use crate::arguments::{Global, Query, refuse};
+use crate::arguments::{Global, Query, refuse, refuse_given};
 use crate::inputs::points::points_of_file;
 use crate::outputs::formats::{check_output, extension, text_rows_for};
 use crate::pipeline::{self, KeepPoints, mesh_in};
@@ -78,19 +78,20 @@ fn check(arguments: &Query, is_mesh: bool) -> Result<Profile> {
     let known: &[&str] = if is_mesh { &["csv", "ply"] } else { &["csv", "txt", "xyz", "laz", "las", "ply", "npy"] };
     check_output("-o", output, known)?;
     let profile = arguments.shape.of(&arguments.scene.balls)?;
-    let wrong = if is_mesh {
-        arguments.bias.map(|_| "--bias applies only to point targets; for a mesh use --shell".to_owned())
-    } else if mesh.spacing.is_some() || mesh.back_faces.is_some() {
-        let flag = if mesh.spacing.is_some() { "--spacing" } else { "--back-faces" };
-        Some(format!("{flag} applies only to mesh targets"))
-    } else if arguments.probability && extension(output) == "npy" {
+    if is_mesh {
+        refuse_given(&[("--bias", arguments.bias.is_some())], "applies only to point targets; for a mesh use --shell")?;
+        return Ok(profile);
+    }
+    let of_meshes = [("--spacing", mesh.spacing.is_some()), ("--back-faces", mesh.back_faces.is_some())];
+    refuse_given(&of_meshes, "applies only to mesh targets")?;
+    if arguments.probability && extension(output) == "npy" {
         let output = output.display();
-        Some(format!("{output}: .npy holds answers only; use another format with --probability"))
-    } else {
-        (arguments.view.is_central() && profile != Profile::Sphere)
-            .then(|| "--ball-profile: the paper's cone is for parallel views only".to_owned())
-    };
-    wrong.map_or(Ok(profile), refuse)
+        return refuse(format!("{output}: .npy holds answers only; use another format with --probability"));
+    }
+    if arguments.view.is_central() && profile != Profile::Sphere {
+        return refuse("--ball-profile: the paper's cone is for parallel views only");
+    }
+    Ok(profile)
 }
 
 /// Writes points with their answers, or the answers alone.

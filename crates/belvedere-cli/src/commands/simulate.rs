@@ -1,6 +1,6 @@
 //! `belvedere simulate`: a town, a survey of it, and what is true about both.
 
-use crate::arguments::{Global, PatternChoice, ScannerChoice, Simulate, refuse};
+use crate::arguments::{Global, PatternChoice, ScannerChoice, Simulate, refuse, refuse_given};
 use crate::outputs::formats::check_folder;
 use crate::outputs::text::write_text;
 use crate::run::CommandContext;
@@ -104,10 +104,7 @@ fn check_flags(arguments: &Simulate) -> Result<()> {
         ScannerChoice::Airborne => (&of_terrestrial, "terrestrial"),
         ScannerChoice::Terrestrial => (&of_airborne, "airborne"),
     };
-    match unused.iter().find(|(_, is_given)| *is_given) {
-        Some((flag, _)) => refuse(format!("{flag} needs --scanner {scanner}")),
-        None => Ok(()),
-    }
+    refuse_given(unused, &format!("needs --scanner {scanner}"))
 }
 
 /// Refuses more pulses than a machine holds, before a large town is built for them.

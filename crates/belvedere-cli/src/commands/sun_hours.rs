@@ -97,4 +97,3 @@ fn write_hourly_sun(folder: &Path, sun: &HourlySun, run: &mut CommandContext) ->
 fn month_file(folder: &Path, month: i8) -> PathBuf {
     folder.join(format!("{month:02}.tif"))
 }
-

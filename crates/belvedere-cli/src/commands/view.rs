@@ -1,6 +1,8 @@
 //! `belvedere view`.
 
-use crate::arguments::{CloudInput, Global, MapPosition, MethodChoice, SceneInput, UpChoice, ViewPage, refuse};
+use crate::arguments::{
+    CloudInput, Global, MapPosition, MethodChoice, SceneInput, UpChoice, ViewPage, refuse, refuse_given,
+};
 use crate::environment::words;
 use crate::interrupt;
 use crate::memory::available_bytes;
@@ -151,10 +153,7 @@ fn refuse_flags_of_files(arguments: &ViewPage) -> Result<()> {
         ("--zone", arguments.zone.is_some()),
         ("--observer", !arguments.observer.is_empty()),
     ];
-    match given.into_iter().find(|(_, given)| *given && arguments.export.is_none()) {
-        Some((flag, _)) => refuse(format!("{flag} needs --export")),
-        None => Ok(()),
-    }
+    if arguments.export.is_none() { refuse_given(&given, "needs --export") } else { Ok(()) }
 }
 
 /// Returns the title of the page: the name of its first file.

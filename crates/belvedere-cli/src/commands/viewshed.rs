@@ -134,8 +134,7 @@ fn map_of_survey(
     let SurveyCells { grid, eyes, .. } = &answers.found;
     let band = |name: &str| answers.measures.iter().find(|band| band.name == name).map(|band| &band.values[..]);
     let unproven = band(UNPROVEN_BAND).unwrap_or_default();
-    let count =
-        |(cell, &free): (usize, &f32)| to_row(to_index(f64::from(free - unproven.get(cell).unwrap_or(&0.0))));
+    let count = |(cell, &free): (usize, &f32)| to_row(to_index(f64::from(free - unproven.get(cell).unwrap_or(&0.0))));
     let counts: Vec<u32> = answers.measures[0].values.iter().enumerate().map(count).collect();
     let map = SeenMap {
         answers: &answers_of_bands(&answers.measures[..answers.measures.len().min(2)]),

@@ -1,6 +1,6 @@
 //! Windows: from files to places.
 
-use crate::arguments::refuse;
+use crate::arguments::{refuse, refuse_given};
 use crate::inputs::landmark_shape::objects_of;
 use crate::outputs::formats::extension;
 use crate::pipeline::mesh_in;
@@ -39,11 +39,8 @@ impl WindowFile {
             let given = GivenWindows::Faces(SharedObject::new(mesh));
             return Ok(Self { given, columns: Vec::new(), rows: TextRows::default() });
         }
-        for (flag, is_given) in [("--spacing", choice.spacing.is_some()), ("--object", !choice.objects.is_empty())] {
-            if is_given {
-                return refuse(format!("{flag} applies only to windows from a mesh"));
-            }
-        }
+        let of_meshes = [("--spacing", choice.spacing.is_some()), ("--object", !choice.objects.is_empty())];
+        refuse_given(&of_meshes, "applies only to windows from a mesh")?;
         if !["csv", "txt"].contains(&extension(path).as_str()) {
             bail!("{}: windows are a table (.csv .txt) or a mesh (.obj .json .ply with faces)", path.display());
         }

@@ -1,6 +1,6 @@
 //! Heat on the command line: sun and shade of a house on a hot day, clocks and days of weather, and what is refused.
 
-use crate::common::{Workplace, at, column, remarks};
+use crate::common::{Workplace, column, remarks};
 use std::fmt::Write;
 
 /// The days of a year of a place that is hot in summer, an hour a row, as PVGIS writes a typical year.
@@ -19,8 +19,7 @@ fn place() -> Workplace {
     place.write("weather.csv", text);
     // south of the house in the sun, and north of it in its shade
     let places = [[0.0, -12.0, 1.1], [0.0, 5.6, 1.1]];
-    let rows: String = places.map(|[x, y, z]| at(x, y, z)).iter().map(|[x, y, z]| format!("{x},{y},{z}\n")).collect();
-    place.write("places.csv", format!("x,y,z\n{rows}"));
+    place.write_places("places.csv", &places);
     place
 }
 

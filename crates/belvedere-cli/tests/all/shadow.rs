@@ -5,11 +5,6 @@ use belvedere::crs::Crs;
 
 const HOUSE: &str = "house.laz --orient given --scene-config ../tau.json --ground found";
 
-fn write_places(place: &Workplace, name: &str, places: &[[f64; 3]]) {
-    let rows: String = places.iter().map(|&[x, y, z]| at(x, y, z)).map(|[x, y, z]| format!("{x},{y},{z}\n")).collect();
-    place.write(name, format!("x,y,z\n{rows}"));
-}
-
 /// A mesh of a block with these corners on the map, relative to the middle of the house.
 fn block(low: [f64; 2], high: [f64; 2], height: f64) -> String {
     let corner = |i: usize| at([low[0], high[0]][i & 1], [low[1], high[1]][i >> 1 & 1], [0.0, height][i >> 2]);
@@ -140,7 +135,7 @@ fn shadows_are_as_long_as_two_offices_say() {
 #[test]
 fn a_time_is_the_same_however_it_is_written_and_nothing_is_lit_at_night() {
     let place = Workplace::with_house();
-    write_places(&place, "places.csv", &[[0.0, 8.0, 0.5], [0.0, -9.0, 0.5], [9.0, 0.0, 0.5], [-9.0, 0.0, 0.5]]);
+    place.write_places("places.csv", &[[0.0, 8.0, 0.5], [0.0, -9.0, 0.5], [9.0, 0.0, 0.5], [-9.0, 0.0, 0.5]]);
     let lit = |flags: &str| {
         let run = place.summary(&format!("shadow {HOUSE} {flags} --targets places.csv -o lit.csv"));
         (column(&place, "lit.csv", "lit"), run)
@@ -189,7 +184,7 @@ fn soft_edges_are_as_wide_as_the_sun_and_hard_ones_cut_them_in_half() {
     let place = Workplace::with_house();
     // across the edge of the shadow of the eaves, 6 m high: it lies 10 m north of the middle under a sun of 45 degrees
     let places: Vec<[f64; 3]> = (0..200).map(|i| [0.25, 9.0 + 0.01 * f64::from(i), 0.1]).collect();
-    write_places(&place, "line.csv", &places);
+    place.write_places("line.csv", &places);
     let lit = |flags: &str| {
         place.summary(&format!("shadow {HOUSE} --sun 180,45 {flags} --targets line.csv -o lit.csv"));
         column(&place, "lit.csv", "lit")
@@ -257,7 +252,7 @@ fn a_film_has_a_frame_for_each_sun() {
 #[test]
 fn what_cannot_be_is_refused_with_advice() {
     let place = Workplace::with_house();
-    write_places(&place, "places.csv", &[[0.0, 8.0, 0.5]]);
+    place.write_places("places.csv", &[[0.0, 8.0, 0.5]]);
     for (flags, words) in [
         ("-o no.csv", "--time"),
         ("--time noon -o no.csv", "--time"),
@@ -351,7 +346,7 @@ fn areas_have_the_means_of_their_cells() {
         "parcels.geojson",
         format!(r#"{{"type":"FeatureCollection",{crs},"features":[{}]}}"#, features.join(",")),
     );
-    write_places(&place, "places.csv", &[[0.0, 8.0, 0.5]]);
+    place.write_places("places.csv", &[[0.0, 8.0, 0.5]]);
     let shadow = format!("shadow {HOUSE} --sun 180,35 --cell 0.5 --areas parcels.geojson");
     let run = place.run(&format!("{shadow} -o cells.csv --by-area parcels.csv"));
     assert!(run.status == 0 && run.stderr.contains("1 of 3 areas (33.33 %) hold no cell"), "{run:?}");

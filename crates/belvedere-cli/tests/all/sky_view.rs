@@ -54,8 +54,7 @@ fn cells_and_points_see_as_much_sky_as_beside_the_exact_house() {
     assert!(place.path("sky.tif").is_file() && place.bytes("sky.png").starts_with(b"\x89PNG"));
 
     let spots = [[0.0, 6.0, 0.5], [7.0, 0.0, 2.0], [0.0, 0.0, 9.3], [0.0, 0.0, 50.0]];
-    let rows: String = spots.iter().map(|&[x, y, z]| at(x, y, z)).map(|[x, y, z]| format!("{x},{y},{z}\n")).collect();
-    place.write("places.csv", format!("x,y,z\n{rows}"));
+    place.write_places("places.csv", &spots);
     for (flags, tolerance) in [("--directions 2305", 0.02), ("--patches tregenza", 0.05), ("--patches reinhart", 0.03)]
     {
         place.summary(&format!("sky-view {HOUSE} --targets places.csv {flags} -o points.csv"));

@@ -13,8 +13,7 @@ const PLACES: [[f64; 3]; 4] = [[0.0, 8.0, 0.5], [0.0, -9.0, 0.5], [9.0, 0.0, 0.5
 
 fn place() -> Workplace {
     let place = Workplace::with_house();
-    let rows: String = PLACES.map(|[x, y, z]| at(x, y, z)).iter().map(|[x, y, z]| format!("{x},{y},{z}\n")).collect();
-    place.write("places.csv", format!("x,y,z\n{rows}"));
+    place.write_places("places.csv", &PLACES);
     place
 }
 

@@ -13,8 +13,7 @@ fn place() -> Workplace {
     );
     // south of the house, and beside it
     let places = [[0.0, -12.0, 1.7], [14.0, -12.0, 1.7]];
-    let rows: String = places.map(|[x, y, z]| at(x, y, z)).iter().map(|[x, y, z]| format!("{x},{y},{z}\n")).collect();
-    place.write("places.csv", format!("x,y,z\n{rows}"));
+    place.write_places("places.csv", &places);
     place
 }
 

@@ -38,8 +38,7 @@ fn place() -> Workplace {
     place.write_cloud("house.laz", &house());
     // in the shade of the crown in summer, and in winter; north of the house, in the open
     let places = [[10.0, 4.0, 0.5], [10.0, 14.0, 0.5], [0.0, 7.0, 0.5], [0.0, -12.0, 0.5]];
-    let rows: String = places.map(|[x, y, z]| at(x, y, z)).iter().map(|[x, y, z]| format!("{x},{y},{z}\n")).collect();
-    place.write("places.csv", format!("x,y,z\n{rows}"));
+    place.write_places("places.csv", &places);
     place
 }
 

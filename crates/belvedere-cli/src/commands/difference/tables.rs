@@ -1,6 +1,6 @@
 //! `belvedere difference` of two tables: rows of the same places, before and after a plan.
 
-use crate::arguments::{DifferenceArguments, refuse};
+use crate::arguments::{DifferenceArguments, refuse, refuse_given};
 use crate::outputs::formats::extension;
 use crate::run::CommandContext;
 use anyhow::{Result, bail};
@@ -40,9 +40,7 @@ struct Compared {
 /// Files that cannot be read, and tables with two equal rows or nothing in common.
 pub(super) fn run(arguments: &DifferenceArguments, run: &mut CommandContext) -> Result<()> {
     let flags = [("--relief", arguments.relief.is_some()), ("--title", arguments.title.is_some())];
-    if let Some((flag, _)) = flags.into_iter().find(|(_, is_given)| *is_given) {
-        return refuse(format!("{flag} applies only to rasters"));
-    }
+    refuse_given(&flags, "applies only to rasters")?;
     if let Some(other) = arguments.output.iter().find(|output| extension(output) != "csv") {
         return refuse(format!("-o {}: the difference of tables is a table (.csv)", other.display()));
     }

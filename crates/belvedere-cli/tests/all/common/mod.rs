@@ -163,6 +163,12 @@ impl Workplace {
         npyz::NpyFile::new(entry).unwrap().into_vec().unwrap()
     }
 
+    /// Writes a table of places around the middle of the house.
+    pub(crate) fn write_places(&self, name: &str, places: &[[f64; 3]]) {
+        let rows = places.iter().map(|&[x, y, z]| at(x, y, z)).map(|[x, y, z]| format!("{x},{y},{z}\n"));
+        self.write(name, format!("x,y,z\n{}", rows.collect::<String>()));
+    }
+
     /// Writes (N, 3) f64.
     pub(crate) fn write_targets(&self, name: &str, targets: &[[f64; 3]]) {
         use npyz::WriterBuilder;
