@@ -1,7 +1,7 @@
 //! The energy of sun and sky.
 
 use crate::cloud::PyInput;
-use crate::errors::exception;
+use crate::errors::{exception, wrong};
 use crate::question::Data;
 use crate::remarks::{Remarks, remarks_of};
 use crate::result_columns::{NamedColumns, to_python};
@@ -62,7 +62,11 @@ impl RadiationKeywords {
             }
             (None, Some("haurwitz")) => ClearSky::Haurwitz,
             (None, Some("bird")) => ClearSky::Bird(BirdParams { albedo, ..BirdParams::default() }),
-            (None, _) => self.linke.map_or_else(ClearSky::default, |linke| ClearSky::Ineichen { linke }),
+            (None, Some("ineichen")) => self.linke.map_or_else(ClearSky::default, |linke| ClearSky::Ineichen { linke }),
+            (None, name) => {
+                let advice = "use 'ineichen', 'haurwitz' or 'bird'";
+                return Err(wrong("clear_sky", &format!("'{}'", name.unwrap_or_default()), advice));
+            }
         };
         Ok(ask::Radiation::ClearSky { clear_sky, year: self.year.unwrap_or(CLEAR_SKY_YEAR) })
     }

@@ -8,7 +8,8 @@ import typing
 
 import belvedere
 import pytest
-from belvedere import Scene, _keywords, _types
+from belvedere import Scene, _keywords, _questions, _types
+from belvedere._targets import wanted
 
 WINDOW = {"x": [1], "y": [1], "z": [1], "azimuth": [180]}
 #: Calls with a word that is not known, whose advice lists those that are.
@@ -51,6 +52,32 @@ def test_words_are_those_of_the_native_part(name, scene, hot_day):
     advice = caught.value.advice
     listed = re.findall(r"'([\w-]+)'", advice) or re.findall(r"[\w-]+", advice.split("one of")[-1])
     assert words_of(getattr(_types, name)) == set(listed), advice
+
+
+#: A question with a word that is not known, where the package itself lists those that are, and what else it may be.
+QUESTIONS = {
+    "Body": ({"heat": {"body": "?"}}, set()),
+    "Curvature": ({"line-of-sight": {"earth": {"curvature": "?"}}}, set()),
+    "Ground": ({"horizon": {"ground": "?"}}, set()),
+    "GroundCover": ({"heat": {"surfaces": {"ground": "?"}}}, set()),
+    "Kind": ({"window-views": {"classes": [(1, "?")]}}, {"sky", "beyond"}),
+    "Leaves": ({"sky-view": {"trees": {"measured": "?"}}}, set()),
+    "Patches": ({"sky-view": {"sky": "?"}}, {"even"}),
+    "SkyModel": ({"irradiance": {"params": {"sky": "?"}}}, set()),
+    "Surroundings": ({"irradiance": {"params": {"surroundings": "?"}}}, set()),
+    "Unproven": ({"line-of-sight": {"unproven": "?"}}, set()),
+}
+
+
+@pytest.mark.parametrize("name", QUESTIONS)
+def test_words_of_the_package_are_those_of_questions(name, scene):
+    question, others = QUESTIONS[name]
+    with pytest.raises(belvedere.BelvedereError) as caught:
+        scene._core.on_targets(question, None, wanted(None, None, {}), None)
+    listed = set(re.findall(r"`(\w+)`", caught.value.advice.split("expected")[1]))
+    alias = getattr(_types, name)
+    native = {_questions.word(alias, word=word) or "reported" for word in words_of(alias)}
+    assert {"by_date" if word == "auto" and name == "Leaves" else word for word in native} == listed - others
 
 
 @pytest.mark.parametrize(

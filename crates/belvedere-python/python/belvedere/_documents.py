@@ -21,7 +21,7 @@ from ._targets import Targets, coordinates, wanted
 from ._types import Columns, Day, Language, Location, Period, Polygon, Progress, Study, Zone
 
 if TYPE_CHECKING:
-    from ._scene import Scene
+    from typing_extensions import Self
 
 
 class Documents:
@@ -123,7 +123,7 @@ class Documents:
         *,
         windows: Columns | None = None,
         areas: Mapping[str, Polygon] | None = None,
-        planned: Scene | None = None,
+        planned: Self | None = None,
         rule: str | None = None,
         area_rule: str | None = None,
         study: Study | None = None,
