@@ -1,6 +1,6 @@
 //! Kept surveys: cells on the ground, proof by pulses, and balls that all questions share.
 
-use crate::common::{LARGE, MIDDLE, SMALL, WIDE};
+use crate::common::{MIDDLE, SMALL, WIDE, write_town};
 use belvedere::apps::ask::{
     Answers, GridCells, HowSure, Places, Question, Remark, Report, Scene, ShadowQuestion, SunPlace, Suns, ThroughTrees,
     ask,
@@ -68,7 +68,7 @@ fn bits(answers: &Answers<SurveyCells>) -> Vec<Vec<u32>> {
 #[test]
 fn cells_on_the_ground_and_proof_are_those_of_any_tiles_and_of_one_model() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = &LARGE.clouds;
+    let clouds = &write_town(place.path(), 150.0, 1.0);
     let sun = [140.0, 25.0];
     let (_, whole, _) = shadow(&place.path().join("whole"), &params(clouds, 512.0), sun);
     for tile_size in [64.0, 100.0] {
