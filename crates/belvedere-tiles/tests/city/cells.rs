@@ -74,7 +74,6 @@ fn results_with_their_own_cells_are_those_of_plans_with_one_question_and_of_any_
             raster(plan, folder, question);
             let cells = read_tif(folder.join("merged.tif").as_path()).unwrap();
             let (corner, raster) = (cells.place.unwrap().upper_left, cells.values);
-            #[expect(clippy::cast_possible_truncation, reason = "cells of a town are few")]
             let number = |v: f64| (v / side).round() as i64;
             let place = |at: usize| {
                 let [column, row] = [at % raster.width(), at / raster.width()].map(|v| v as i64);

@@ -1,5 +1,4 @@
 //! Files of a flown town, and plans of it.
-#![expect(clippy::cast_possible_truncation, reason = "cells of a town are few")]
 
 use belvedere::apps::shadow::ShadowSun;
 use belvedere::cloud::to_local;

@@ -279,7 +279,6 @@ fn mountains_beyond_a_survey_take_the_light_of_all_tiles() {
     let place = tempfile::tempdir().unwrap();
     let plain = plan(&MIDDLE.clouds, &place.path().join("plain"), 512.0, Vec::new());
     let frame = plain.frame().unwrap();
-    #[expect(clippy::cast_possible_truncation, reason = "a height")]
     let lowest = (f64::from(plain.bounds().low[2]) + frame.origin[2]) as f32;
     let terrain = ridge(place.path(), lowest, frame.crs.clone());
     let horizon = place.path().join("horizon.csv");
