@@ -117,7 +117,6 @@ fn npy(descr: &str, shape: &str) -> Vec<u8> {
         match descr {
             "<f8" => bytes.extend(v.to_le_bytes()),
             ">f8" => bytes.extend(v.to_be_bytes()),
-            #[expect(clippy::cast_possible_truncation, reason = "the file holds single precision")]
             _ => bytes.extend((v as f32).to_le_bytes()),
         }
     }

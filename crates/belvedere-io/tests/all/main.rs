@@ -1,5 +1,6 @@
 //! The tests of reading and writing that need no other part of the library, in one program.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::cast_possible_truncation, reason = "the numbers of tests are small, or made to be f32")]
 
 mod common;
 mod contradictions;

@@ -107,7 +107,6 @@ fn damaged_geopackages_are_refused_or_read() {
         let mut damaged = bytes.clone();
         for k in 0..4 {
             let at = belvedere_data::random::uniform(3, 8 * i + k) * damaged.len() as f64;
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place in the file")]
             let at = at as usize;
             damaged[at] ^= 1 << (i % 8);
         }
@@ -264,7 +263,6 @@ fn damaged_shapefiles_are_refused_or_read() {
             }
             for k in 0..3 {
                 let at = belvedere_data::random::uniform(4, 8 * i + k) * damaged.len() as f64;
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place in the file")]
                 if let Some(byte) = damaged.get_mut(at as usize) {
                     *byte ^= 1 << (i % 8);
                 }

@@ -194,7 +194,6 @@ pub(crate) fn ept() -> Vec<(&'static str, Vec<u8>)> {
 }
 
 fn sorted(cloud: &PointCloud) -> Vec<[i64; 3]> {
-    #[expect(clippy::cast_possible_truncation, reason = "millimetres of a few hundred kilometres")]
     let steps = |p: &[f32; 3]| cloud.frame.to_file_coordinates(*p).map(|v| (v * 1000.0).round() as i64);
     let mut all: Vec<[i64; 3]> = cloud.positions.iter().map(steps).collect();
     all.sort_unstable();

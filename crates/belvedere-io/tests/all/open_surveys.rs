@@ -58,7 +58,6 @@ fn tiles(cloud: &PointCloud) -> Vec<(&'static str, Vec<u8>)> {
 /// Coordinates of a cloud in millimetres, and intensities, in an order of their own.
 fn sorted(cloud: &PointCloud) -> Vec<([i64; 3], u16)> {
     let intensity = cloud.attributes.intensity.as_ref().unwrap();
-    #[expect(clippy::cast_possible_truncation, reason = "millimetres of a country")]
     let place = |p: &[f32; 3]| {
         std::array::from_fn(|axis| ((f64::from(p[axis]) + cloud.frame.origin[axis]) * 1000.0).round() as i64)
     };

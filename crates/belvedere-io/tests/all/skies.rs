@@ -176,7 +176,6 @@ fn rows_from_above_and_scans_whose_y_is_up_see_the_same_sky() {
     let (turned, _) = read_ptx(&usual_ptx(Court::Bare, &from_above));
     let directions = |cloud: &PointCloud| -> Vec<[i64; 3]> {
         let region = &cloud.sky_regions[0];
-        #[expect(clippy::cast_possible_truncation, reason = "a direction")]
         let rounded = |v: f64| (v * 1000.0).round() as i64;
         let mut all: Vec<[i64; 3]> = region.open_cells().map(|cell| region.direction(cell).map(rounded)).collect();
         all.sort_unstable();

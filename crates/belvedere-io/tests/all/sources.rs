@@ -14,7 +14,6 @@ pub(crate) fn cloud(count: u32) -> PointCloud {
     let whole = |v: u32| f64::from(v % 100_000) / 1000.0 - 50.0;
     let local = |i: u32| [whole(i.wrapping_mul(7919)), whole(i.wrapping_mul(104_729)), f64::from(i % 30)];
     let frame = Frame { origin: [155_000.0, 463_000.0, 0.0], crs: Crs::parse("EPSG:28992").unwrap() };
-    #[expect(clippy::cast_possible_truncation, reason = "positions are f32")]
     let positions: Vec<[f32; 3]> = (0..count).map(|i| local(i).map(|v| v as f32)).collect();
     let classes = (0..count).map(|i| u8::try_from(i % 9 + 1).unwrap()).collect();
     let intensity = (0..count).map(|i| u16::try_from(i % 65_536).unwrap()).collect();

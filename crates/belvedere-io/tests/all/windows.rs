@@ -1,5 +1,4 @@
 //! A window of a large cloud has the points of a search through all of them, and costs little more than its own bytes.
-#![expect(clippy::cast_possible_truncation, reason = "numbers of a file that is made here, of a few megabytes")]
 
 use std::io::{Cursor, Read, Seek, SeekFrom};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -333,7 +332,6 @@ fn tiles() -> tempfile::TempDir {
         let name = format!("tile_{tile}.laz");
         let x = f64::from(tile) * 100.0;
         let positions = (0..1000_u64).map(|i| {
-            #[expect(clippy::cast_possible_truncation, reason = "positions are f32")]
             let [a, b] = [2 * i, 2 * i + 1].map(|number| (100.0 * uniform(5, number)) as f32);
             [a, b, 1.0]
         });

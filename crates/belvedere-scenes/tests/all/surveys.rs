@@ -65,7 +65,6 @@ fn requested_density_is_flown_with_every_pattern_and_any_extent() {
             // Noise moves some points beside the ground.
             let within = |v: f64| v.abs() < side / 2.0 - 0.5;
             for i in (0..scan.len()).filter(|&i| within(scan.x[i]) && within(scan.y[i])) {
-                #[expect(clippy::cast_possible_truncation, reason = "a scene has fewer cells than i64 counts")]
                 let cell = [scan.x[i], scan.y[i]].map(|v| (v / 20.0).floor() as i64);
                 *seen.entry(cell).or_default() |= 1 << scan.point_source_id[i];
             }

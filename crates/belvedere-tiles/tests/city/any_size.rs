@@ -1,6 +1,6 @@
 //! Kept surveys: cells on the ground, proof by pulses, and balls that all questions share.
 
-use crate::common::write_town;
+use crate::common::{MIDDLE, SMALL, WIDE, write_town};
 use belvedere::apps::ask::{
     Answers, GridCells, HowSure, Places, Question, Remark, Report, Scene, ShadowQuestion, SunPlace, Suns, ThroughTrees,
     ask,
@@ -68,15 +68,15 @@ fn bits(answers: &Answers<SurveyCells>) -> Vec<Vec<u32>> {
 #[test]
 fn cells_on_the_ground_and_proof_are_those_of_any_tiles_and_of_one_model() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 150.0, 1.0);
+    let clouds = &write_town(place.path(), 150.0, 1.0);
     let sun = [140.0, 25.0];
-    let (_, whole, _) = shadow(&place.path().join("whole"), &params(&clouds, 512.0), sun);
+    let (_, whole, _) = shadow(&place.path().join("whole"), &params(clouds, 512.0), sun);
     for tile_size in [64.0, 100.0] {
-        let (_, tiled, _) = shadow(&place.path().join(tile_size.to_string()), &params(&clouds, tile_size), sun);
+        let (_, tiled, _) = shadow(&place.path().join(tile_size.to_string()), &params(clouds, tile_size), sun);
         assert!(bits(&tiled) == bits(&whole), "{tile_size}");
     }
     let control = Control::none();
-    let (cloud, _) = read_cloud(&clouds, &ReadOptions::new(), &control).unwrap();
+    let (cloud, _) = read_cloud(clouds, &ReadOptions::new(), &control).unwrap();
     let (model, _) = SceneModel::build(&cloud, &ModelParams::default(), &control).unwrap();
     let scene = Scene::new(model, Arc::new(cloud));
     let answers = ask(&scene, &question(sun), &Places::Cells(cells()), &control).unwrap();
@@ -105,22 +105,22 @@ fn cells_on_the_ground_and_proof_are_those_of_any_tiles_and_of_one_model() {
 #[test]
 fn a_kept_survey_is_looked_at_once_and_its_balls_serve_all_questions() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 100.0, 1.0);
+    let clouds = &MIDDLE.clouds;
     let folder = place.path().join("kept");
-    let (plan, first, made) = shadow(&folder, &params(&clouds, 64.0), [140.0, 25.0]);
+    let (plan, first, made) = shadow(&folder, &params(clouds, 64.0), [140.0, 25.0]);
     assert_eq!(made, plan.tiles.len());
     // The same question has its answer already; another question has its balls.
-    let (_, again, made) = shadow(&folder, &params(&clouds, 64.0), [140.0, 25.0]);
+    let (_, again, made) = shadow(&folder, &params(clouds, 64.0), [140.0, 25.0]);
     assert!(bits(&again) == bits(&first) && made == 0, "{made}");
-    let (_, other, made) = shadow(&folder, &params(&clouds, 64.0), [220.0, 40.0]);
+    let (_, other, made) = shadow(&folder, &params(clouds, 64.0), [220.0, 40.0]);
     assert!(bits(&other) != bits(&first) && made == 0, "{made}");
     // It found the ground of its cells, too.
-    let (_, anew, _) = shadow(&place.path().join("anew"), &params(&clouds, 64.0), [220.0, 40.0]);
+    let (_, anew, _) = shadow(&place.path().join("anew"), &params(clouds, 64.0), [220.0, 40.0]);
     assert!(bits(&other) == bits(&anew));
     // Also for targets of another height.
     let low = GridCells { height: Some(0.1), ..cells() };
-    let (_, lower, _) = shadow_of(&folder, &params(&clouds, 64.0), [220.0, 40.0], &low);
-    let (_, anew, _) = shadow_of(&place.path().join("low"), &params(&clouds, 64.0), [220.0, 40.0], &low);
+    let (_, lower, _) = shadow_of(&folder, &params(clouds, 64.0), [220.0, 40.0], &low);
+    let (_, anew, _) = shadow_of(&place.path().join("low"), &params(clouds, 64.0), [220.0, 40.0], &low);
     assert!(bits(&lower) == bits(&anew) && bits(&lower) != bits(&other));
     let files = |what: &str| walk(&folder).into_iter().filter(|path| path.to_string_lossy().contains(what)).collect();
     let (pulses, ground): (Vec<PathBuf>, Vec<PathBuf>) = (files(".pulses."), files("ground"));
@@ -132,17 +132,17 @@ fn a_kept_survey_is_looked_at_once_and_its_balls_serve_all_questions() {
         bytes[middle] ^= 4;
         std::fs::write(&path, bytes).unwrap();
     }
-    let (_, mended, made) = shadow(&folder, &params(&clouds, 64.0), [60.0, 15.0]);
-    let (_, expected, _) = shadow(&place.path().join("new"), &params(&clouds, 64.0), [60.0, 15.0]);
+    let (_, mended, made) = shadow(&folder, &params(clouds, 64.0), [60.0, 15.0]);
+    let (_, expected, _) = shadow(&place.path().join("anew"), &params(clouds, 64.0), [60.0, 15.0]);
     assert!(bits(&mended) == bits(&expected) && made == plan.tiles.len(), "{made}");
 }
 
 #[test]
 fn less_memory_has_smaller_tiles_of_the_survey_that_is_kept() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 200.0, 1.0);
+    let clouds = &WIDE.clouds;
     let folder = place.path().join("kept");
-    let kept = || Plan::kept_in(&folder, &params(&clouds, 512.0), &Control::none()).unwrap();
+    let kept = || Plan::kept_in(&folder, &params(clouds, 512.0), &Control::none()).unwrap();
     let first = kept();
     let less = kept().fitting(first.estimate().memory_bytes - 1_000_000).unwrap();
     assert!(less.tile_size < first.tile_size && less.tiles.len() > first.tiles.len(), "{}", less.tile_size);
@@ -166,10 +166,10 @@ fn walk(folder: &Path) -> Vec<PathBuf> {
 #[test]
 fn suns_below_the_horizon_light_nothing_and_results_that_are_too_large_together_are_refused() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 60.0, 1.0);
+    let clouds = &SMALL.clouds;
     let folder = place.path().join("kept");
     let control = Control::none();
-    let plan = Plan::kept_in(&folder, &params(&clouds, 512.0), &control).unwrap().with_grid_cells(&cells()).unwrap();
+    let plan = Plan::kept_in(&folder, &params(clouds, 512.0), &control).unwrap().with_grid_cells(&cells()).unwrap();
     let suns = Suns::Directions(vec![[140.0, -5.0], [140.0, 40.0]]);
     let both = Question::Shadow(ShadowQuestion { suns, ..question([0.0, 0.0]) });
     let new = |limit: u64| SurveyQuestion::new(plan.clone(), &folder, both.clone(), limit, &control);
@@ -191,17 +191,17 @@ fn suns_below_the_horizon_light_nothing_and_results_that_are_too_large_together_
 #[test]
 fn memory_of_one_model_follows_the_points_and_tables_have_none() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 100.0, 1.0);
+    let clouds = &MIDDLE.clouds;
     let [one, both] = [&clouds[..1], &clouds[..]].map(|clouds| TooLarge::of(clouds, 1_000_000).unwrap());
     assert!(both.whole > one.whole && one.whole > 100_000_000, "{one:?} {both:?}");
-    assert_eq!(TooLarge::of(&clouds, both.whole), None);
+    assert_eq!(TooLarge::of(clouds, both.whole), None);
     let table = place.path().join("points.xyz");
     std::fs::write(&table, "1 2 3\n").unwrap();
     assert_eq!(TooLarge::of(&[table], 0), None);
     assert_eq!(TooLarge::of(&[place.path().join("gone.laz")], 0), None);
     // Metres around places, in the unit of the files.
-    let part = both.part_around((&clouds, None), &[[5.0, 7.0], [1.0, 9.0]], 100.0).unwrap().unwrap().0;
+    let part = both.part_around((clouds, None), &[[5.0, 7.0], [1.0, 9.0]], 100.0).unwrap().unwrap().0;
     assert_eq!(part, [[1.0 - 228.0, 7.0 - 228.0], [5.0 + 228.0, 9.0 + 228.0]]);
-    let feet = both.part_around((&clouds, Some("EPSG:2263")), &[[0.0, 0.0]], 0.0).unwrap().unwrap().0;
+    let feet = both.part_around((clouds, Some("EPSG:2263")), &[[0.0, 0.0]], 0.0).unwrap().unwrap().0;
     assert!((feet[1][0] - 128.0 / 0.304_800_6).abs() < 0.01, "{feet:?}");
 }

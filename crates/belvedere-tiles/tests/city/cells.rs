@@ -1,6 +1,6 @@
 //! Results with cells of different sizes in one plan.
 
-use crate::common::{run_all, write_town};
+use crate::common::LARGE;
 use belvedere::apps::ask::{Days, SkyParts, SunHoursQuestion};
 use belvedere::apps::shadow::ShadowSun;
 use belvedere::apps::sun::Site;
@@ -33,12 +33,12 @@ fn sizes() -> CellSizes {
     CellSizes::all(1.0).with(Topic::Shadow, 0.5).with(Topic::SkyView, 4.0)
 }
 
-fn done(clouds: &[PathBuf], folder: &Path, tile_size: f64, cells: CellSizes, questions: Vec<TileQuestion>) -> Plan {
-    let params = PlanParams { clouds: clouds.to_vec(), tile_size, cells, ..PlanParams::default() };
+fn done(folder: &Path, tile_size: f64, cells: CellSizes, questions: Vec<TileQuestion>) -> Plan {
+    let params = PlanParams { clouds: LARGE.clouds.clone(), tile_size, cells, ..PlanParams::default() };
     let plan = Plan::make(&params, &Control::none()).unwrap();
     plan.with_questions(questions, &Control::none()).unwrap().write(folder).unwrap();
     let plan = Plan::read(folder).unwrap();
-    let report = run_all(&plan, folder);
+    let report = LARGE.run(&plan, folder, None);
     assert!(report.failed.is_empty() && status(&plan, folder).is_complete(), "{report:?}");
     plan
 }
@@ -53,17 +53,16 @@ fn raster(plan: &Plan, folder: &Path, question: &TileQuestion) -> Vec<u8> {
 #[test]
 fn results_with_their_own_cells_are_those_of_plans_with_one_question_and_of_any_tiles() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 140.0, 1.0);
     let [folder, whole_folder] = ["tiles", "whole"].map(|name| place.path().join(name));
-    let tiles = done(&clouds, &folder, 64.0, sizes(), questions());
-    let whole = done(&clouds, &whole_folder, 512.0, sizes(), questions());
+    let tiles = done(&folder, 64.0, sizes(), questions());
+    let whole = done(&whole_folder, 512.0, sizes(), questions());
     assert!(tiles.tiles.len() >= 9 && whole.tiles.len() == 1);
     for (question, side) in questions().iter().zip([0.5, 1.0, 4.0]) {
         assert_eq!(tiles.cells.of(question), side);
         let name = question.name();
         // The same tiles with one question.
         let alone = place.path().join(format!("alone_{name}"));
-        let plan = done(&clouds, &alone, 64.0, CellSizes::all(side), vec![question.clone()]);
+        let plan = done(&alone, 64.0, CellSizes::all(side), vec![question.clone()]);
         assert!(raster(&plan, &alone, question) == raster(&tiles, &folder, question), "{name}");
         let catalogues = [(&plan, &alone), (&tiles, &folder)].map(|(plan, folder)| {
             write_catalogue(plan, folder, question).unwrap();
@@ -75,7 +74,6 @@ fn results_with_their_own_cells_are_those_of_plans_with_one_question_and_of_any_
             raster(plan, folder, question);
             let cells = read_tif(folder.join("merged.tif").as_path()).unwrap();
             let (corner, raster) = (cells.place.unwrap().upper_left, cells.values);
-            #[expect(clippy::cast_possible_truncation, reason = "cells of a town are few")]
             let number = |v: f64| (v / side).round() as i64;
             let place = |at: usize| {
                 let [column, row] = [at % raster.width(), at / raster.width()].map(|v| v as i64);

@@ -1,7 +1,6 @@
 //! Cleared areas, tile by tile: the same as in one tile over all, and as in one scene.
 
-use crate::common::{cells, plan, run_all, run_with, suns, write_town};
-
+use crate::common::{MIDDLE, cells, plan, run_with, suns};
 use belvedere::apps::ask::SkyParts;
 use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_balls, read_cloud, read_tif_f32, read_tif_u8};
@@ -76,14 +75,14 @@ fn values(plan: &Plan, folder: &Path, question: &TileQuestion) -> BTreeMap<[i64;
 #[test]
 fn cleared_areas_are_the_same_for_tiles_of_any_size_and_those_of_one_scene() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 140.0, 1.0);
+    let clouds = &MIDDLE.clouds;
     let questions = [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25), interval: false }];
     let plain_folder = place.path().join("plain");
-    let plain = plan(&clouds, &plain_folder, 512.0, questions.to_vec());
-    run_all(&plain, &plain_folder);
+    let plain = plan(clouds, &plain_folder, 512.0, questions.to_vec());
+    MIDDLE.run(&plain, &plain_folder, None);
     let [before, whole] = ["plain", "whole"].map(|name| place.path().join(name));
     let with_areas = |folder: &Path, size: f64| {
-        let plan = plan(&clouds, folder, size, questions.to_vec());
+        let plan = plan(clouds, folder, size, questions.to_vec());
         let areas = areas(&plan);
         plan.with_cleared(areas).unwrap().write(folder).unwrap();
         let plan = Plan::read(folder).unwrap();
@@ -125,7 +124,7 @@ fn cleared_areas_are_the_same_for_tiles_of_any_size_and_those_of_one_scene() {
     let area = (HIGH[0] - LOW[0]) * (HIGH[1] - LOW[1]);
     assert!(sum(&sky.1) > 0.7 * area && sum(&sky.1) > sum(&sky.0), "{} {}", sum(&sky.1), sum(&sky.0));
     assert!(shadow.0 != shadow.1);
-    as_in_one_scene(&clouds, &plain, (&balls(&plain, &before), &expected_balls));
+    as_in_one_scene(clouds, &plain, (&balls(&plain, &before), &expected_balls));
 }
 
 /// Compares the balls of tiles, before and after clearing, with those of one model of the whole cloud in the same
@@ -161,8 +160,7 @@ fn as_in_one_scene(clouds: &[std::path::PathBuf], plan: &Plan, (before, after): 
 #[test]
 fn areas_beside_the_survey_and_its_ground_are_refused_and_empty_ones_found() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 84.0, 1.0);
-    let plan = plan(&clouds, &place.path().join("run"), 512.0, suns());
+    let plan = plan(&MIDDLE.clouds, &place.path().join("run"), 512.0, suns());
     let beside = ClearedArea::Polygon(vec![vec![[9000.0, 0.0], [9001.0, 0.0], [9001.0, 1.0]]]);
     for (area, word) in [
         (beside, "on the cloud"),

@@ -1,5 +1,4 @@
 //! Files of a flown town, and plans of it.
-#![expect(clippy::cast_possible_truncation, reason = "cells of a town are few")]
 
 use belvedere::apps::shadow::ShadowSun;
 use belvedere::cloud::to_local;
@@ -11,6 +10,75 @@ use belvedere_scenes::{AirborneParams, TownParams, scan_airborne, town};
 use belvedere_tiles::{Plan, PlanParams, RunParams, RunReport, Shard, Steps, TileQuestion, run};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, LazyLock, Mutex, OnceLock};
+
+/// Surveys of all tests: sides of towns, metres, and pulses per m².
+pub(crate) static SMALL: LazyLock<TownSurvey> = LazyLock::new(|| TownSurvey::new("small", 60.0, 0.5));
+pub(crate) static MIDDLE: LazyLock<TownSurvey> = LazyLock::new(|| TownSurvey::new("middle", 100.0, 1.0));
+pub(crate) static LARGE: LazyLock<TownSurvey> = LazyLock::new(|| TownSurvey::new("large", 140.0, 1.0));
+pub(crate) static WIDE: LazyLock<TownSurvey> = LazyLock::new(|| TownSurvey::new("wide", 200.0, 1.0));
+
+/// Folder of balls that the first test that needs them makes.
+type MadeOnce = Arc<OnceLock<PathBuf>>;
+
+/// A town scanned once for all tests, with its balls for each size of tiles.
+pub(crate) struct TownSurvey {
+    /// Two files that adjoin along a line from south to north. No test changes them.
+    pub(crate) clouds: Vec<PathBuf>,
+    folder: PathBuf,
+    /// Folders of balls by the size of tiles and by whether a question needs the pulses.
+    balls: Mutex<BTreeMap<(u64, bool), MadeOnce>>,
+}
+
+impl TownSurvey {
+    fn new(name: &str, extent: f64, pulses_per_m2: f64) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("city").join(name);
+        // Balls of another build may differ.
+        let _ = std::fs::remove_dir_all(&folder);
+        std::fs::create_dir_all(&folder).unwrap();
+        Self { clouds: write_town(&folder, extent, pulses_per_m2), folder, balls: Mutex::default() }
+    }
+
+    /// Copies the files into a folder in which a test may change them.
+    pub(crate) fn copied(&self, folder: &Path) -> Vec<PathBuf> {
+        let copy = |cloud: &PathBuf| {
+            let path = folder.join(cloud.file_name().unwrap());
+            std::fs::copy(cloud, &path).unwrap();
+            path
+        };
+        self.clouds.iter().map(copy).collect()
+    }
+
+    /// Runs a plan of this survey on balls that all runs with tiles of its size share, with at most `max_balls` at a time.
+    pub(crate) fn run(&self, plan: &Plan, folder: &Path, max_balls: Option<usize>) -> RunReport {
+        self.share_balls(plan, folder);
+        let report = run_with(plan, folder, max_balls);
+        assert_eq!(report.balls_made, 0);
+        report
+    }
+
+    /// Copies balls into the folder of a run. They depend on the survey, on the size of its tiles, and on whether a
+    /// question needs the pulses.
+    fn share_balls(&self, plan_of_run: &Plan, folder: &Path) {
+        let proves = plan_of_run
+            .questions
+            .iter()
+            .any(|question| matches!(question, TileQuestion::Shadow { .. } | TileQuestion::Viewshed { .. }));
+        let tile_size = plan_of_run.tile_size;
+        let shared = self.balls.lock().unwrap().entry((tile_size.to_bits(), proves)).or_default().clone();
+        let made = shared.get_or_init(|| {
+            let folder = self.folder.join(format!("{tile_size}_{proves}"));
+            let plan = plan(&self.clouds, &folder, tile_size, if proves { suns() } else { Vec::new() });
+            let params = RunParams { steps: Steps::Balls, ..run_params(None) };
+            assert!(run(&plan, &folder, &params, &Control::none()).unwrap().failed.is_empty());
+            folder.join("balls")
+        });
+        std::fs::create_dir_all(folder.join("balls")).unwrap();
+        for file in made.read_dir().unwrap().map(|entry| entry.unwrap()) {
+            std::fs::copy(file.path(), folder.join("balls").join(file.file_name())).unwrap();
+        }
+    }
+}
 
 /// Writes the scan of a town of `extent` metres as two files that adjoin along a line from south to north.
 pub(crate) fn write_town(folder: &Path, extent: f64, pulses_per_m2: f64) -> Vec<PathBuf> {
@@ -70,8 +138,12 @@ pub(crate) fn run_all(plan: &Plan, folder: &Path) -> RunReport {
 
 /// Runs a plan with at most `max_balls` balls at a time.
 pub(crate) fn run_with(plan: &Plan, folder: &Path, max_balls: Option<usize>) -> RunReport {
-    let params = RunParams { shard: Shard::default(), steps: Steps::All, max_balls, seconds: &|| 0.0 };
-    run(plan, folder, &params, &Control::none()).unwrap()
+    run(plan, folder, &run_params(max_balls), &Control::none()).unwrap()
+}
+
+/// Returns the parameters of a whole run.
+pub(crate) fn run_params(max_balls: Option<usize>) -> RunParams<'static> {
+    RunParams { shard: Shard::default(), steps: Steps::All, max_balls, seconds: &|| 0.0 }
 }
 
 /// Returns the values of all cells of 1 m of a merged raster by their place, metres, without cells of no data.

@@ -1,6 +1,6 @@
 //! Planned buildings and light through trees, tile by tile: correct, and the same as in one tile over all.
 
-use crate::common::{cells, plan, run_with, suns, write_town};
+use crate::common::{MIDDLE, cells, plan, suns};
 use belvedere::apps::ask::{Days, SkyParts, SunHoursQuestion};
 use belvedere::apps::irradiance::{ClearSky, IrradianceParams};
 use belvedere::apps::shadow::ShadowSun;
@@ -65,17 +65,11 @@ fn numbers(plan: &Plan, folder: &Path, question: &TileQuestion) -> CellMap<f32> 
 }
 
 /// Returns a changed plan after its complete run. Small tiles have so few balls at a time that each needs many parts.
-fn done(
-    clouds: &[PathBuf],
-    folder: &Path,
-    size: f64,
-    questions: &[TileQuestion],
-    change: impl FnOnce(Plan) -> Plan,
-) -> Plan {
-    change(plan(clouds, folder, size, questions.to_vec())).write(folder).unwrap();
+fn done(folder: &Path, size: f64, questions: &[TileQuestion], change: impl FnOnce(Plan) -> Plan) -> Plan {
+    change(plan(&MIDDLE.clouds, folder, size, questions.to_vec())).write(folder).unwrap();
     let plan = Plan::read(folder).unwrap();
     let max_balls = (size < 100.0).then_some(MAX_BALLS);
-    let report = run_with(&plan, folder, max_balls);
+    let report = MIDDLE.run(&plan, folder, max_balls);
     assert!(report.failed.is_empty() && report.unproven_cells == 0, "{report:?}");
     assert_eq!(report.max_balls == MAX_BALLS, max_balls.is_some(), "{report:?}");
     plan
@@ -97,14 +91,13 @@ fn site() -> Site {
 #[test]
 fn a_planned_building_blocks_exactly_whatever_the_tiles() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 100.0, 1.0);
     let mesh = block(place.path());
     let questions = [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25), interval: false }, rule()];
     let folders = ["plain", "whole", "tiles"].map(|name| place.path().join(name));
     let add = |plan: Plan| plan.with_meshes(vec![SideFile::new(&mesh).unwrap()]).unwrap();
-    let plain = done(&clouds, &folders[0], 512.0, &questions, |plan| plan);
-    let whole = done(&clouds, &folders[1], 512.0, &questions, add);
-    let tiles = done(&clouds, &folders[2], 64.0, &questions, add);
+    let plain = done(&folders[0], 512.0, &questions, |plan| plan);
+    let whole = done(&folders[1], 512.0, &questions, add);
+    let tiles = done(&folders[2], 64.0, &questions, add);
     assert!(tiles.tiles.len() >= 4 && whole.tiles.len() == 1);
     let shadows = [(&plain, 0), (&whole, 1), (&tiles, 2)].map(|(plan, i)| codes(plan, &folders[i], &questions[0]));
     assert!(shadows[1] == shadows[2], "shadows of tiles differ");
@@ -160,7 +153,6 @@ fn a_planned_building_blocks_exactly_whatever_the_tiles() {
 #[test]
 fn light_through_trees_lies_between_opaque_trees_and_none_whatever_the_tiles() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 84.0, 1.0);
     let radiation = TileRadiation::ClearSky { clear_sky: ClearSky::Haurwitz, year: 2026 };
     let params = IrradianceParams::default().with_patch_division(1).with_sun_cell(0.6);
     let site = site();
@@ -173,10 +165,10 @@ fn light_through_trees_lies_between_opaque_trees_and_none_whatever_the_tiles() {
         }
     };
     let folder = |name: &str| place.path().join(name);
-    let opaque = done(&clouds, &folder("opaque"), 512.0, &questions, |plan| plan);
-    let none = done(&clouds, &folder("none"), 512.0, &questions, through(1.0));
-    let half = done(&clouds, &folder("half"), 512.0, &questions, through(0.5));
-    let tiles = done(&clouds, &folder("tiles"), 64.0, &questions, through(0.5));
+    let opaque = done(&folder("opaque"), 512.0, &questions, |plan| plan);
+    let none = done(&folder("none"), 512.0, &questions, through(1.0));
+    let half = done(&folder("half"), 512.0, &questions, through(0.5));
+    let tiles = done(&folder("tiles"), 64.0, &questions, through(0.5));
     let shadow = codes(&opaque, &folder("opaque"), &questions[0]);
     let [without, found, of_tiles] = [(&none, "none"), (&half, "half"), (&tiles, "tiles")]
         .map(|(plan, name)| numbers(plan, &folder(name), &questions[0]));
@@ -209,7 +201,6 @@ fn light_through_trees_lies_between_opaque_trees_and_none_whatever_the_tiles() {
 #[test]
 fn light_through_measured_crowns_is_the_same_in_tiles_of_any_size() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 84.0, 1.0);
     let hours = |date: &str| {
         let days = Days { dates: vec![date.to_owned()], time_step_min: Some(60.0), ..Days::default() };
         TileQuestion::SunHours { site: site(), days: SunHoursQuestion { days, ..SunHoursQuestion::default() } }
@@ -223,9 +214,9 @@ fn light_through_measured_crowns_is_the_same_in_tiles_of_any_size() {
         plan.with_light_through_trees(crowns).unwrap()
     };
     let folder = |name: &str| place.path().join(name);
-    let opaque = done(&clouds, &folder("opaque"), 512.0, &questions, |plan| plan);
-    let whole = done(&clouds, &folder("whole"), 512.0, &questions, measured);
-    let tiles = done(&clouds, &folder("tiles"), 64.0, &questions, measured);
+    let opaque = done(&folder("opaque"), 512.0, &questions, |plan| plan);
+    let whole = done(&folder("whole"), 512.0, &questions, measured);
+    let tiles = done(&folder("tiles"), 64.0, &questions, measured);
     // The simulated survey is of 17 March: without leaves, as in January.
     assert_eq!([&whole, &tiles].map(density), [Some(crown_density(Foliage::Bare)); 2]);
     let says_leaves = |plan: &Plan, date: &str| {
@@ -286,10 +277,8 @@ fn ridge(folder: &Path, ground: f32, crs: Crs) -> PathBuf {
 #[test]
 fn mountains_beyond_a_survey_take_the_light_of_all_tiles() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 100.0, 1.0);
-    let plain = plan(&clouds, &place.path().join("plain"), 512.0, Vec::new());
+    let plain = plan(&MIDDLE.clouds, &place.path().join("plain"), 512.0, Vec::new());
     let frame = plain.frame().unwrap();
-    #[expect(clippy::cast_possible_truncation, reason = "a height")]
     let lowest = (f64::from(plain.bounds().low[2]) + frame.origin[2]) as f32;
     let terrain = ridge(place.path(), lowest, frame.crs.clone());
     let horizon = place.path().join("horizon.csv");
@@ -309,9 +298,9 @@ fn mountains_beyond_a_survey_take_the_light_of_all_tiles() {
         let [terrain, horizon] = [&terrain, &horizon].map(|path| Some(SideFile::new(path).unwrap()));
         plan.with_far_terrain(terrain, horizon).unwrap()
     };
-    let without = done(&clouds, &folders[0], 512.0, &questions, |plan| plan);
-    let whole = done(&clouds, &folders[1], 512.0, &questions, far);
-    let tiles = done(&clouds, &folders[2], 64.0, &questions, far);
+    let without = done(&folders[0], 512.0, &questions, |plan| plan);
+    let whole = done(&folders[1], 512.0, &questions, far);
+    let tiles = done(&folders[2], 64.0, &questions, far);
     // The ridge is 950 m from the north edge of the town and 1070 m from the south edge, and 870 to 900 m higher. Its
     // top appears above 39 and below 44 degrees.
     for (number, is_hidden) in [true, false, true, false].into_iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Runs with missing or damaged files: damage is named, the rest continues, and an interrupted run continues.
 
-use crate::common::{plan, run_all, suns, write_town};
+use crate::common::{MIDDLE, SMALL, WIDE, plan, run_all, run_params, suns, write_town};
 use belvedere::Error;
 use belvedere::control::{Control, Watcher};
 use belvedere::crs::Crs;
@@ -55,11 +55,11 @@ impl Watcher for CancelAfterChecks {
 #[test]
 fn a_run_that_is_stopped_again_and_again_has_the_results_of_one_that_is_not() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 100.0, 1.0);
+    let clouds = &MIDDLE.clouds;
     let (straight, stopped) = (place.path().join("straight"), place.path().join("stopped"));
-    run_all(&plan(&clouds, &straight, 64.0, suns()), &straight);
-    let plan = plan(&clouds, &stopped, 64.0, suns());
-    let params = RunParams { shard: Shard::default(), steps: Steps::All, max_balls: None, seconds: &|| 0.0 };
+    MIDDLE.run(&plan(clouds, &straight, 64.0, suns()), &straight, None);
+    let plan = plan(clouds, &stopped, 64.0, suns());
+    let params = run_params(None);
     let (mut stops, mut patience) = (0, 500);
     loop {
         let watcher = CancelAfterChecks(AtomicUsize::new(patience));
@@ -83,12 +83,12 @@ fn a_run_that_is_stopped_again_and_again_has_the_results_of_one_that_is_not() {
 #[test]
 fn shares_of_the_tiles_give_the_whole_together() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 100.0, 1.0);
+    let clouds = &MIDDLE.clouds;
     let (straight, shared) = (place.path().join("straight"), place.path().join("shared"));
-    run_all(&plan(&clouds, &straight, 64.0, suns()), &straight);
-    let plan = plan(&clouds, &shared, 64.0, suns());
+    MIDDLE.run(&plan(clouds, &straight, 64.0, suns()), &straight, None);
+    let plan = plan(clouds, &shared, 64.0, suns());
     let run_share = |number: usize, steps: Steps| {
-        let params = RunParams { shard: Shard { number, of: 3 }, steps, max_balls: None, seconds: &|| 0.0 };
+        let params = RunParams { shard: Shard { number, of: 3 }, steps, ..run_params(None) };
         let report = run(&plan, &shared, &params, &Control::none()).unwrap();
         assert!(report.failed.is_empty());
         (report.balls_made, report.answers_made)
@@ -108,14 +108,14 @@ fn shares_of_the_tiles_give_the_whole_together() {
     let mixed = [3, 1, 2].map(|number| run_share(number, Steps::All));
     assert!(mixed.iter().all(|made| made.1 > 0), "{mixed:?}");
     assert!(results(&straight) == results(&shared));
-    let params = RunParams { shard: Shard { number: 4, of: 3 }, steps: Steps::All, max_balls: None, seconds: &|| 0.0 };
+    let params = RunParams { shard: Shard { number: 4, of: 3 }, ..run_params(None) };
     assert!(run(&plan, &shared, &params, &Control::none()).is_err());
 }
 
 #[test]
 fn a_file_that_is_gone_is_named_and_what_it_may_block_is_unproven() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 300.0, 0.6);
+    let clouds = write_town(place.path(), 300.0, 0.25);
     let (straight, broken) = (place.path().join("straight"), place.path().join("broken"));
     let sun = vec![suns()[2].clone()];
     let whole = plan(&clouds, &straight, 64.0, sun.clone());
@@ -155,11 +155,9 @@ fn a_file_that_is_gone_is_named_and_what_it_may_block_is_unproven() {
 #[test]
 fn balls_and_answers_that_were_damaged_are_named_and_made_again() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 100.0, 1.0);
     let folder = place.path().join("run");
-    let low = || vec![suns()[0].clone()];
-    let plan = plan(&clouds, &folder, 64.0, low());
-    run_all(&plan, &folder);
+    let plan = plan(&MIDDLE.clouds, &folder, 64.0, vec![suns()[0].clone()]);
+    MIDDLE.run(&plan, &folder, None);
     let expected = results(&folder);
     let names = |stage: &str| -> Vec<String> {
         let of_stage =
@@ -223,7 +221,7 @@ fn balls_and_answers_that_were_damaged_are_named_and_made_again() {
 #[test]
 fn a_file_that_changed_since_the_plan_is_refused_and_one_that_was_copied_is_not() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 100.0, 1.0);
+    let clouds = SMALL.copied(place.path());
     let folder = place.path().join("run");
     let plan = plan(&clouds, &folder, 128.0, suns());
     let written = std::fs::read(&clouds[0]).unwrap();
@@ -261,9 +259,8 @@ fn a_file_that_changed_since_the_plan_is_refused_and_one_that_was_copied_is_not(
 #[test]
 fn a_plan_that_was_edited_or_leads_out_of_its_folder_is_refused() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 60.0, 0.5);
     let folder = place.path().join("run");
-    let good = plan(&clouds, &folder, 64.0, suns()[..2].to_vec());
+    let good = plan(&SMALL.clouds, &folder, 64.0, suns()[..2].to_vec());
     let path = Plan::path(&folder);
     let text = std::fs::read_to_string(&path).unwrap();
     let refused = |text: &str, word: &str| {
@@ -296,9 +293,8 @@ fn a_plan_that_was_edited_or_leads_out_of_its_folder_is_refused() {
 #[test]
 fn a_run_without_a_result_is_not_merged_and_a_raster_ends_where_points_do() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 60.0, 0.5);
     let folder = place.path().join("run");
-    let plan = plan(&clouds, &folder, 512.0, suns()[2..].to_vec());
+    let plan = plan(&SMALL.clouds, &folder, 512.0, suns()[2..].to_vec());
     let path = place.path().join("all.tif");
     let merged = |unfinished| merge(&plan, &folder, &plan.questions[0], &path, unfinished, &Control::none());
     for unfinished in [UnfinishedRun::Refused, UnfinishedRun::Merged] {
@@ -321,9 +317,8 @@ fn a_run_without_a_result_is_not_merged_and_a_raster_ends_where_points_do() {
 #[test]
 fn points_that_the_plan_counted_and_the_run_does_not_find_are_an_error() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 60.0, 0.5);
     let folder = place.path().join("run");
-    plan(&clouds, &folder, 64.0, suns()[2..].to_vec());
+    plan(&SMALL.clouds, &folder, 64.0, suns()[2..].to_vec());
     let path = Plan::path(&folder);
     let text = std::fs::read_to_string(&path).unwrap();
     let mut rest: serde_json::Value = serde_json::from_str(&text).unwrap();
@@ -339,8 +334,7 @@ fn points_that_the_plan_counted_and_the_run_does_not_find_are_an_error() {
 
 #[test]
 fn tiles_are_made_smaller_until_they_fit_into_the_memory_and_sizes_out_of_range_are_refused() {
-    let place = tempfile::tempdir().unwrap();
-    let params = PlanParams { clouds: write_town(place.path(), 200.0, 1.0), ..PlanParams::default() };
+    let params = PlanParams { clouds: WIDE.clouds.clone(), ..PlanParams::default() };
     let make = |params: &PlanParams| Plan::make(params, &Control::none());
     let whole = make(&params).unwrap();
     let memory = whole.estimate().memory_bytes - 1_000_000;
@@ -362,7 +356,7 @@ fn tiles_are_made_smaller_until_they_fit_into_the_memory_and_sizes_out_of_range_
 #[test]
 fn a_reference_system_that_is_not_known_is_named_with_its_file() {
     let place = tempfile::tempdir().unwrap();
-    let path = write_town(place.path(), 84.0, 1.0).remove(0);
+    let path = SMALL.copied(place.path()).remove(0);
     let (mut cloud, _) = read_cloud([path.as_path()], &ReadOptions::default(), &Control::none()).unwrap();
     cloud.frame.crs = Crs { epsg: Some(9650), wkt: None, vertical_epsg: None, ..cloud.frame.crs };
     write_cloud(&path, &cloud, &[]).unwrap();

@@ -1,6 +1,6 @@
 //! Tiles of any size have the balls and the answers of one tile over all.
 
-use crate::common::{cells, plan, run_all, run_with, suns, write_town};
+use crate::common::{LARGE, cells, plan, suns};
 use belvedere::apps::ask::{Days, SkyParts, SunHoursQuestion};
 use belvedere::apps::irradiance::{ClearSky, IrradianceParams, clear_instants};
 use belvedere::apps::sun::{Date, DayParams, Period, Site, SunStep, Zone, sun_days};
@@ -98,9 +98,9 @@ fn values(plan: &Plan, folder: &Path, question: &TileQuestion) -> BTreeMap<[i64;
 #[test]
 fn tiles_of_any_size_give_the_balls_and_answers_of_one_tile_over_all() {
     let place = tempfile::tempdir().unwrap();
-    let clouds = write_town(place.path(), 140.0, 1.0);
+    let clouds = &LARGE.clouds;
     let whole_folder = place.path().join("whole");
-    let whole = plan(&clouds, &whole_folder, 512.0, Vec::new());
+    let whole = plan(clouds, &whole_folder, 512.0, Vec::new());
     // One eye in a street in a corner and one above the roofs at the other end, in other tiles than most of their
     // views.
     let bounds = whole.bounds();
@@ -113,9 +113,9 @@ fn tiles_of_any_size_give_the_balls_and_answers_of_one_tile_over_all() {
     let questions = all_questions(eyes);
     let steps = suns_of_the_day();
     let of_whole = questions.iter().cloned().chain(steps.iter().map(|(question, _)| question.clone())).collect();
-    let whole = plan(&clouds, &whole_folder, 512.0, of_whole);
+    let whole = plan(clouds, &whole_folder, 512.0, of_whole);
     assert_eq!(whole.tiles.len(), 1);
-    let at_once = run_all(&whole, &whole_folder);
+    let at_once = LARGE.run(&whole, &whole_folder, None);
     assert!(at_once.failed.is_empty() && at_once.max_balls > 3 * MAX_BALLS[1], "{at_once:?}");
     let expected_balls = balls(&whole, &whole_folder);
     assert!(expected_balls.len() > 10_000, "{}", expected_balls.len());
@@ -132,10 +132,10 @@ fn tiles_of_any_size_give_the_balls_and_answers_of_one_tile_over_all() {
     // With few balls at a time, a part of a tile is tested alone; with more, some tiles are tested together.
     for (size, max_balls) in [64.0, 100.0].into_iter().zip(MAX_BALLS) {
         let folder = place.path().join(format!("tiles_{size}"));
-        let plan = plan(&clouds, &folder, size, questions.clone());
+        let plan = plan(clouds, &folder, size, questions.clone());
         // Some tiles of 64 m have no point, but cells beside points.
         assert!(plan.tiles.len() >= 4);
-        let report = run_with(&plan, &folder, Some(max_balls));
+        let report = LARGE.run(&plan, &folder, Some(max_balls));
         assert!(report.failed.is_empty() && report.unproven_cells == 0, "{report:?}");
         assert!((max_balls / 2..=max_balls).contains(&report.max_balls), "{report:?}");
         assert!(status(&plan, &folder).is_complete());

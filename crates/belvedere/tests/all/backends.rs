@@ -68,7 +68,6 @@ impl PreparedBackend for ForgetfulBalls {
 }
 
 fn town(count: u64) -> MedialBalls {
-    #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
     let random = |i: u64, k: u64| uniform(2, 8 * i + k) as f32;
     let ball = |i: u64| {
         let (x, y) = (60.0 * random(i, 0), 60.0 * random(i, 1));
@@ -176,7 +175,6 @@ fn many_targets_of_an_eye_are_answered_as_one_by_one() {
 #[test]
 fn pulses_that_are_indexed_when_needed_prove_the_same() {
     let count = 4000;
-    #[expect(clippy::cast_possible_truncation, reason = "positions are f32")]
     let random = |i: u64, k: u64| uniform(12, 4 * i + k) as f32;
     // a field with a hole that no pulse reached
     let returns: Vec<[f32; 3]> = (0..count)

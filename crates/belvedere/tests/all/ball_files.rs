@@ -1,9 +1,4 @@
 //! Ball files: what is written comes back, and what is damaged is an error.
-#![allow(
-    clippy::unwrap_used,
-    clippy::cast_possible_truncation,
-    reason = "tests stop at the first surprise; the numbers are small"
-)]
 
 use std::collections::BTreeMap;
 use std::fs;

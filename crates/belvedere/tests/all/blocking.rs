@@ -25,7 +25,6 @@ struct BlockingCase {
 fn case(number: u64) -> BlockingCase {
     let random = |k: u64| uniform(11, 16 * number + k);
     let coordinate = |k: u64| 8.0 * random(k) - 4.0;
-    #[expect(clippy::cast_possible_truncation, reason = "balls are f32")]
     let ball =
         Ball { center: [0, 1, 2].map(|k| coordinate(k) as f32), radius: (0.05 + 4.0 * random(3).powi(2)) as f32 };
     let reach = if random(4) < 0.3 { f64::INFINITY } else { 12.0 * random(5) };

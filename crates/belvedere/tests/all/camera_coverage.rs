@@ -1,5 +1,4 @@
 //! Coverage of cameras, against closed forms, single lines of sight, and the exact mesh of a town.
-#![expect(clippy::cast_possible_truncation, reason = "test places in f32")]
 
 use crate::common::simulated::cloud_of;
 use belvedere::apps::cameras::{Camera, CoverageParams, CoverageTable, Lens, Level, coverage, sees_private};

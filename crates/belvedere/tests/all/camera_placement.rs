@@ -1,5 +1,4 @@
 //! Selections of cameras against all selections, and the bounds that they are proven by.
-#![expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small random numbers")]
 
 use belvedere::apps::cameras::{CoverageTable, Goal, Placement, PlacementParams, place_cameras};
 use belvedere::control::Control;

@@ -1,6 +1,5 @@
 //! Free segments of pulses and balls cut by them, compared with every pulse tried in turn at dense samples, and with
 //! closed forms.
-#![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use belvedere::control::Control;
 use belvedere::medial::{KindCaps, LIMIT_TOUCH, MedialBalls, NO_TOUCH, PULSE_TOUCH, RadiusCaps, carve, kinds};

@@ -1,5 +1,4 @@
 //! Shadows on level ground of things whose shadow is a formula: the outline is right to a pixel at three suns.
-#![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use belvedere::control::Control;
 use belvedere::medial::{MedialBalls, ShrinkMethod, ShrinkParams, Side, shrink};

@@ -1,6 +1,5 @@
 //! Sky view factor and openness where they are formulas: street canyons, basins, tilted planes; and how well directions
 //! represent the sky.
-#![expect(clippy::cast_possible_truncation, reason = "test places within a few hundred metres in f32")]
 
 use belvedere::apps::sky_view::{SkyDirections, SkyView, sky_view};
 use belvedere::control::Control;

@@ -134,7 +134,6 @@ fn intervals_of_hours_of_sun_hold_the_truth() {
         for (row, (&target, &exact)) in local.iter().zip(&hours).enumerate() {
             let moved = outlines.moved_share(|number| matrix.is_free(row, number));
             let class = class_of(surveyed.scene.is_inside_obstacle(target.map(f64::from)), moved);
-            #[expect(clippy::cast_possible_truncation, reason = "60 at most")]
             let sum = Measure::new("hours", vec![matrix.sum(row, &[1.0; 60]) as f32]);
             let measures = expected_measures("hours", &sum, |_| 60.0, SumKind::Sun, &[class]);
             held += usize::from(measures[1].values[0] <= exact + 1e-3 && exact <= measures[2].values[0] + 1e-3);

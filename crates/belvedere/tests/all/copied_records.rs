@@ -1,5 +1,4 @@
 //! Points of LAS files are written with all that their files hold: records are copied, and results added.
-#![allow(clippy::unwrap_used, clippy::cast_possible_truncation, reason = "tests stop at the first surprise")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

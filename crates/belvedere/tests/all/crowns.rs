@@ -1,5 +1,4 @@
 //! Crowns of trees: what pulses get through them, what limits and what fills their balls.
-#![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use belvedere::control::Control;
 use belvedere::medial::{CarvedBalls, CarvedInput, CarvedParams, CrownParams, Trees, carved_balls};

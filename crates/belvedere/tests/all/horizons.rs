@@ -1,5 +1,4 @@
 //! Horizons against closed forms and against lines of sight tried one by one.
-#![expect(clippy::cast_possible_truncation, reason = "test places in f32")]
 
 use belvedere::apps::horizon::{HorizonParams, horizons};
 use belvedere::control::Control;

@@ -42,7 +42,6 @@ fn scene(centers: Vec<[f32; 3]>, radii: Vec<f32>) -> MedialScene {
     MedialScene::new(&balls, &BlockRule::default()).unwrap()
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "a unit vector")]
 fn facing(tilt_deg: f64, azimuth_deg: f64) -> [f32; 3] {
     let (tilt, azimuth) = (tilt_deg.to_radians(), azimuth_deg.to_radians());
     [tilt.sin() * azimuth.sin(), tilt.sin() * azimuth.cos(), tilt.cos()].map(|v| v as f32)
@@ -101,7 +100,6 @@ fn the_sky_of_patches_gives_a_level_plane_all_and_tilted_ones_about_what_perez_d
 
 /// Balls around and above places on the ground.
 fn surrounded() -> (MedialScene, Vec<[f32; 3]>) {
-    #[expect(clippy::cast_possible_truncation, reason = "places in a box of 60 m")]
     let at = |seed: u64, i: u64| uniform(seed, i) as f32;
     let centers = (0..60).map(|i| [60.0 * at(1, i), 60.0 * at(2, i), 3.0 + 9.0 * at(3, i)]).collect();
     let radii = (0..60).map(|i| 1.0 + 2.0 * at(4, i)).collect();

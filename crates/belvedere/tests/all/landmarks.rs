@@ -125,7 +125,6 @@ fn observers_are_answered_in_order_on_any_number_of_threads() {
 }
 
 /// Level ground of class 2 with a block of 6 m by 6 m, 10 m high, of class 6 on it; a point every 0.25 m.
-#[expect(clippy::cast_possible_truncation, reason = "test places in f32")]
 fn block() -> PointCloud {
     let mut points: Vec<([f64; 3], u8)> = Vec::new();
     let steps = |from: f64, to: f64| (0..).map(move |i| from + 0.25 * f64::from(i)).take_while(move |v| *v < to + 1e-9);

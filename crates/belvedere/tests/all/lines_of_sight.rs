@@ -1,5 +1,4 @@
 //! Lines of sight between pairs of points, against every ball tried in turn and against closed forms.
-#![expect(clippy::cast_possible_truncation, reason = "test places in f32")]
 
 use crate::common;
 use belvedere::blocking::Ball;

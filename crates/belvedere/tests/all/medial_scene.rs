@@ -17,7 +17,6 @@ fn params(profile: Profile, depth_bias: f64) -> BlockRule {
 }
 
 /// A number in 0 to 1 that belongs to `index`.
-#[expect(clippy::cast_possible_truncation, reason = "a random number")]
 fn at(seed: u64, index: u64) -> f32 {
     uniform(seed, index) as f32
 }
@@ -76,7 +75,6 @@ fn brute_force_with_shell(balls: &MedialBalls, target: [f32; 3], eye: [f64; 3], 
         let one = |radius: f64| {
             let mut one = balls.clone();
             one.centers = vec![balls.centers[i]];
-            #[expect(clippy::cast_possible_truncation, reason = "radii of balls are f32")]
             (one.radii = vec![radius as f32]);
             one
         };

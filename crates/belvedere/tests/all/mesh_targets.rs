@@ -168,7 +168,6 @@ fn unproven_and_outside_are_not_visible_and_wrong_viewers_are_refused() {
 fn points_represent_the_surface_between_them() {
     // a wall of 8 m by 8 m with a point every 0.25 m, off the grid by up to a third of that
     let shift = |seed, i| 0.16 * (belvedere::random::uniform(seed, i) - 0.5);
-    #[expect(clippy::cast_possible_truncation, reason = "test places in f32")]
     let points: Vec<[f32; 3]> = (0..1024)
         .map(|i| [0.25 * (i % 32) as f64 + shift(1, i), 0.0, 0.25 * (i / 32) as f64 + shift(2, i)].map(|v| v as f32))
         .collect();

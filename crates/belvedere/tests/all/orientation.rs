@@ -1,6 +1,5 @@
 //! Signs of normals against solids in closed form, simulated scans, and an independent orientation of a real town.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
-#![expect(clippy::cast_possible_truncation, reason = "test solids of a few metres in f32")]
 
 use belvedere::control::Control;
 use std::path::Path;

@@ -1,9 +1,4 @@
 //! Pictures: what hides what, what is light, and that threads do not matter.
-#![allow(
-    clippy::unwrap_used,
-    clippy::cast_possible_truncation,
-    reason = "tests stop at the first surprise; the numbers are small"
-)]
 
 use belvedere::control::Control;
 use std::fs;

@@ -1,6 +1,5 @@
 //! The order of the points in a file says nothing: balls and answers stay the same, bit by bit, also where neighbours
 //! are equally near.
-#![allow(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
 use crate::common::simulated::cloud_of;
 use belvedere::PointCloud;

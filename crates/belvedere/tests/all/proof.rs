@@ -1,5 +1,4 @@
 //! Proof of visibility by pulses, against every pulse tried in turn, dense samples of lines, and closed forms.
-#![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use belvedere::Error;
 use belvedere::control::Control;

@@ -6,7 +6,6 @@ use belvedere::neighbors::NeighborIndex;
 use belvedere::normals::OrientedCloud;
 use belvedere::random::uniform;
 
-#[expect(clippy::cast_possible_truncation, reason = "a random number")]
 fn at(seed: u64, index: u64) -> f32 {
     uniform(seed, index) as f32
 }

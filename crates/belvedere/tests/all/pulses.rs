@@ -260,7 +260,6 @@ fn a_cloud_with_rounded_times_has_no_pulses() {
 
 /// Simulates a line flown 1 km up at 60 m/s with a swing of a metre to the side and half a metre up and down. Pulses of
 /// two returns each, 100 a second, reach 25° to either side; every return is off by 5 mm in each coordinate.
-#[expect(clippy::cast_possible_truncation, reason = "coordinates of a few hundred metres")]
 fn sparse_line() -> (PointCloud, Vec<[f64; 3]>) {
     let mut count = 0;
     let mut next = move || {

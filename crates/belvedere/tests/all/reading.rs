@@ -591,7 +591,6 @@ fn normals_in_extra_bytes_are_read() {
 }
 
 /// A component of a normal as an i16 of ten thousandths.
-#[expect(clippy::cast_possible_truncation, reason = "a component is at most 1, the radius is not looked at")]
 fn quantised(value: f32) -> Vec<u8> {
     ((value * 10_000.0) as i16).to_le_bytes().to_vec()
 }

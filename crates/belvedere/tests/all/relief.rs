@@ -1,5 +1,4 @@
 //! Thin relief filled below its points, on a low wall along a flat roof.
-#![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use belvedere::Attributes;
 use belvedere::control::Control;

@@ -23,11 +23,9 @@ fn sheet(
     [y0, y1]: [f64; 2],
     height: impl Fn(f64, f64) -> f64,
 ) -> Vec<[f32; 3]> {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some thousand points near the origin")]
     let count = ((x1 - x0) * (y1 - y0) * density) as u64;
     let point = |i: u64| {
         let (x, y) = (x0 + (x1 - x0) * uniform(seed, 3 * i), y0 + (y1 - y0) * uniform(seed, 3 * i + 1));
-        #[expect(clippy::cast_possible_truncation, reason = "local metres")]
         [x, y, height(x, y) + NOISE * (2.0 * uniform(seed, 3 * i + 2) - 1.0)].map(|v| v as f32)
     };
     (0..count).map(point).collect()
@@ -88,7 +86,6 @@ fn area_is_that_of_a_turned_rectangle() {
     // edges that run across the cells
     for turn in [0.0, 17.0, 45.0_f64] {
         let (sin, cos) = turn.to_radians().sin_cos();
-        #[expect(clippy::cast_possible_truncation, reason = "local metres")]
         let turned: Vec<[f32; 3]> = sheet(3, 200.0, [0.0, 14.0], [0.0, 9.0], |_, _| 5.0)
             .iter()
             .map(|p| {
@@ -151,7 +148,6 @@ fn cells_cover_the_area_of_a_plain_roof() {
 
 #[test]
 fn crowns_and_walls_are_no_roofs() {
-    #[expect(clippy::cast_possible_truncation, reason = "local metres")]
     let crown: Vec<[f32; 3]> =
         (0..3000).map(|i| [0, 1, 2].map(|axis| (6.0 * uniform(9, 3 * i + axis)) as f32)).collect();
     let planes = roof_planes(&crown, &RoofPlaneParams::default(), &Control::none()).unwrap();

@@ -22,7 +22,6 @@ fn scanned(spacing: f64) -> PointCloud {
     for axis in 0..3 {
         let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
         for side in [0.0, ROOM[axis]] {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some hundred steps")]
             let [columns, rows] = [u, v].map(|axis| (ROOM[axis] / spacing) as u64);
             for i in 0..columns * rows {
                 let at = |k: u64| uniform(positions.len() as u64, k);
@@ -30,7 +29,6 @@ fn scanned(spacing: f64) -> PointCloud {
                 p[u] = ((i % columns) as f64 + at(0)) * spacing;
                 p[v] = ((i / columns) as f64 + at(1)) * spacing;
                 p[axis] = side + NOISE * (2.0 * at(2) - 1.0);
-                #[expect(clippy::cast_possible_truncation, reason = "a room in f32")]
                 positions.push(p.map(|v| v as f32));
             }
         }
@@ -55,7 +53,6 @@ fn scanned_by_tripods(noise: f64) -> PointCloud {
             };
             let error = noise * (2.0 * uniform(positions.len() as u64, 0) - 1.0);
             let range = (0..3).map(to_face).fold(f64::INFINITY, f64::min) + error;
-            #[expect(clippy::cast_possible_truncation, reason = "a room in f32")]
             positions.push(std::array::from_fn(|axis| (eye[axis] + range * ahead[axis]) as f32));
             scanner_index.push(number);
         }

@@ -16,7 +16,6 @@ use belvedere::random::uniform;
 use belvedere::{Error, PointCloud};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-#[expect(clippy::cast_possible_truncation, reason = "random numbers")]
 fn at(i: u64) -> f32 {
     uniform(11, i) as f32
 }

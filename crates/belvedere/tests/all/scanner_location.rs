@@ -1,10 +1,5 @@
 //! Scanner positions from each source that a cloud has: simulated flights with a known path, with one source after the
 //! other removed, and real clouds.
-#![allow(
-    clippy::unwrap_used,
-    clippy::cast_possible_truncation,
-    reason = "a test that cannot go on fails; the numbers are small"
-)]
 
 use crate::common::simulated::cloud_of;
 use belvedere::control::Control;

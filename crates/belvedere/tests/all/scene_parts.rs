@@ -77,7 +77,6 @@ fn check(cloud: &PointCloud) {
     let text = serde_json::to_string(&statistics).unwrap();
     let statistics: SurveyStatistics = serde_json::from_str(&text).unwrap();
     let params = ModelParams::default();
-    #[expect(clippy::cast_possible_truncation, reason = "tens of metres")]
     let buffer = statistics.buffer(&params) as f32;
     // ground that is found without classes reaches 112 m further
     assert!((40.0..200.0).contains(&buffer), "{buffer}");
@@ -123,7 +122,6 @@ fn a_part_of_a_survey_without_classes_and_pulses_has_the_balls_of_the_whole() {
 }
 
 #[test]
-#[expect(clippy::cast_possible_truncation, reason = "hundreds of metres in millimetres")]
 fn a_whole_that_is_built_as_its_own_part_is_nearly_what_it_is_without_statistics() {
     let cloud = survey(130.0);
     let with = ModelParams::default().with_statistics(Some(Arc::new(statistics(&cloud))));

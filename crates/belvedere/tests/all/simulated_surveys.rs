@@ -1,10 +1,5 @@
 //! Consistency of simulated surveys: returns with the exact mesh along their rays, angles and times with the written
 //! trajectory, written meshes with the scene.
-#![allow(
-    clippy::unwrap_used,
-    clippy::cast_possible_truncation,
-    reason = "tests stop at the first surprise; the numbers are small"
-)]
 
 use crate::common::simulated::cloud_of;
 use belvedere::control::Control;

@@ -1,5 +1,4 @@
 //! Fences, wires and what else pulses pass closely on both sides.
-#![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use belvedere::control::Control;
 use belvedere::medial::{CarvedBalls, CarvedInput, CarvedParams, SlenderParams, carved_balls};

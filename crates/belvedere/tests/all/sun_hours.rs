@@ -60,9 +60,7 @@ fn hours_at(
 /// equinox.
 fn ball_before_the_noon_sun(site: &Site, days: &[belvedere::apps::sun::SunDay]) -> MedialScene {
     let sun = sun_position_with(site, days[0].noon, Refraction::Without).unwrap().to_sun(site);
-    #[expect(clippy::cast_possible_truncation, reason = "a place of a test")]
     let center = sun.map(|v| (100.0 * v) as f32);
-    #[expect(clippy::cast_possible_truncation, reason = "a radius of a test")]
     let radius = (100.0 * 15f64.to_radians().sin()) as f32;
     scene(&[center], &[radius])
 }
@@ -126,7 +124,6 @@ fn walls_see_half_of_the_equinox_and_nothing_from_behind() {
 fn a_year_of_shared_suns_is_a_year_of_suns() {
     // a small town of balls: exact suns against shared ones, and both against every ball tried in turn
     let site = site(52.0);
-    #[expect(clippy::cast_possible_truncation, reason = "random numbers")]
     let at = |i: u64| uniform(5, i) as f32;
     let centers: Vec<[f32; 3]> =
         (0..60).map(|i| [120.0 * at(3 * i) - 60.0, 120.0 * at(3 * i + 1) - 60.0, 12.0 * at(3 * i + 2)]).collect();

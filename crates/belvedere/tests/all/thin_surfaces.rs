@@ -1,6 +1,5 @@
 //! Thin surfaces, distinguished from solid ones by pulses below them, on a canopy on posts and a block of the same
 //! size.
-#![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use belvedere::control::Control;
 use belvedere::medial::{CarvedInput, ThinSurfaceParams, on_thin_surfaces};

@@ -1,5 +1,4 @@
 //! The surface at the middle of cells, on roofs whose heights are formulas.
-#![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use belvedere::control::Control;
 use belvedere::ground::{Ground, MapGrid, SurfaceParams, highest_points, top_surface};

@@ -1,5 +1,4 @@
 //! Visible metres of towers: against closed forms, and against exact rays to many heights of each tower.
-#![expect(clippy::cast_possible_truncation, reason = "test places in f32")]
 
 use crate::far_viewsheds::{around, open_scene};
 use crate::mountains::{grid, mountains};

@@ -1,5 +1,4 @@
 //! Light through a hedge and through a crown, whose shares are formulas.
-#![expect(clippy::cast_possible_truncation, reason = "test places within a hundred metres in f32")]
 
 use crate::common::light_share;
 use belvedere::apps::ask::remark_on_leaves;

@@ -1,5 +1,4 @@
 //! Viewsheds against closed forms, against answers one by one, and against the exact mesh of a town.
-#![expect(clippy::cast_possible_truncation, reason = "test places in f32")]
 
 use belvedere::apps::viewshed::{
     GROUND_TOLERANCE, Masks, Observer, SightLimits, ViewshedParams, cell_targets, min_visible_heights, viewshed,

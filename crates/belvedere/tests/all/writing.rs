@@ -1,9 +1,4 @@
 //! Written files can be read back, by the crates of the formats themselves, and never appear half done.
-#![allow(
-    clippy::unwrap_used,
-    clippy::cast_possible_truncation,
-    reason = "tests stop at the first surprise; the numbers are small"
-)]
 
 use std::fs;
 use std::io::{BufReader, Write};

@@ -24,8 +24,6 @@ use belvedere::apps::calibration::Calibration;
 use belvedere_baselines::simulated;
 use belvedere_scenes::Regime;
 use cases::{Case, SETS, TownSurvey};
-use sums::SumCase;
-use ways::WayCase;
 
 type AnyResult<T> = Result<T, Box<dyn std::error::Error>>;
 
@@ -44,20 +42,15 @@ fn main() -> AnyResult<()> {
             Ok(std::fs::write(file, fit::with_ground_scores(&scores, &all_cases(&fit::ground_surveys())?))?)
         }
         ["fit-sums", file] => {
-            let cases = all_sums(&fit::flown_surveys())?;
+            let cases = all(&fit::flown_surveys(), sums::cases)?;
             Ok(std::fs::write(file, sums::errors(&cases))?)
         }
         ["judge-sums", presets, seeds, densities, regimes] => {
-            sums::judge(&all_sums(&surveys(presets, seeds, densities, regimes)?)?);
+            sums::judge(&all(&surveys(presets, seeds, densities, regimes)?, sums::cases)?);
             Ok(())
         }
         ["judge-ways", presets, seeds, densities, regimes] => {
-            let mut cases: Vec<WayCase> = Vec::new();
-            for survey in surveys(presets, seeds, densities, regimes)? {
-                eprintln!("{survey:?}");
-                cases.extend(ways::cases(&survey)?);
-            }
-            ways::judge(&cases);
+            ways::judge(&all(&surveys(presets, seeds, densities, regimes)?, ways::cases)?);
             Ok(())
         }
         ["judge", presets, seeds, densities, regimes] => judge(presets, seeds, densities, regimes),
@@ -68,22 +61,18 @@ fn main() -> AnyResult<()> {
     }
 }
 
-fn all_cases(surveys: &[TownSurvey]) -> AnyResult<Vec<Case>> {
-    let mut cases = Vec::new();
+/// The cases of all surveys, one after the other.
+fn all<T>(surveys: &[TownSurvey], cases: impl Fn(&TownSurvey) -> AnyResult<Vec<T>>) -> AnyResult<Vec<T>> {
+    let mut found = Vec::new();
     for survey in surveys {
         eprintln!("{survey:?}");
-        cases.extend(survey.cases()?);
+        found.extend(cases(survey)?);
     }
-    Ok(cases)
+    Ok(found)
 }
 
-fn all_sums(surveys: &[TownSurvey]) -> AnyResult<Vec<SumCase>> {
-    let mut cases = Vec::new();
-    for survey in surveys {
-        eprintln!("{survey:?}");
-        cases.extend(sums::cases(survey)?);
-    }
-    Ok(cases)
+fn all_cases(surveys: &[TownSurvey]) -> AnyResult<Vec<Case>> {
+    all(surveys, |survey| Ok(survey.cases()?))
 }
 
 /// Every kind of town with every seed, density and scanner.
