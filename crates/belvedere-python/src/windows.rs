@@ -30,13 +30,8 @@ pub(crate) fn given(rows: &[WindowRow], frame: &Frame) -> Vec<GivenWindow> {
 }
 
 /// Columns, places, names, columns of buildings with their names, and remarks.
-type WindowsReply<'py> = (
-    Vec<PyColumn<'py>>,
-    Bound<'py, PyArray2<f64>>,
-    Vec<String>,
-    (Vec<String>, NamedColumns<'py>),
-    Remarks<'py>,
-);
+type WindowsReply<'py> =
+    (Vec<PyColumn<'py>>, Bound<'py, PyArray2<f64>>, Vec<String>, (Vec<String>, NamedColumns<'py>), Remarks<'py>);
 
 #[pymethods]
 impl PyScene {

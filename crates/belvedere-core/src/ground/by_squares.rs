@@ -287,7 +287,7 @@ mod tests {
         cloud
     }
 
-    fn bits(raster: &belvedere_data::raster::Raster<f32>) -> Vec<u32> {
+    fn bits(raster: &Raster<f32>) -> Vec<u32> {
         raster.values().iter().map(|value| value.to_bits()).collect()
     }
 
