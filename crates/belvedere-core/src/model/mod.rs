@@ -137,13 +137,12 @@ impl SceneModel {
         if !(found == 0 || found == expected) {
             return Err(Error::LengthMismatch { what: "balls that are vegetation or not", expected, found });
         }
-        let tree = derived.tree.map(|tree| BallTree::from_parts(tree, model.balls(), &model.rule()));
-        (model.vegetation, model.normals, model.tree) = (derived.vegetation, derived.normals, tree.transpose()?);
-        if let Some(parts) = derived.proof
-            && let Some(proof) = model.new_proof()?
-        {
-            model.proof = OnceLock::from(proof.with_parts(parts));
-        }
+        let (tree, proof) = rayon::join(
+            || derived.tree.map(|tree| BallTree::from_parts(tree, model.balls(), &model.rule())).transpose(),
+            || derived.proof.map(|parts| Ok(model.new_proof()?.map(|proof| proof.with_parts(parts)))).transpose(),
+        );
+        model.proof = proof?.flatten().map(OnceLock::from).unwrap_or_default();
+        (model.vegetation, model.normals, model.tree) = (derived.vegetation, derived.normals, tree?);
         Ok(model)
     }
 
