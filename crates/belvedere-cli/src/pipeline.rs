@@ -173,7 +173,9 @@ fn present_scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandCo
     {
         return Ok(LoadedScene::without_points(model, profile));
     }
-    let (mut cloud, left_out, notes) = match kept_points(&arguments.input, run) {
+    let kept = kept_points(&arguments.input, run);
+    let is_read = kept.is_none();
+    let (mut cloud, left_out, notes) = match kept {
         Some((cloud, notes)) => (cloud, ReadReport::default(), notes),
         None => {
             let (read, notes) = run.aside(|run| read_counted(&arguments.input, run));
@@ -189,13 +191,13 @@ fn present_scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandCo
         KeepPoints::LetGo => Cow::Owned(std::mem::replace(&mut cloud, PointCloud::in_frame(frame))),
     };
     let built = built_of(given, &params, &arguments.input, run)?;
-    if let (Some(cache), Some(contents)) = (&run.cache, &built.cloud) {
-        let before = ReadBefore { frame: cloud.frame.clone(), cloud: contents.clone(), notes };
+    if let (Some(cache), Some(contents), true) = (&run.cache, &built.cloud, is_read) {
+        let before = ReadBefore::new(contents.clone(), cloud.frame.clone(), notes);
+        let (files, options) = (&arguments.input.clouds, arguments.input.read_options());
+        let is_whole = points == KeepPoints::Keep && left_out.left_out_count() == 0;
         // what fails here has failed for the scene as well, which says it
-        let _ = cache.keep_reading(&arguments.input.clouds, &arguments.input.read_options(), &before);
-        if points == KeepPoints::Keep && left_out.left_out_count() == 0 {
-            let _ = run.stage("keeping points", 0, |_| cache.keep_points(contents, &cloud));
-        }
+        let _ = run
+            .stage("keeping points", 0, |_| cache.keep_reading(files, &options, &before, is_whole.then_some(&cloud)));
     }
     let kept = run.cache.as_ref().zip(built.cloud.as_ref()).map(|(cache, contents)| cache.ground_of(contents));
     // the ground that is kept is that of lines fitted to each other

@@ -23,7 +23,7 @@
 //! }
 //! ```
 //!
-//! All questions are structs of `apps::ask`, asked in this way. Answers have values, warnings (`remarks`) and a few
+//! All questions are structs of `apps::ask`, used in this way. Answers have values, warnings (`remarks`) and a few
 //! sentences (`headline`).
 //!
 //! # Where to look

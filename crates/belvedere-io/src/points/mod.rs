@@ -1,4 +1,4 @@
-//! Parts that readers and writers of clouds share: options, reports, columns, rows of points, and one cloud of many files.
+//! Parts that readers and writers of clouds share: options, reports, columns, rows of points, clouds of many files.
 
 pub(crate) mod assemble;
 pub(crate) mod columns;

@@ -251,8 +251,8 @@ class Cameras:
             "weights": [] if weights is None else _weights(weights, targets).tolist(),
             "density": density,
         }
-        asked = question, earth(curvature, refraction), choice, wanted_targets
-        columns, whole, counts, grid, found = self._core.cameras(*asked, reporter(progress))
+        arguments = question, earth(curvature, refraction), choice, wanted_targets
+        columns, whole, counts, grid, found = self._core.cameras(*arguments, reporter(progress))
         remarks = warned(found)
         of_targets: Raster | Table
         small = np.where(counts == np.uint32(2**32 - 1), 65535, np.minimum(counts, 65534)).astype(np.uint16)
@@ -366,8 +366,8 @@ class Cameras:
             ground=ground_of(ground),
         )
         cells = wanted(None, None, cells_of(cell, target_height, False, ground))
-        asked = question, given_places, observers, targets, cells
-        columns, remarks = self._core.survey_plan(*asked, reporter(progress))
+        arguments = question, given_places, observers, targets, cells
+        columns, remarks = self._core.survey_plan(*arguments, reporter(progress))
         places = columns.pop("place")
         table = Table(columns, places=places, crs=self._core.crs.text)
         table.remarks = warned(remarks)

@@ -149,8 +149,8 @@ class Energy:
             **switch(interval=interval),
         )
         cells = cells_of(cell, target_height, surface, ground)
-        asked = radiation, summation
-        return measured(self._core, self._core.irradiance, asked, targets, cells, progress, normals)
+        arguments = radiation, summation
+        return measured(self._core, self._core.irradiance, arguments, targets, cells, progress, normals)
 
     def roof_planes(
         self,

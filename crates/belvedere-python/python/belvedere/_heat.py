@@ -158,6 +158,6 @@ class Heat:
             wind_factor=wind_factor,
             **switch(by_hour=by_hour, pet=pet),
         )
-        asked = {"heat": question}, native_weather(weather, location_pair(location))
+        arguments = {"heat": question}, native_weather(weather, location_pair(location))
         cells = cells_of(cell, target_height, surface, ground)
-        return measured(self._core, self._core.on_targets, asked, targets, cells, progress)
+        return measured(self._core, self._core.on_targets, arguments, targets, cells, progress)

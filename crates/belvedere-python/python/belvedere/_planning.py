@@ -341,8 +341,8 @@ class Planning:
             raise wrong("spacing and objects", "given", "they apply only to a mesh; leave them out")
         else:
             rows = _windows(windows)
-        asked = question, rows, mesh, as_list(objects)
-        columns, places, names, buildings, said = self._core.window_views(*asked, reporter(progress))
+        arguments = question, rows, mesh, as_list(objects)
+        columns, places, names, buildings, said = self._core.window_views(*arguments, reporter(progress))
         remarks = warned(said)
         found = {"object": np.array(names, object)} if names else {}
         found |= {name: values for name, _, values in columns}
@@ -537,8 +537,8 @@ class Planning:
             **switch(credit_shade=credit_shade),
         )
         protected = [_line(line, "protect", crs) for line in lines]
-        asked = question, rings_of(parcel, "parcel", crs), protected, ground_of(ground)
-        (name, text, values), grid, found = self._core.envelope(*asked, reporter(progress))
+        arguments = question, rings_of(parcel, "parcel", crs), protected, ground_of(ground)
+        (name, text, values), grid, found = self._core.envelope(*arguments, reporter(progress))
         height = raster(values, grid, self._core.crs, name=name, description=text, nodata=float("nan"), unit="m")
         height.remarks = warned(found)
         return height

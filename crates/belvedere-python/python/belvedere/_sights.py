@@ -324,8 +324,8 @@ class Sights:
         progress: Progress,
     ) -> tuple[dict[str, Any], npt.NDArray[np.float64], list[dict[str, Any]]]:
         """Columns of lines of sight, where they end, and remarks."""
-        asked = question, observers, targets, max_distance
-        columns, standing, found = self._core.lines_of_sight(*asked, reporter(progress))
+        arguments = question, observers, targets, max_distance
+        columns, standing, found = self._core.lines_of_sight(*arguments, reporter(progress))
         if "block_surface" in columns:
             columns["block_surface"] = np.asarray(columns["block_surface"])
         return columns, standing, found

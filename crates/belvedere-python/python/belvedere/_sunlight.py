@@ -382,8 +382,8 @@ class Sunlight:
             **switch(interval=interval),
         )
         cells = cells_of(cell, target_height, surface, ground)
-        asked = {"sun-hours": question}, None
-        return measured(self._core, self._core.on_targets, asked, targets, cells, progress, normals)
+        arguments = {"sun-hours": question}, None
+        return measured(self._core, self._core.on_targets, arguments, targets, cells, progress, normals)
 
     def hourly_sun(
         self,
@@ -516,8 +516,8 @@ class Sunlight:
         """
         question = given(sky=sky_parts(directions, patches), trees=trees_of(through_trees), **switch(interval=interval))
         cells = cells_of(cell, target_height, surface, ground)
-        asked = {"sky-view": question}, None
-        return measured(self._core, self._core.on_targets, asked, targets, cells, progress, normals)
+        arguments = {"sky-view": question}, None
+        return measured(self._core, self._core.on_targets, arguments, targets, cells, progress, normals)
 
     def sun_position(self, time: Time | Iterable[Time], *, location: Location | None = None) -> npt.NDArray[np.float64]:
         """Azimuth, clockwise from true north, and elevation of the sun above the scene, degrees.

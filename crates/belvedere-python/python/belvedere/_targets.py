@@ -134,7 +134,7 @@ def measured(
     progress: Progress,
     normals: Numbers | None = None,
 ) -> Rasters | Table:
-    """Measures of targets: the native part is asked the question with them."""
+    """Measures of targets: the native part is arguments the question with them."""
     targets = in_system(targets, "targets", core.crs.text)
     results = ask(*question, wanted(targets, normals, cells, may_lack_heights=True), reporter(progress))
     return measures(results, core.crs, targets)

@@ -122,9 +122,9 @@ class Towers:
             ground=ground_of(ground),
             far=bool(far),
         )
-        asked = question, _rows(towers), None if wirelines is None else fspath(wirelines)
+        arguments = question, _rows(towers), None if wirelines is None else fspath(wirelines)
         cells = cells_of(cell, None, surface, ground)
-        return measured(self._core, self._core.towers, asked, targets, cells, progress)
+        return measured(self._core, self._core.towers, arguments, targets, cells, progress)
 
 
 def _rows(towers: Columns) -> list[dict[str, Any]]:

@@ -49,7 +49,7 @@ impl TownSurvey {
         self.clouds.iter().map(copy).collect()
     }
 
-    /// Runs a plan of this survey on balls that all runs with tiles of its size share, with at most `max_balls` at a time.
+    /// Runs a plan of this survey on balls that all runs with tiles of its size share, `max_balls` at a time at most.
     pub(crate) fn run(&self, plan: &Plan, folder: &Path, max_balls: Option<usize>) -> RunReport {
         self.share_balls(plan, folder);
         let report = run_with(plan, folder, max_balls);

@@ -54,6 +54,16 @@ pub struct ReadBefore {
     pub cloud: CloudKey,
     /// Report of reading, as given to [`SceneCache::keep_reading`].
     pub notes: Map<String, Value>,
+    /// Name of its entries.
+    key: String,
+}
+
+impl ReadBefore {
+    /// The result of reading files: contents and frame of a cloud, and a report.
+    #[must_use]
+    pub fn new(cloud: CloudKey, frame: Frame, notes: Map<String, Value>) -> Self {
+        Self { frame, cloud, notes, key: String::new() }
+    }
 }
 
 /// A scene of a cache.
@@ -152,31 +162,46 @@ impl SceneCache {
     /// Returns the earlier result of reading these files. `None` if it is not known, they changed, or lie on a server.
     #[must_use]
     pub fn read_before(&self, paths: &[PathBuf], options: &ReadOptions) -> Option<ReadBefore> {
-        let path = self.entry(&of_files(paths, options)?, READING)?;
+        let key = of_files(paths, options)?;
+        let path = self.entry(&key, READING)?;
         let mut parts = read_balls(&path).ok()?;
         let notes = serde_json::from_str(&parts.provenance.remove(NOTES)?).ok()?;
         mark_as_used(&path);
-        Some(ReadBefore { frame: parts.frame, cloud: CloudKey(parts.provenance.remove(CLOUD)?), notes })
+        Some(ReadBefore { frame: parts.frame, cloud: CloudKey(parts.provenance.remove(CLOUD)?), notes, key })
     }
 
-    /// Keeps what reading these files gave.
+    /// Keeps what reading these files gave, with the points if they are given. Those with sky regions, which scans have,
+    /// are not kept.
     ///
     /// # Errors
     /// [`Error::Io`] where it cannot be written.
-    pub fn keep_reading(&self, paths: &[PathBuf], options: &ReadOptions, found: &ReadBefore) -> Result<()> {
-        let Some(name) = of_files(paths, options).filter(|name| self.entry(name, READING).is_none()) else {
-            return Ok(());
-        };
-        let path = self.place(&name, READING)?;
-        let parts = ModelParts { frame: found.frame.clone(), ..ModelParts::default() };
-        let notes = Value::Object(found.notes.clone()).to_string();
-        write_balls(path, &parts.with_provenance(CLOUD, &found.cloud.0).with_provenance(NOTES, notes))
+    pub fn keep_reading(
+        &self,
+        paths: &[PathBuf],
+        options: &ReadOptions,
+        found: &ReadBefore,
+        points: Option<&PointCloud>,
+    ) -> Result<()> {
+        let Some(name) = of_files(paths, options) else { return Ok(()) };
+        if self.entry(&name, READING).is_none() {
+            let path = self.place(&name, READING)?;
+            let parts = ModelParts { frame: found.frame.clone(), ..ModelParts::default() };
+            let notes = Value::Object(found.notes.clone()).to_string();
+            write_balls(path, &parts.with_provenance(CLOUD, &found.cloud.0).with_provenance(NOTES, notes))?;
+        }
+        let points = points.filter(|points| points.sky_regions.is_empty());
+        if let Some(points) = points.filter(|_| self.entry(&name, POINTS).is_none()) {
+            let path = self.place(&name, POINTS)?;
+            write_kept_cloud(&path, points)?;
+            self.make_room(&path);
+        }
+        Ok(())
     }
 
     /// Returns the points that reading files gave before, if they were kept. A file of them that is damaged is removed.
     #[must_use]
     pub fn points(&self, before: &ReadBefore) -> Option<PointCloud> {
-        let path = self.entry(&before.cloud.of_points(), POINTS)?;
+        let path = self.entry(&before.key, POINTS)?;
         mark_as_used(&path);
         match read_kept_cloud(&path, before.frame.clone()) {
             Ok(cloud) => Some(cloud),
@@ -185,21 +210,6 @@ impl SceneCache {
                 None
             }
         }
-    }
-
-    /// Keeps the points that reading files gave. Those with sky regions, which scans have, are not kept.
-    ///
-    /// # Errors
-    /// [`Error::Io`] where they cannot be written.
-    pub fn keep_points(&self, key: &CloudKey, cloud: &PointCloud) -> Result<()> {
-        let name = key.of_points();
-        if !cloud.sky_regions.is_empty() || self.entry(&name, POINTS).is_some() {
-            return Ok(());
-        }
-        let path = self.place(&name, POINTS)?;
-        write_kept_cloud(&path, cloud)?;
-        self.make_room(&path);
-        Ok(())
     }
 
     /// The folder in which tiles of a survey of these files are kept, with all that belongs to them; its `plan.json`

@@ -74,13 +74,6 @@ impl CloudKey {
         key.finish()
     }
 
-    /// The name of the points of a cloud.
-    pub(super) fn of_points(&self) -> String {
-        let mut key = Key::new("points");
-        key.text(&self.0);
-        key.finish()
-    }
-
     /// The name of the index of the ground of a cloud.
     pub(super) fn of_ground_index(&self, params: &GroundParams) -> String {
         let mut key = Key::new("ground index");

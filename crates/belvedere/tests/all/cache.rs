@@ -161,8 +161,8 @@ fn what_reading_gave_is_known_until_a_file_changes() {
     let (paths, options, cloud) = ([file.clone()], ReadOptions::default(), cloud(8));
     assert!(cache.read_before(&paths, &options).is_none());
     let notes = serde_json::from_str(r#"{"points": 1, "reading": {"a": [0.1, "b"]}}"#).unwrap();
-    let found = ReadBefore { frame: cloud.frame.clone(), cloud: CloudKey::of(&cloud), notes };
-    cache.keep_reading(&paths, &options, &found).unwrap();
+    let found = ReadBefore::new(CloudKey::of(&cloud), cloud.frame.clone(), notes);
+    cache.keep_reading(&paths, &options, &found, None).unwrap();
     let before = cache.read_before(&paths, &options).unwrap();
     assert_eq!((before.frame, before.cloud, before.notes), (found.frame, found.cloud, found.notes));
     fs::write(&file, "1 2 4\n").unwrap();
@@ -172,7 +172,7 @@ fn what_reading_gave_is_known_until_a_file_changes() {
 #[test]
 fn points_that_are_found_are_those_that_were_read() {
     let folder = tempfile::tempdir().unwrap();
-    let (cache, mut cloud) = (SceneCache::new(folder.path()), cloud(9));
+    let (cache, mut cloud) = (SceneCache::new(folder.path().join("kept")), cloud(9));
     cloud.attributes.color = Some((0..cloud.len()).map(|row| [1, 2, u16::try_from(row % 900).unwrap()]).collect());
     cloud.attributes.gps_time_kind = GpsTimeKind::AdjustedStandard;
     cloud.scanner_positions.push([0.1, -2.5, 1e3]);
@@ -182,13 +182,17 @@ fn points_that_are_found_are_those_that_were_read() {
     let rows = FileRows::Of((0..row_count).step_by(3).collect());
     cloud.files = CloudFiles { files: vec![file], rows };
     let contents = CloudKey::of(&cloud);
-    let before = ReadBefore { frame: cloud.frame.clone(), cloud: contents.clone(), notes: serde_json::Map::new() };
-    assert!(cache.points(&before).is_none());
-    cache.keep_points(&contents, &cloud).unwrap();
+    let read = folder.path().join("tile.xyz");
+    fs::write(&read, "1 2 3\n").unwrap();
+    let (paths, options) = ([read], ReadOptions::default());
+    let given = ReadBefore::new(contents.clone(), cloud.frame.clone(), serde_json::Map::new());
+    assert!(cache.points(&given).is_none());
+    cache.keep_reading(&paths, &options, &given, Some(&cloud)).unwrap();
+    let before = cache.read_before(&paths, &options).unwrap();
     let found = cache.points(&before).unwrap();
     assert!(CloudKey::of(&found) == contents && found.files == cloud.files);
     // a file that is damaged is none, and goes
-    let path = fs::read_dir(folder.path()).unwrap().map(|row| row.unwrap().path());
+    let path = fs::read_dir(cache.folder()).unwrap().map(|row| row.unwrap().path());
     let path = path.filter(|path| path.to_string_lossy().ends_with("points.npz")).last().unwrap();
     let mut bytes = fs::read(&path).unwrap();
     let middle = bytes.len() / 2;

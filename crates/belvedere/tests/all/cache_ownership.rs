@@ -123,8 +123,8 @@ fn add_tiles(survey: &Path) {
 fn keep(cache: &SceneCache, file: &Path) -> bool {
     let cloud = PointCloud { positions: vec![[1.0, 2.0, 3.0]], ..PointCloud::default() };
     let notes = serde_json::Map::new();
-    let found = ReadBefore { frame: cloud.frame.clone(), cloud: CloudKey::of(&cloud), notes };
-    cache.keep_reading(&[file.to_owned()], &ReadOptions::default(), &found).is_ok()
+    let found = ReadBefore::new(CloudKey::of(&cloud), cloud.frame.clone(), notes);
+    cache.keep_reading(&[file.to_owned()], &ReadOptions::default(), &found, None).is_ok()
 }
 
 #[test]

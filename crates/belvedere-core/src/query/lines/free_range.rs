@@ -40,9 +40,9 @@ impl MedialScene {
     ///
     /// In contrast to [`MedialScene::seen_along`] the place is a target. Balls near it give way by
     /// [`BlockRule::shell`](crate::query::BlockRule::shell), so that the surface of the place does not hide its
-    /// neighbourhood. An obstacle is found in exactly the directions that the visibility matrix has as blocked by balls and meshes. Of
-    /// all balls that block, it is the one that the line enters first. The range is 0 in a ball that holds the place
-    /// even with the shell.
+    /// neighbourhood. An obstacle is found in exactly the directions that the visibility matrix has as blocked by balls
+    /// and meshes. Of all balls that block, it is the one that the line enters first. The range is 0 in a ball that
+    /// holds the place even with the shell.
     #[must_use]
     pub fn seen_from_surface(&self, place: [f64; 3], direction: [f64; 3]) -> Option<(Blocker, f64)> {
         self.surface_before(place, direction).map(|seen| (seen.blocker, seen.range))
