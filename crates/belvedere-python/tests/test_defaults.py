@@ -51,9 +51,10 @@ def test_documented_defaults_are_those_of_the_command_line(program):
 ASK = Path(__file__).parents[2] / "belvedere-apps" / "src" / "ask"
 #: The command of the questions in a file, where it does not have the name of the file.
 COMMANDS = {
-    "places": "sky-view",
+    "cells": "sky-view",
     "sun": "sun-hours",
     "viewshed/limits": "viewshed",
+    "viewshed/question": "viewshed",
     "cameras/mod": "cameras",
     "cameras/lens": "cameras",
 }

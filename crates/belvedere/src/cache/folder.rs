@@ -170,8 +170,8 @@ impl SceneCache {
         Some(ReadBefore { frame: parts.frame, cloud: CloudKey(parts.provenance.remove(CLOUD)?), notes, key })
     }
 
-    /// Keeps what reading these files gave, with the points if they are given. Those with sky regions, which scans have,
-    /// are not kept.
+    /// Keeps what reading these files gave, with the points if they are given. Points of scans
+    /// that know open sky are not kept.
     ///
     /// # Errors
     /// [`Error::Io`] where it cannot be written.
