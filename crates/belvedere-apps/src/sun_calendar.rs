@@ -84,7 +84,7 @@ impl CalendarDay {
         self.0.iter().filter(|stretch| counts(stretch.obstacle)).map(|stretch| f64::from(stretch.hours())).sum()
     }
 
-    /// Hours of sun.
+    /// Hours of sun of all its stretches.
     #[must_use]
     pub fn sun_hours(&self) -> f64 {
         self.hours(|obstacle| obstacle == SunObstacle::None)

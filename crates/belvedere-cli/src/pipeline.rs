@@ -205,7 +205,7 @@ fn present_scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandCo
     Ok(LoadedScene { model: reported(built, run), cloud: Arc::new(cloud), left_out, profile, ground_store })
 }
 
-/// Adds the name of a file of exterior balls to the error that refuses them.
+/// Adds the name of the file to the error about exterior balls.
 fn with_file_of_exterior_balls(error: Error, path: &Path) -> anyhow::Error {
     match error {
         Error::InvalidParameter { parameter: Parameter::BallSide, .. } => anyhow!(

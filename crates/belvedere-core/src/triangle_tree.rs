@@ -204,7 +204,7 @@ impl RayAxes {
 /// A triangle as seen along rays, with edges that run counter-clockwise.
 struct Shadow {
     corners: [[f32; 2]; 3],
-    /// Margin outside an edge within which a place is still near, times the length of the edge.
+    /// Distance outside each edge up to which a place may still be covered, times minus the length of the edge.
     margins: [f32; 3],
     low: [f32; 2],
     high: [f32; 2],

@@ -33,15 +33,15 @@ impl Outcome {
 pub struct Contradiction {
     /// Its name, which stays the same from version to version: that of its remark.
     pub key: &'static str,
-    /// The side that a user or a file states.
+    /// Statement of a user or a file, in words.
     pub given: &'static str,
-    /// The side that follows from something else.
+    /// Contrary evidence, in words.
     pub known: &'static str,
-    /// The difference that is taken in silence, in `unit`.
+    /// Largest difference between the two that is accepted, in `unit`.
     pub tolerance: f64,
     /// The unit of the tolerance.
     pub unit: &'static str,
-    /// What becomes of it.
+    /// Consequence: an error, a warning or a note.
     pub outcome: Outcome,
 }
 

@@ -75,7 +75,7 @@ pub struct TreeParts {
 /// Triangulated ground points of a cloud and its returns, sorted by squares on the map, as numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GroundParts {
-    /// Ground points in the order of their places, (G, 3), local metres.
+    /// Ground points, (G, 3), local metres, sorted by their coordinates.
     pub points: Vec<[f32; 3]>,
     /// Rows of the corners of the triangles, (T, 3).
     pub triangles: Vec<[u32; 3]>,

@@ -167,7 +167,7 @@ pub fn cloud_sources(paths: &[PathBuf]) -> Result<(Vec<Source<'_>>, Vec<FoundCon
     Ok((files.sources, files.contradictions))
 }
 
-/// Resolved sources of a cloud.
+/// Files of a cloud, after folders and catalogues were replaced by their files.
 #[derive(Default)]
 pub(crate) struct CloudFiles<'a> {
     pub(crate) sources: Vec<Source<'a>>,

@@ -49,7 +49,7 @@ fn number_of(obstacle: SunObstacle) -> u8 {
     }
 }
 
-/// Refuses faces of a mesh, over which numbers would be averaged, and more meshes than there are numbers.
+/// Refuses faces of a mesh, whose casters would be averaged as numbers. Refuses more than 247 added meshes.
 pub(super) fn check_casters(places: &Places, scene: &Scene) -> Result<()> {
     if matches!(places, Places::Mesh(..)) {
         return Err(Error::invalid(Parameter::Targets, "faces of a mesh", "cells or points, where casters are wanted"));

@@ -22,7 +22,7 @@ pub struct GridCells {
     pub ground: GroundPoints,
     /// South-west and north-east corner of the grid on the map, local metres; `None` for those of the scene.
     pub bounds: Option<([f64; 2], [f64; 2])>,
-    /// Rings of an area on the map, local metres: cells whose middle lies beside it are no targets. Empty for all
+    /// Rings of an area on the map, local metres. Cells whose centre lies outside it are no targets. Empty for all
     /// cells.
     pub within: Vec<Vec<[f64; 2]>>,
 }

@@ -333,7 +333,7 @@ fn mesh_name(scene: &Scene, blocker: Blocker) -> Option<&str> {
     scene.model().added()?.names().get(blocker.mesh()?).map(String::as_str)
 }
 
-/// Returns the kind of a surface of the survey that blocks.
+/// Returns the kind of the surface that blocks; `None` if the obstacle is no surface of the survey.
 fn surface_name(blocker: Blocker) -> Option<&'static str> {
     blocker.patch().map(PatchKind::name)
 }

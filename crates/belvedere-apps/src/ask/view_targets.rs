@@ -31,8 +31,8 @@ pub struct ViewTargetsQuestion {
     /// Position and projection of the view; must be set by whoever reads a question from text.
     #[serde(skip)]
     pub from: Option<ViewFrom>,
-    /// True if targets beside the picture of a parallel view have no answer, as beside that of a camera. Default:
-    /// false, where the picture only gives the direction.
+    /// True if targets outside the picture of a parallel view have no answer, as with a camera. False if the picture
+    /// sets only the direction. Default: false.
     pub within_picture: bool,
     /// Tolerance of points, metres: their depth behind a depth map, or the length of a line inside balls. `None` for
     /// that of the map, or of the scene.

@@ -7,7 +7,7 @@ use crate::sun::Site;
 use belvedere_data::report::rounded;
 use belvedere_data::weather::{USUAL_WIND, Weather};
 
-/// Distance from which on a weather file counts as that of another place, metres.
+/// Distance of a weather station beyond which its file counts as that of another place, metres.
 const FAR: f64 = 50_000.0;
 
 /// Adds remarks on the place and the clock of weather.

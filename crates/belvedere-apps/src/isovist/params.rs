@@ -10,8 +10,8 @@ pub struct IsovistParams {
     /// Angle between rays of the panorama, and between the first rays of the plan, radians, a ten-thousandth to a
     /// quarter of a circle. Default 1°: 64 800 rays.
     pub step: f64,
-    /// Range at which sight ends where nothing blocks, metres, above 0. Default 100: beyond it streets are no longer
-    /// read as a space.
+    /// Range at which sight ends where nothing blocks, metres, above 0. Default 100: people do not
+    /// perceive a longer street as one space.
     pub max_range: f64,
     /// Minimum jump in range that is an edge of the plan, metres, above 0. Default 0.25: balls bulge by centimetres.
     pub jump: f64,

@@ -84,7 +84,7 @@ pub struct LandmarkView {
     pub vertical_extent: f64,
     /// Range of the nearest and of the farthest part seen, metres; `None` where nothing is seen.
     pub ranges: Option<[f64; 2]>,
-    /// Expected area seen, m², by how likely each part is visible; `None` where that was not wanted.
+    /// Expected area seen, m², from the probability of each part; `None` if probabilities were not required.
     pub expected_area: Option<f64>,
 }
 

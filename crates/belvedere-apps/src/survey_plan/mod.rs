@@ -36,7 +36,7 @@ const CHANCES: [f64; LEVELS.len()] = [0.75, 0.5, 0.2];
 pub struct SurveyGain {
     /// Lines that become proven, if nothing stands in the space that no pulse saw.
     pub settled: usize,
-    /// Expected number of lines that become proven, since some do meet objects there.
+    /// Expected number of lines that become proven. Objects may stand in the space that no pulse saw.
     pub expected: f64,
     /// Length of unproven pieces that is proven, over all lines, metres.
     pub proven: f64,

@@ -280,8 +280,8 @@ impl Ground {
         (self, GroundReport { cell_count, ..report })
     }
 
-    /// The ground through `points`, (N, 3) local metres, on `grid`, given as far as `reach` metres from the next of
-    /// them.
+    /// The ground through `points`, (N, 3) local metres, on `grid`. Cells farther than `reach` metres from the nearest
+    /// point have no height.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for a point that is not finite, [`Error::Cancelled`].

@@ -95,9 +95,10 @@ impl MarkingRule for SlenderParams {
 }
 
 impl SlenderParams {
-    /// Returns the height of each point of a slender object above the lowest point near by, NaN for all others. Points
-    /// of ground, vegetation and buildings are left out (class 6, or no class and higher than objects on the ground).
-    /// So are points that are too low, or not passed by pulses on all sides.
+    /// Returns the height of each point of a slender object above the lowest point near it, NaN for all others.
+    ///
+    /// Points of ground, vegetation and buildings belong to none. A building has class 6, or has no class and is higher
+    /// than objects on the ground. Points also need a minimum height, and pulses that pass them on every side.
     fn heights(&self, survey: &Survey<'_>, control: &Control<'_>) -> Result<Vec<f32>> {
         let stop = Stop::new(control);
         let positions = survey.positions();

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// Area that pulses are counted on, m²: a cell and those about it.
 const AREA_M2: f32 = 9.0;
 
-/// Counts the pulses that end in each cell and its neighbours, by first returns. Without return numbers all of
+/// Counts the first returns in each cell and its neighbours, one for each pulse. Without return numbers all of
 /// `positions`, (N, 3) local metres, count.
 pub(super) fn pulse_counts(positions: &[[f32; 3]], attributes: &Attributes) -> Cells<u32> {
     let numbers = attributes.return_number.as_deref();

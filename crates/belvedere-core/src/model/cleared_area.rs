@@ -26,8 +26,8 @@ pub enum ClearedArea {
 }
 
 impl ClearedArea {
-    /// Areas that clear the objects in `polygons`, local metres on the map, each an outline and its holes. Those near
-    /// each other are one area, so that many take hardly longer than one, and the columns over each area stay narrow.
+    /// Areas of `polygons` in which objects are removed. Each polygon is an outline and its holes, local metres on the
+    /// map. Polygons near each other form one area, which is faster than an area for each.
     #[must_use]
     pub fn of_polygons(polygons: Vec<Vec<Vec<[f64; 2]>>>) -> Vec<Self> {
         let mut squares: BTreeMap<[i64; 2], Vec<Rings>> = BTreeMap::new();

@@ -28,7 +28,7 @@ pub(super) fn build(points: &[[f32; 3]], control: &Control<'_>) -> Result<PointT
     Ok(tree)
 }
 
-/// The tree of points that moved a little: `order` is that of the tree they were in, which stays.
+/// Builds the tree of points that moved a little. It keeps `order`, that of the tree before.
 pub(super) fn refit(points: &[[f32; 3]], order: &[u32]) -> PointTree {
     let items: Vec<Item> = order.iter().map(|&index| Item { point: points[index as usize], index }).collect();
     fit(&items)

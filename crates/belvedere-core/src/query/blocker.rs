@@ -11,7 +11,7 @@ pub enum Blocker {
     Mesh(usize),
     /// A patch of a surface of the survey, by the kind of its surface.
     Patch(PatchKind),
-    /// The raster of far terrain, on lines of sight that leave the cloud.
+    /// Terrain of the elevation raster beyond the cloud.
     Terrain,
 }
 

@@ -190,8 +190,8 @@ impl BlockingTriangles {
         }
     }
 
-    /// Returns true if a place, local metres, lies inside a mesh, which may lack its bottom: lines up, east and north
-    /// pass through an odd number of surfaces each.
+    /// Returns true if a place, local metres, lies inside a mesh. Rays upward, to the east and to the north must each
+    /// cross an odd number of surfaces. The mesh may lack its bottom.
     #[must_use]
     pub fn encloses(&self, place: [f64; 3]) -> bool {
         if !place.iter().all(|v| v.is_finite()) {

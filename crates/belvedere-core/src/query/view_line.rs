@@ -33,8 +33,8 @@ pub(super) fn viewer_of(view: &View) -> Viewer<'static> {
     if view.is_central() { Viewer::Eye(view.frame.eye) } else { Viewer::Direction(view.frame.forward.map(|v| -v)) }
 }
 
-/// Returns the line of sight of a target within the picture and limits of `view`. It ends at the picture plane or near
-/// limit, or at the eye of a view without such a limit. `None` for any other target.
+/// Returns the line of sight of a target within the picture and limits of `view`, from the target towards the viewer.
+/// It ends at the picture plane or at the near limit; without these at the eye. `None` for any other target.
 pub(super) fn line_in_view(view: &View, target: [f32; 3]) -> Option<LineInView> {
     let place = view.project(target)?;
     view.pixel(place)?;

@@ -38,7 +38,7 @@ pub(super) fn area_of_use(_code: u32) -> Option<[f64; 4]> {
     None
 }
 
-/// A projection that cannot be made.
+/// A projection of a program without the database of reference systems: there is none.
 pub(super) enum CrsProjection {}
 
 impl CrsProjection {

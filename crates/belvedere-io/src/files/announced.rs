@@ -19,6 +19,6 @@ pub(crate) struct Announced {
 pub(crate) enum BoundsAre {
     /// The bounds of the points, which a header repeats.
     OfPoints,
-    /// A cell that they lie in. Headers of nodes may have the bounds of a larger one.
+    /// A cell that holds the points. Headers of nodes may give the bounds of a larger cell.
     OfCell,
 }

@@ -273,7 +273,7 @@ fn push_to<T>(column: &mut Option<Vec<T>>, value: T) {
     }
 }
 
-/// Numbers as u16, from 0 to 1 scaled to the whole range; noted where they were scaled or cut.
+/// Converts numbers to u16. Fractions from 0 to 1 are scaled to the whole range, other numbers clamped; a note says so.
 fn to_16_bit(part: &mut FilePart, what: &str, values: &[f32]) -> Vec<u16> {
     let highest = values.iter().copied().fold(0.0_f32, f32::max);
     let fractions = highest <= 1.0 && values.iter().any(|v| v.fract() != 0.0);

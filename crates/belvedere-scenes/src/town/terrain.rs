@@ -29,7 +29,7 @@ pub(crate) struct Canal {
 }
 
 impl Canal {
-    /// Returns the depth of the bed below the ground without the canal, metres.
+    /// Returns the depth of the bed below the ground that was there before the canal, metres; 0 outside the canal.
     fn depth_at(&self, x: f64, y: f64) -> f64 {
         let (sin, cos) = self.placement.angle.sin_cos();
         let across = (y - self.placement.origin[1]) * cos - (x - self.placement.origin[0]) * sin;

@@ -148,7 +148,7 @@ pub struct NetworkSection {
     pub(in crate::ask) links: usize,
     /// Percentage of the tested pairs.
     pub(in crate::ask) links_percent: f64,
-    /// Groups of places that are linked, directly or through others.
+    /// Number of groups of places that see each other, directly or through other places.
     pub(in crate::ask) groups: usize,
     pub(in crate::ask) largest_group: usize,
     pub(in crate::ask) places_without_link: usize,
