@@ -123,7 +123,7 @@ pub fn clear_added(before: &mut [f32], after: &mut [f32], added: &[f32]) -> usiz
 /// The change from `before` to `after`, one value for each cell of `cell_area` m²; NaN for a cell without a value.
 ///
 /// # Errors
-/// [`Error::LengthMismatch`] where the numbers of cells differ.
+/// [`Error::LengthMismatch`](belvedere_data::Error::LengthMismatch) where the numbers of cells differ.
 pub fn difference(before: &[f32], after: &[f32], cell_area: f64) -> Result<Difference> {
     check_length("cells after the change", before.len(), after.len())?;
     let mut values: Vec<f32> = before.iter().zip(after).map(|(before, after)| after - before).collect();

@@ -172,8 +172,9 @@ pub fn sun_obstacle(
 /// where a target has no position. Progress counts targets.
 ///
 /// # Errors
-/// [`Error::LengthMismatch`] unless each target has a normal, or none has, and each ball a kind;
-/// [`Error::Cancelled`].
+/// [`Error::LengthMismatch`](belvedere_data::Error::LengthMismatch) unless each target has a normal, or none has, and
+/// each ball a kind;
+/// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
 ///
 /// # Source
 /// This project's own. Exact lines of sight from the definition of blocking: Peters, Ledoux & Biljecki 2015, section 3.

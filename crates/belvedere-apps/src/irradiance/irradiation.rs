@@ -100,7 +100,7 @@ pub fn scene_irradiation(
 /// for level ones. A target without a normal, (0, 0, 0), or whose normal is not finite gets NaN.
 ///
 /// # Errors
-/// [`Error::LengthMismatch`] where matrix, directions and normals differ.
+/// [`Error::LengthMismatch`](belvedere_data::Error::LengthMismatch) where matrix, directions and normals differ.
 pub fn irradiation(
     matrix: &VisibilityMatrix,
     normals: Option<&[[f32; 3]]>,

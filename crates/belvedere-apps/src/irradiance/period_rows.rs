@@ -169,7 +169,7 @@ impl PeriodRows {
     /// direction, season by season; `None` for a plane without obstacles.
     ///
     /// # Errors
-    /// [`Error::LengthMismatch`] for shares of other seasons or directions.
+    /// [`Error::LengthMismatch`](belvedere_data::Error::LengthMismatch) for shares of other seasons or directions.
     pub fn on_plane(&self, normal: [f64; 3], light: Option<&[&[f32]]>) -> Result<Vec<RowRadiation>> {
         let mut found = vec![RowRadiation::default(); self.rows.len()];
         check_length("seasons of a plane", self.seasons.len(), light.map_or(self.seasons.len(), <[_]>::len))?;

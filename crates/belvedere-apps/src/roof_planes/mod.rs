@@ -77,7 +77,8 @@ impl RoofPlane {
 /// reach over its outline.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for parameters outside their range and points that are not finite; [`Error::Cancelled`].
+/// [`Error::InvalidParameter`](belvedere_data::Error::InvalidParameter) for parameters outside their range and points
+/// that are not finite; [`Error::Cancelled`](belvedere_data::Error::Cancelled).
 ///
 /// # Source
 /// Region growing with a smoothness constraint: Rabbani, van den Heuvel & Vosselman 2006. The area of a set from the

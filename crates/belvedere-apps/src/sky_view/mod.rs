@@ -99,7 +99,7 @@ pub fn scene_sky_view<'a>(
 /// target for the sky view factor; `None` for level ones. Directions behind a tilted target count as unseen.
 ///
 /// # Errors
-/// [`Error::LengthMismatch`] where matrix, sky and normals differ.
+/// [`Error::LengthMismatch`](belvedere_data::Error::LengthMismatch) where matrix, sky and normals differ.
 pub fn sky_view(matrix: &VisibilityMatrix, sky: &SkyDirections, normals: Option<&[[f32; 3]]>) -> Result<SkyView> {
     sky_shares(matrix, sky, normals, |target, column| f64::from(u8::from(matrix.is_free(target, column))))
 }

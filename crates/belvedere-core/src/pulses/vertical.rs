@@ -36,7 +36,8 @@ impl Default for VerticalParams {
 /// above, NaN for the rest.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for parameters outside their ranges, [`Error::Cancelled`].
+/// [`Error::InvalidParameter`](belvedere_data::Error::InvalidParameter) for parameters outside their ranges,
+/// [`Error::Cancelled`](belvedere_data::Error::Cancelled).
 pub fn vertical_pulses(
     positions: &[[f32; 3]],
     params: &VerticalParams,
