@@ -106,11 +106,17 @@ impl GroundBySquares {
     pub fn from_parts(params: &GroundParams, report: GroundReport, parts: GroundParts) -> Result<Self> {
         let GroundParts { points, triangles, large, squares: [x, y, side, columns, rows], starts, .. } = parts;
         let squares = Squares { low: [x, y], side, last: [columns, rows] };
+        // no more squares than points: see `Squares::over`
+        let max = points.len() as f64;
+        if ![columns, rows].iter().all(|last| (0.0..=max).contains(last)) || !(side > 0.0) {
+            return Err(Error::invalid(Parameter::Ground, "damaged", "an index over squares"));
+        }
         let (expected, found) = (squares.count() + 1, starts.len());
         if expected != found {
             return Err(Error::LengthMismatch { what: "squares of ground", expected, found });
         }
-        let starts_of = |column: usize| starts.iter().map(|starts| to_index(starts[column] as f64)).collect();
+        let start = |start: u64| usize::try_from(start).unwrap_or(usize::MAX);
+        let starts_of = |column: usize| starts.iter().map(|starts| start(starts[column])).collect();
         let of_squares = BySquare::from_parts(starts_of(0), parts.triangles_of_squares)?;
         let points_of_squares = BySquare::from_parts(starts_of(1), parts.points_of_squares)?;
         let returns = BySquare::from_parts(starts_of(2), parts.returns)?;
@@ -299,6 +305,8 @@ mod tests {
             let (report, parts) = GroundBySquares::new(&cloud, &params, &Control::none()).unwrap().to_parts();
             let mut damaged = parts.clone();
             damaged.triangles[7][1] = u32::MAX;
+            assert!(GroundBySquares::from_parts(&params, report, damaged).is_err());
+            let damaged = GroundParts { squares: [0.0, 0.0, 1.0, 1e300, f64::NAN], ..parts.clone() };
             assert!(GroundBySquares::from_parts(&params, report, damaged).is_err());
             let kept = GroundBySquares::from_parts(&params, report, parts).unwrap();
             let mut known = 0;

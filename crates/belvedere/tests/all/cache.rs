@@ -2,12 +2,12 @@
 
 use crate::common::simulated::cloud_of;
 use belvedere::PointCloud;
-use belvedere::cache::{BuiltScene, CloudKey, ReadBefore, SceneCache, SceneOrigin, scene_model};
+use belvedere::cache::{BuiltScene, CloudKey, ReadBefore, SceneCache, SceneOrigin, model_of_balls, scene_model};
 use belvedere::cloud::{CloudFile, CloudFiles, FileRows, GpsTimeKind};
 use belvedere::control::Control;
-use belvedere::io::ReadOptions;
+use belvedere::io::{ReadOptions, write_balls};
 use belvedere::medial::ShrinkParams;
-use belvedere::model::{BallParams, ModelParams, OrientBy};
+use belvedere::model::{BallParams, ModelParams, OrientBy, SceneModel};
 use belvedere::query::{Answer, UnprovenAs};
 use belvedere_scenes::{AirborneParams, TownParams, scan_airborne, town};
 use std::borrow::Cow;
@@ -199,4 +199,31 @@ fn points_that_are_found_are_those_that_were_read() {
     bytes[middle] ^= 0x10;
     fs::write(&path, bytes).unwrap();
     assert!(cache.points(&before).is_none() && !path.exists());
+}
+
+#[test]
+fn a_ball_file_that_is_found_has_its_trees_until_it_changes() {
+    let folder = tempfile::tempdir().unwrap();
+    let (cache, path) = (SceneCache::new(folder.path().join("kept")), folder.path().join("balls.npz"));
+    let (control, params) = (Control::none(), ModelParams::default());
+    let write = |cloud: &PointCloud| {
+        let built = scene_model(Cow::Borrowed(cloud), &params, None, &control).unwrap();
+        write_balls(&path, built.model.parts()).unwrap();
+    };
+    write(&cloud(10));
+    let given = model_of_balls(&path, None, &control).unwrap();
+    assert!(given.derived().tree.is_none() && given.derived().proof.is_none());
+    let kept = model_of_balls(&path, Some(&cache), &control).unwrap();
+    let found = model_of_balls(&path, Some(&cache), &control).unwrap();
+    let bits = |model: &SceneModel| format!("{:?}", (model.parts(), model.derived()));
+    assert!(bits(&found) == bits(&kept) && found.derived().tree.is_some() && found.derived().proof.is_some());
+    let answers = [&given, &found].map(|model| {
+        let blockers = model.scene(&model.rule(), UnprovenAs::Reported, &control).unwrap();
+        let line = |step: u8| blockers.answer([f64::from(step) - 20.0, 0.0, 1.5], [0.6, 0.0, 0.8], f64::INFINITY);
+        (0..40).map(line).collect::<Vec<Answer>>()
+    });
+    assert_eq!(answers[0], answers[1]);
+    write(&cloud(11));
+    let other = model_of_balls(&path, Some(&cache), &control).unwrap();
+    assert_ne!(other.balls().centers, found.balls().centers);
 }
