@@ -264,7 +264,7 @@ fn kept_scene(
 fn kept_points(input: &CloudInput, run: &CommandContext) -> Option<(PointCloud, Map<String, Value>)> {
     let cache = run.cache.as_ref()?;
     let before = cache.read_before(&input.clouds, &input.read_options())?;
-    let cloud = run.compute("reading kept points", || cache.points(&before))?;
+    let cloud = cache.points(&before)?;
     Some((cloud, before.notes))
 }
 

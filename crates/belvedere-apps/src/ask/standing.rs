@@ -26,7 +26,7 @@ pub struct Standing {
 pub enum Reach {
     /// Within the cloud.
     Cloud,
-    /// To the terrain beyond it, where there is any.
+    /// The terrain beyond it, where there is any.
     FarTerrain,
 }
 

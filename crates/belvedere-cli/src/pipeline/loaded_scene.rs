@@ -17,7 +17,7 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub(crate) struct LoadedScene {
     pub(crate) model: SceneModel,
-    /// In the frame of the model; without points where it was read from a file or its points are not needed.
+    /// Points in the frame of the model; none where the model was read from a file, or they are not needed.
     pub(crate) cloud: Arc<PointCloud>,
     /// Rows of the files that reading left out.
     pub(crate) left_out: ReadReport,
