@@ -36,8 +36,13 @@ impl EdgeReport {
     #[must_use]
     pub fn of(flags: &[Option<bool>]) -> Self {
         let count = flags.iter().filter(|flag| **flag == Some(true)).count();
-        let target_count = flags.iter().flatten().count();
-        Self { targets_near_edge: count, targets_near_edge_percent: percent(count, target_count) }
+        Self::of_counts(count, flags.iter().flatten().count())
+    }
+
+    /// Creates the report of `near` targets near the edge among `count` with a position.
+    #[must_use]
+    pub fn of_counts(near: usize, count: usize) -> Self {
+        Self { targets_near_edge: near, targets_near_edge_percent: percent(near, count) }
     }
 }
 

@@ -76,6 +76,7 @@ pub enum WholeIs {
 
 /// Choice to keep the share of each group in shade for each sun.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ShadeAtEachSun {
     /// No. Default.

@@ -5,7 +5,7 @@
 //! many targets and directions there are. Rows do not depend on each other, and no result depends on how targets are
 //! cut into blocks.
 
-use crate::tree_light::{CrownLight, TreeLight};
+use crate::tree_light::{CrownLight, Season, TreeLight};
 use belvedere_core::medium::{HALF_DEPTH, Medium};
 use belvedere_core::query::{MedialScene, VisibilityMatrix};
 use belvedere_data::control::Control;
@@ -43,7 +43,7 @@ impl Obstacles<'_> {
 }
 
 /// Obstacles that do not fit into memory, and are looked at part by part.
-pub trait ObstacleParts: Sync {
+pub trait ObstacleParts: Send + Sync {
     /// Returns the transmissivity of crowns; `None` if trees are opaque.
     fn crowns(&self) -> Option<CrownLight>;
 
@@ -69,6 +69,32 @@ pub trait ObstacleParts: Sync {
     /// # Errors
     /// Those of reading the parts.
     fn are_inside_obstacles(&self, targets: &[[f32; 3]], control: &Control<'_>) -> Result<Vec<bool>>;
+
+    /// Returns 1 for each of `targets` that `lit`, (M), says is lit, but whose line of sight to the sun no pulse
+    /// proves, and 0 for others; `None` for a survey without known pulses.
+    ///
+    /// # Errors
+    /// Those of reading the parts.
+    fn unproven_light(
+        &self,
+        targets: &[[f32; 3]],
+        to_sun: [f64; 3],
+        lit: &[f32],
+        control: &Control<'_>,
+    ) -> Result<Option<Vec<f32>>>;
+
+    /// Returns the probability that each of `targets`, (M, 3) local metres, is lit by a sun with hard edges; NaN for
+    /// one without a position.
+    ///
+    /// # Errors
+    /// Those of reading the parts.
+    fn lit_probabilities(
+        &self,
+        targets: &[[f32; 3]],
+        to_sun: [f64; 3],
+        season: Option<Season>,
+        control: &Control<'_>,
+    ) -> Result<Vec<f32>>;
 }
 
 /// All that may stand between targets and the sky.

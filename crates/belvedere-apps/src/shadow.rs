@@ -31,6 +31,7 @@ const PROOF_CHUNK: usize = 512;
 
 /// Hard or soft shadow edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Edges {
     /// The sun is a point: a place is lit or not.
@@ -74,7 +75,15 @@ pub fn scene_shadow<'a>(
     let obstacles = obstacles.into();
     let normals = targets.normals.as_deref();
     check_normals(normals, targets.len())?;
-    let directions: Vec<Vec<[f64; 3]>> = suns.iter().map(|sun| sun_directions(sun.to_sun, edges)).collect();
+    let of_sun = |sun: &ShadowSun| {
+        let mut points = sun_directions(sun.to_sun, edges);
+        // nothing shines from below the horizon
+        if points.iter().all(|point| point[2] <= 0.0) {
+            points.clear();
+        }
+        points
+    };
+    let directions: Vec<Vec<[f64; 3]>> = suns.iter().map(of_sun).collect();
     let mut lit = vec![Vec::with_capacity(targets.len()); suns.len()];
     fold_rows(obstacles, &targets.positions, &directions.concat(), control, |block| {
         let normals = normals_of(normals, &block.rows);
@@ -150,16 +159,25 @@ pub fn lit_probabilities(
     sun: ShadowSun,
     control: &Control<'_>,
 ) -> Result<Vec<f32>> {
-    let normals = targets.normals.as_deref();
-    check_normals(normals, targets.len())?;
     let viewer = Viewer::Direction(sun.to_sun);
-    let mut found = match trees.and_then(|trees| Some((trees, trees.medium.as_deref()?))) {
+    let found = match trees.and_then(|trees| Some((trees, trees.medium.as_deref()?))) {
         Some((trees, medium)) => {
             let crowns = (&*trees.opaque, medium, trees.crowns.factor(sun.season));
             scene.lit_probabilities(crowns, viewer, &targets.positions, control)?
         }
         None => scene.visible_probabilities(viewer, &targets.positions, control)?,
     };
+    lit_before_sun(found, targets, sun)
+}
+
+/// Returns probabilities of a free line to the sun as those of being lit: 0 for targets that are turned away, and at
+/// night.
+///
+/// # Errors
+/// [`Error::LengthMismatch`] for normals that are not as many as targets.
+pub(crate) fn lit_before_sun(mut found: Vec<f32>, targets: &Targets, sun: ShadowSun) -> Result<Vec<f32>> {
+    let normals = targets.normals.as_deref();
+    check_normals(normals, targets.len())?;
     for (row, probability) in found.iter_mut().enumerate().filter(|(_, probability)| !probability.is_nan()) {
         let is_before = normals.is_none_or(|normals| dot(normals[row].map(f64::from), sun.to_sun) > 0.0);
         if sun.to_sun[2] <= 0.0 || !is_before {

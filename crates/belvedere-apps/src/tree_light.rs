@@ -89,6 +89,7 @@ impl Transmissivity {
 
 /// Choice of the foliage: by date, in leaf or bare.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Leaves {
     /// Foliage of the date, by [`Foliage::on_day`]. Without a date measured crowns are as they were then, and others in

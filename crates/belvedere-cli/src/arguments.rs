@@ -1,6 +1,7 @@
 //! Command-line arguments: flags as entered. `pipeline` and each command convert them. Texts longer than a line are in
 //! `help/`.
 
+mod ask;
 mod balls;
 mod cameras;
 mod city;
@@ -28,12 +29,13 @@ mod view;
 mod view_page;
 mod window_views;
 
+pub(crate) use ask::AskArguments;
 pub(crate) use balls::{
     BallsArguments, Cleaning, MethodChoice, NeighborChoice, NormalsArguments, OrientedPoints, Orienting, Shrinking,
     SideChoice, SurfacesArguments,
 };
 pub(crate) use cameras::{CameraLensArguments, CameraTargetsArguments, CamerasArguments};
-pub(crate) use city::{CellFor, City, CityMerge, CityPlan, CityRun, CityStatus, CityStep};
+pub(crate) use city::{CellFor, City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, CityTaskStep, CityTasks};
 pub(crate) use difference::DifferenceArguments;
 pub(crate) use envelope::{ComfortArguments, CornersArgument, EnvelopeArguments};
 pub(crate) use fetch::FetchArguments;
@@ -49,7 +51,7 @@ pub(crate) use observers::{
 pub(crate) use query::{DepthMapArguments, Query};
 pub(crate) use scene::{
     AreaChoice, BallShape, CalibrateArguments, CloudInput, MemoryAmount, MemoryArgument, OrientChoice, PlanArguments,
-    ProfileChoice, SceneBalls, SceneConfig, SceneInput, UpChoice,
+    ProfileChoice, SceneBalls, SceneConfig, SceneInput, TilesArguments, UpChoice,
 };
 pub(crate) use shadow::ShadowArguments;
 pub(crate) use sky::{
@@ -285,8 +287,10 @@ pub(crate) enum Command {
     View(ViewPage),
     /// Map shadow and sky view of a whole city, tile by tile
     City(City),
+    /// Ask a question in JSON, or that of a raster, with the answer as JSON or files
+    Ask(AskArguments),
     /// List all commands with their parameters, types, defaults and texts
-    Describe,
+    Describe(DescribeArguments),
     /// Print a completion script for a shell
     Completions {
         /// Shell to complete for
@@ -304,6 +308,15 @@ pub(crate) struct Demo {
     /// Side of the simulated town in metres
     #[arg(long, value_name = "M", default_value_t = 120.0)]
     pub(crate) extent: f64,
+}
+
+#[derive(Args)]
+pub(crate) struct DescribeArguments {
+    /// Print the JSON schema of the questions of `belvedere ask` instead
+    ///
+    /// Draft 2020-12, with the text, unit and default of each field.
+    #[arg(long)]
+    pub(crate) json_schema: bool,
 }
 
 #[derive(Args)]

@@ -23,7 +23,7 @@ pub(crate) const BALL_FLAGS: [&str; 15] = [
 ];
 
 /// Commands by task, in the order of the overview.
-const GROUPS: [(&str, &[&str]); 7] = [
+const GROUPS: [(&str, &[&str]); 6] = [
     ("start", &["demo", "fetch", "info", "view", "simulate"]),
     (
         "sun",
@@ -54,12 +54,13 @@ const GROUPS: [(&str, &[&str]); 7] = [
             "window-views",
             "cameras",
             "survey-plan",
+            "depth-map",
+            "query",
         ],
     ),
     ("scene", &["balls", "calibrate", "normals", "surfaces", "trajectory", "cache"]),
-    ("research", &["depth-map", "query"]),
     ("maps", &["difference", "city"]),
-    ("other", &["bench", "describe", "completions", "man"]),
+    ("other", &["ask", "bench", "describe", "completions", "man"]),
 ];
 
 /// Flags that `-h` leaves out, so that it fits a screen; `--help` has all.
@@ -161,6 +162,7 @@ const SHOWN_OF_ALL: [&str; 3] = ["json", "verbose", "help"];
 /// Long help of each command: purpose, input, output, units and limits, and examples that work as printed on the files
 /// of the demo.
 const TEXTS: &[(&str, &str)] = &[
+    ("ask", include_str!("help/ask.txt")),
     ("demo", include_str!("help/demo.txt")),
     ("simulate", include_str!("help/simulate.txt")),
     ("fetch", include_str!("help/fetch.txt")),
@@ -208,6 +210,7 @@ const TEXTS: &[(&str, &str)] = &[
 const STEPS_OF_CITY: &[(&str, &str)] = &[
     ("plan", include_str!("help/city-plan.txt")),
     ("run", include_str!("help/city-run.txt")),
+    ("tasks", include_str!("help/city-tasks.txt")),
     ("status", include_str!("help/city-status.txt")),
     ("merge", include_str!("help/city-merge.txt")),
 ];
@@ -244,6 +247,11 @@ pub(crate) fn command() -> Command {
                 with_help(least, "Minimum elevation of the sun in degrees; lower suns are ignored [default: 0]")
             })
     });
+    // a plan writes no answer yet
+    let command =
+        ["shadow", "sun-hours", "sky-view", "irradiance", "viewshed"].iter().fold(command, |command, name| {
+            command.mut_subcommand(name, |sub| sub.mut_arg("output", |output| output.required_unless_present("plan")))
+        });
     let template = overview(&command);
     command.help_template(template)
 }

@@ -2,22 +2,23 @@
 //! answered in tiles.
 
 use crate::arguments::{
-    FarTerrainArguments, GroundChoice, MemoryArgument, PlanArguments, SceneInput, SkyOutputs, SkyPlaces,
-    ThroughTreesArguments, UpChoice, Usage, refuse,
+    FarTerrainArguments, GroundChoice, PlanArguments, SceneInput, SkyOutputs, SkyPlaces, TilesArguments, UpChoice,
+    Usage, refuse,
 };
 use crate::memory;
-use crate::outputs::formats::extension;
-use crate::outputs::targets::{HighestPoints, remark_on_first};
+use crate::outputs::formats::{check_folder, extension};
+use crate::outputs::targets::TargetOutput;
 use crate::pipeline::areas;
 use crate::run::CommandContext;
+use crate::summary::rounded;
 use anyhow::{Result, bail};
 use belvedere::Error;
-use belvedere::apps::ask::{Answers, GridCells, Question};
+use belvedere::apps::ask::{Answers, GridCells, OnTargets, Places, Question, Scene, ThroughTrees};
 use belvedere::cache::SurveyFolder;
-use belvedere::figures::{Picture, write_png};
 use belvedere::io::Insistence;
-use belvedere::results::{georeference, measure_map};
-use belvedere_tiles::{Plan, PlanParams, RunReport, SideFile, SurveyCells, SurveyQuestion, TileQuestion, TooLarge};
+use belvedere_tiles::{
+    Plan, PlanParams, RunReport, SideFile, SurveyCells, SurveyPlaces, SurveyQuestion, TileQuestion, TooLarge,
+};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -30,14 +31,16 @@ const MAX_LISTED: usize = 10;
 /// Typed arguments of a question about cells.
 pub(crate) struct TypedCells<'a> {
     pub(crate) scene: &'a SceneInput,
-    pub(crate) memory: &'a MemoryArgument,
+    pub(crate) tiles: &'a TilesArguments,
     pub(crate) cells: GridCells,
     /// Terrain beyond the survey.
     pub(crate) far: Option<&'a FarTerrainArguments>,
-    pub(crate) trees: Option<&'a ThroughTreesArguments>,
+    pub(crate) trees: Option<ThroughTrees>,
     pub(crate) output: &'a [PathBuf],
     /// Flags of the command that tiles do not know, and whether each was typed.
     pub(crate) others: Vec<(&'static str, bool)>,
+    /// The same for flags that only cells in tiles do not know.
+    pub(crate) of_points: Vec<(&'static str, bool)>,
 }
 
 /// A survey that is answered in tiles.
@@ -48,68 +51,172 @@ pub(crate) struct PlannedSurvey {
     is_temporary: bool,
     /// Memory that may be used, bytes.
     limit: u64,
+    /// Cells of the question.
+    cells: GridCells,
 }
 
-/// Draws answers over shaded relief.
-pub(crate) type DrawnMap<'a> = &'a dyn Fn(&Answers<SurveyCells>, &HighestPoints) -> belvedere::Result<Picture>;
+/// Answers in tiles, to be written as those of one scene.
+pub(crate) struct TiledAnswers {
+    pub(crate) answers: Answers<SurveyCells>,
+    on: OnTargets,
+}
+
+impl TiledAnswers {
+    /// Returns the cells to be written.
+    pub(crate) fn shown(&self) -> TargetOutput<'_> {
+        TargetOutput::of_survey(&self.on, &self.answers.found)
+    }
+}
 
 impl<'a> TypedCells<'a> {
     /// Collects the arguments of a question about sun and sky.
     pub(crate) fn of_sky(
-        (scene, memory): (&'a SceneInput, &'a MemoryArgument),
+        (scene, tiles): (&'a SceneInput, &'a TilesArguments),
         places: &'a SkyPlaces,
-        trees: &'a ThroughTreesArguments,
+        trees: ThroughTrees,
         outputs: &'a SkyOutputs,
         others: &[(&'static str, bool)],
     ) -> Self {
         let of_places = [
             ("--ground cloud=FILE", matches!(places.ground, GroundChoice::Cloud(_))),
             ("--self", places.places.own),
-            ("--targets", places.places.targets.is_some()),
-            ("--at", !places.places.at.is_empty()),
             ("--edge-mask", places.edge_mask.is_some()),
-            ("--measures", outputs.measures.is_some()),
-            ("--by-area", outputs.by_area.by_area.is_some()),
         ];
+        let of_points = vec![("--targets", places.places.targets.is_some()), ("--at", !places.places.at.is_empty())];
         Self {
             scene,
-            memory,
+            tiles,
             cells: places.cells(),
             far: Some(&places.far),
             trees: Some(trees),
             output: &outputs.output,
             others: of_places.into_iter().chain(others.iter().copied()).collect(),
+            of_points,
         }
     }
 
-    /// Answers in tiles what one model has no memory for, and writes it, with `map` or maps of the first measure;
-    /// `None` where one model is to be made.
+    /// Returns the scene of a question about places: a survey of which only those tiles are built that may block their
+    /// light, where one model has no memory; else that of `whole`.
+    pub(crate) fn scene(
+        &self,
+        question: impl Into<Question>,
+        whole: impl FnOnce(&mut CommandContext) -> Result<Scene>,
+        run: &mut CommandContext,
+    ) -> Result<SceneOfPlaces> {
+        let question = question.into();
+        let survey = if self.are_places(&question) { self.survey_of(&question, run)? } else { None };
+        let Some(PlannedSurvey { plan, folder, is_temporary, limit, .. }) = survey else {
+            return Ok(SceneOfPlaces::Whole(Box::new(whole(run)?)));
+        };
+        run.summary.remarks(plan.remarks.clone());
+        let survey = SurveyPlaces::new(plan, folder.path(), limit)?;
+        Ok(SceneOfPlaces::Tiles { survey: Box::new(survey), folder, is_temporary })
+    }
+
+    /// Plans tiles, or answers in tiles what one model has no memory for and passes it to `write`; `false` where one
+    /// model is to be made.
     pub(crate) fn answered(
         &self,
-        question: Question,
-        map: Option<DrawnMap<'_>>,
+        question: impl Into<Question>,
+        write: impl FnOnce(&TiledAnswers, &mut CommandContext) -> Result<()>,
         run: &mut CommandContext,
-    ) -> Result<Option<Answers<SurveyCells>>> {
-        let Some(survey) = self.survey(&question, run)? else { return Ok(None) };
-        self.answer(survey, question, map, run).map(Some)
+    ) -> Result<bool> {
+        let question = question.into();
+        let complete = |_: &Plan, _: &mut CommandContext| Ok(question.clone());
+        self.completed(&question, complete, write, run)
+    }
+
+    /// The same for a question that `complete` completes for a plan.
+    pub(crate) fn completed(
+        &self,
+        question: &Question,
+        complete: impl FnOnce(&Plan, &mut CommandContext) -> Result<Question>,
+        write: impl FnOnce(&TiledAnswers, &mut CommandContext) -> Result<()>,
+        run: &mut CommandContext,
+    ) -> Result<bool> {
+        if let Some(folder) = &self.tiles.plan {
+            self.plan((question, folder), complete, run)?;
+            return Ok(true);
+        }
+        let Some(survey) = self.survey(question, run)? else { return Ok(false) };
+        let question = complete(&survey.plan, run)?;
+        write(&Self::answer(survey, question, run)?, run)?;
+        Ok(true)
+    }
+
+    /// Plans tiles for many computers.
+    fn plan(
+        &self,
+        (question, folder): (&Question, &Path),
+        complete: impl FnOnce(&Plan, &mut CommandContext) -> Result<Question>,
+        run: &mut CommandContext,
+    ) -> Result<()> {
+        let bounds = self.scene.input.bounds.is_some().then(|| "--bounds".to_owned());
+        if let Some(what) = bounds.or_else(|| self.unknown(question)) {
+            return refuse(format!("--plan: {what} is not there in tiles; leave it out"));
+        }
+        if let Some(output) = self.output.first() {
+            return refuse(format!("--plan: -o {} comes later, with `belvedere city merge`", output.display()));
+        }
+        check_folder(folder)?;
+        let plan = Plan::make(&self.plan_params(), &run.control())?.with_grid_cells(&self.cells)?;
+        let plan = match self.tiles.memory.memory {
+            Some(memory) => plan.fitting(memory.0)?,
+            None => plan,
+        };
+        let plan = self.changed(plan, question)?;
+        let question = TileQuestion::of_survey(&complete(&plan, run)?, &plan, &run.control())?;
+        let plan = plan.with_questions(vec![question], &run.control())?;
+        plan.write(folder)?;
+        report_plan(&plan, folder, run);
+        Ok(())
+    }
+
+    fn plan_params(&self) -> PlanParams {
+        let input = &self.scene.input;
+        PlanParams {
+            clouds: input.clouds.clone(),
+            crs: input.crs.clone(),
+            crs_against_files: if input.crs_override { Insistence::Insist } else { Insistence::Refuse },
+            flown: input.flown,
+            program: PROGRAM.to_owned(),
+            ..PlanParams::default()
+        }
+    }
+
+    fn changed(&self, plan: Plan, question: &Question) -> Result<Plan> {
+        planned(plan, &self.scene.plan, self.far, self.trees.map(|trees| (trees, latitude(question))))
     }
 
     /// The plan of a survey that one model has no memory for; `None` where one model is to be made.
     pub(crate) fn survey(&self, question: &Question, run: &mut CommandContext) -> Result<Option<PlannedSurvey>> {
+        let Some(large) = self.too_large() else { return Ok(None) };
+        if self.are_places(question) {
+            return Ok(None);
+        }
+        match (self.unknown(question), self.tiles.memory.memory) {
+            (None, _) => self.survey_of(question, run),
+            // one model is tried, as if there were no tiles
+            (Some(_), None) => Ok(None),
+            (Some(what), Some(_)) => refuse(format!(
+                "{what} is not there in tiles, and {}; leave it out, or allow more memory",
+                large.in_words()
+            )),
+        }
+    }
+
+    /// Returns the need of memory of one model, if it is more than may be used.
+    fn too_large(&self) -> Option<TooLarge> {
         let input = &self.scene.input;
         // a part that was typed is one model
-        let Some(limit) = memory::limit(self.memory).filter(|_| input.bounds.is_none()) else { return Ok(None) };
-        let Some(large) = TooLarge::of(&input.clouds, limit) else { return Ok(None) };
-        if let Some(what) = self.unknown(question) {
-            return match self.memory.memory {
-                // one model is tried, as if there were no tiles
-                None => Ok(None),
-                Some(_) => refuse(format!(
-                    "{what} is not there in tiles, and {}; leave it out, or allow more memory",
-                    large.in_words()
-                )),
-            };
-        }
+        let limit = memory::limit(&self.tiles.memory).filter(|_| input.bounds.is_none())?;
+        TooLarge::of(&input.clouds, limit)
+    }
+
+    fn survey_of(&self, question: &Question, run: &mut CommandContext) -> Result<Option<PlannedSurvey>> {
+        let input = &self.scene.input;
+        let Some(large) = self.too_large() else { return Ok(None) };
+        let limit = large.limit;
         let options = input.read_options();
         let kept = run.cache.as_ref().and_then(|cache| cache.survey_folder(&input.clouds, &options));
         let beside = self.output.first().map(|output| output.with_extension("tiles"));
@@ -119,86 +226,87 @@ impl<'a> TypedCells<'a> {
             (None, Some(beside)) => made_beside(&beside)?,
             (None, None) => return Ok(None),
         };
-        let params = PlanParams {
-            clouds: input.clouds.clone(),
-            crs: input.crs.clone(),
-            crs_against_files: if input.crs_override { Insistence::Insist } else { Insistence::Refuse },
-            flown: input.flown,
-            program: PROGRAM.to_owned(),
-            ..PlanParams::default()
-        };
-        let plan = Plan::kept_in(folder.path(), &params, &run.control())?;
+        let plan = Plan::kept_in(folder.path(), &self.plan_params(), &run.control())?;
         let plan = plan.with_grid_cells(&self.cells)?.fitting(limit)?;
         run.summary.remarks([large.remark_on_tiles(plan.tile_size)]);
-        let plan = planned(plan, &self.scene.plan, self.far, self.trees.map(|trees| (trees, latitude(question))))?;
-        Ok(Some(PlannedSurvey { plan, folder, is_temporary, limit }))
+        let plan = self.changed(plan, question)?;
+        Ok(Some(PlannedSurvey { plan, folder, is_temporary, limit, cells: self.cells.clone() }))
     }
 
-    /// Answers a question tile by tile, and writes it.
-    pub(crate) fn answer(
-        &self,
-        survey: PlannedSurvey,
-        question: Question,
-        map: Option<DrawnMap<'_>>,
-        run: &mut CommandContext,
-    ) -> Result<Answers<SurveyCells>> {
-        let PlannedSurvey { plan, folder, is_temporary, limit } = survey;
+    /// Answers a question tile by tile.
+    pub(crate) fn answer(survey: PlannedSurvey, question: Question, run: &mut CommandContext) -> Result<TiledAnswers> {
+        let PlannedSurvey { plan, folder, is_temporary, limit, cells } = survey;
         let survey = SurveyQuestion::new(plan, folder.path(), question.clone(), limit, &run.control())?;
         let start = Instant::now();
         let report = survey.run(&|| start.elapsed().as_secs_f64(), &run.control())?;
         refuse_failed(&report, "run the command again to try them again")?;
         run.summary.add_report(&report);
         let answers = survey.answers(&report, &run.control())?;
-        run.name_question(&question, answers.time_zone());
+        run.name_question(&question, &Places::Cells(cells), answers.time_zone());
         run.answered(&answers);
-        self.write(&answers, map, run)?;
         match (&run.cache, is_temporary) {
             (Some(cache), false) => cache.make_room_beside(&folder),
             _ => folder.remove(),
         }
-        Ok(answers)
+        let on = answers.found.on_targets(&answers.measures[0]);
+        Ok(TiledAnswers { answers, on })
     }
 
-    /// Returns the typed arguments that tiles do not support.
+    /// Returns the typed arguments that cells in tiles do not support.
     fn unknown(&self, question: &Question) -> Option<String> {
+        let flag = self.of_points.iter().find(|(_, is_given)| *is_given).map(|(flag, _)| (*flag).to_owned());
+        let is_unknown = |output: &&PathBuf| !["tif", "tiff", "png"].contains(&extension(output).as_str());
+        let output = || Some(format!("-o {}", self.output.iter().find(is_unknown)?.display()));
+        self.unknown_of_places(question).or(flag).or_else(output)
+    }
+
+    /// Returns true for places that tiles answer.
+    fn are_places(&self, question: &Question) -> bool {
+        self.of_points.iter().any(|(_, is_given)| *is_given) && self.unknown_of_places(question).is_none()
+    }
+
+    /// Returns the typed arguments that places in tiles do not support.
+    fn unknown_of_places(&self, question: &Question) -> Option<String> {
         let SceneInput { input, balls, .. } = self.scene;
         let flags = [
             ("--up", !matches!(input.up, UpChoice::Z)),
             ("--skip-distant", input.skip_distant),
+            ("--lines", !input.flight_lines.is_empty()),
+            ("--dates", input.dates.is_some()),
+            ("--only-classes", !input.only_classes.is_empty()),
             ("--trees", balls.trees.is_some()),
             ("--orient", balls.orient.is_some()),
             ("--scene-config", balls.config.scene_config.is_some()),
         ];
         let flag = flags.iter().chain(&self.others).find(|(_, is_given)| *is_given).map(|(flag, _)| (*flag).to_owned());
-        let is_unknown = |output: &&PathBuf| !["tif", "tiff", "png"].contains(&extension(output).as_str());
-        let output = || Some(format!("-o {}", self.output.iter().find(is_unknown)?.display()));
-        let part = || TileQuestion::not_in_tiles(question).map(|what| format!("what was typed ({what})"));
-        flag.or_else(output).or_else(part)
+        flag.or_else(|| question.needs_whole().map(|what| format!("what was typed ({what})")))
+    }
+}
+
+/// Scene of a question about places.
+pub(crate) enum SceneOfPlaces {
+    /// One model.
+    Whole(Box<Scene>),
+    /// A survey of which only some tiles are built.
+    Tiles { survey: Box<SurveyPlaces>, folder: SurveyFolder, is_temporary: bool },
+}
+
+impl SceneOfPlaces {
+    pub(crate) fn scene(&self) -> &Scene {
+        match self {
+            Self::Whole(scene) => scene,
+            Self::Tiles { survey, .. } => &survey.scene,
+        }
     }
 
-    fn write(&self, answers: &Answers<SurveyCells>, map: Option<DrawnMap<'_>>, run: &mut CommandContext) -> Result<()> {
-        let mut written = Vec::new();
-        for output in self.output {
-            if extension(output) == "png" {
-                let cells = &answers.found;
-                let heights = run.stage("reading relief", 0, |control| cells.relief(control))?;
-                let place = georeference(&cells.grid, &cells.frame);
-                let relief = HighestPoints { heights, cell: cells.grid.cell, place };
-                let picture = match map {
-                    Some(map) => map(answers, &relief)?,
-                    None => {
-                        run.summary.remarks(remark_on_first(output, &answers.measures));
-                        map_of_first(answers, &relief)?
-                    }
-                };
-                run.stage("writing", 0, |_| write_png(output, &picture))?;
-            } else {
-                run.stage("writing", 0, |_| answers.found.write_cog(output, &answers.measures, &run.tags))?;
-            }
-            written.push(output.display().to_string());
+    /// Refuses answers that missing tiles may change, and removes tiles that nobody keeps.
+    pub(crate) fn finish(&self, run: &CommandContext) -> Result<()> {
+        let Self::Tiles { survey, folder, is_temporary } = self else { return Ok(()) };
+        match (&run.cache, is_temporary) {
+            (Some(cache), false) => cache.make_room_beside(folder),
+            _ => folder.remove(),
         }
-        run.summary.add("written", written);
-        Ok(())
+        Ok(survey.check()?)
     }
 }
 
@@ -224,19 +332,13 @@ fn made_beside(folder: &Path) -> Result<SurveyFolder> {
     })
 }
 
-/// A map of the first measure.
-fn map_of_first(answers: &Answers<SurveyCells>, relief: &HighestPoints) -> belvedere::Result<Picture> {
-    let HighestPoints { heights, cell, place } = relief;
-    measure_map(&answers.measures[0], heights, *cell, place, &answers.found.title)
-}
-
 /// The plan with what will be built, before far terrain, and with light through trees at a latitude, radians, where one
 /// was typed.
 pub(crate) fn planned(
     plan: Plan,
     changes: &PlanArguments,
     far: Option<&FarTerrainArguments>,
-    trees: Option<(&ThroughTreesArguments, Option<f64>)>,
+    trees: Option<(ThroughTrees, Option<f64>)>,
 ) -> Result<Plan> {
     let meshes = changes.add.iter().map(|path| SideFile::new(path)).collect::<belvedere::Result<Vec<_>>>()?;
     let plan = plan.with_meshes(meshes)?;
@@ -252,10 +354,31 @@ pub(crate) fn planned(
         None => plan,
     };
     let Some((trees, latitude)) = trees else { return Ok(plan) };
-    match trees.choice()?.crowns(plan.knows_crowns(), plan.crown_density(latitude)?)? {
+    match trees.crowns(plan.knows_crowns(), plan.crown_density(latitude)?)? {
         Some(crowns) => Ok(plan.with_light_through_trees(crowns)?),
         None => Ok(plan),
     }
+}
+
+/// Reports a plan that was written into a folder.
+pub(crate) fn report_plan(plan: &Plan, folder: &Path, run: &mut CommandContext) {
+    run.summary.remarks(plan.remarks.clone());
+    let estimate = plan.estimate();
+    run.summary
+        .add("files", plan.inputs.len())
+        .add("tiles", plan.tiles.len())
+        .add("tile_size_m", plan.tile_size)
+        .add("halo_m", plan.buffer)
+        .add("results", plan.questions.iter().map(|one| one.name.as_str()).collect::<Vec<_>>())
+        .add("points", estimate.points)
+        .add("points_read_with_halo", estimate.points_with_buffer)
+        .add("points_of_the_largest_tile", estimate.max_points_of_a_tile)
+        .add("estimated_memory_gb", rounded(estimate.memory_bytes as f64 / 1e9, 2))
+        .add("estimated_disk_gb", rounded(estimate.disk_bytes as f64 / 1e9, 2))
+        .add("written", folder.display().to_string())
+        .headline("<tiles> tiles of <tile_size_m> m, <points> points")
+        .headline("results: <results>")
+        .headline("estimated: <estimated_memory_gb> GB of memory, <estimated_disk_gb> GB on disk");
 }
 
 /// The error of a run of which something failed, with what to do.

@@ -61,14 +61,14 @@ impl CommandContext {
         places: &Places,
     ) -> belvedere::Result<Answers<Q::Found>> {
         let answers = ask(scene, question, places, &self.control())?;
-        self.name_question(&question.clone().into(), answers.time_zone());
+        self.name_question(&question.clone().into(), places, answers.time_zone());
         self.answered(&answers);
         Ok(answers)
     }
 
     /// Adds the question and the zone of its clock to the metadata of rasters.
-    pub(crate) fn name_question(&mut self, question: &Question, time_zone: Option<&str>) {
-        self.tags.extend(question_tags(question, time_zone));
+    pub(crate) fn name_question(&mut self, question: &Question, places: &Places, time_zone: Option<&str>) {
+        self.tags.extend(question_tags(question, places, time_zone));
     }
 
     /// Reports on answers: the answer itself, all figures, and what a user must know beside them.

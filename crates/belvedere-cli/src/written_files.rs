@@ -79,6 +79,8 @@ pub(crate) fn files_named(argument: &Arg, value: &OsStr) -> Vec<PathBuf> {
     let text = value.to_string_lossy();
     let parsed = argument.get_value_parser().type_id();
     match text.split_once('=') {
+        // standard input
+        _ if text == "-" => Vec::new(),
         _ if parsed == TypeId::of::<PathBuf>() => vec![value.into()],
         Some(("trajectory" | "mesh" | "cloud", file)) => vec![file.into()],
         Some((_, file)) if argument.get_id() == "model" => vec![file.into()],

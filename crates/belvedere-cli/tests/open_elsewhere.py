@@ -178,7 +178,7 @@ run("city", "plan", town, "--sun", "235,30", "--sky-view", "--directions", 49, "
 run("city", "run", city)
 for result, kind, nodata, names in (
     ("shadow_235_30", "uint8", 255, ("lit", "unproven")),
-    ("sky_view_factor", "float32", -9999, ("sky_view_factor",)),
+    ("sky_view_factor", "float32", -9999, ("sky_view_factor", "sky_openness")),
 ):
     run("city", "merge", city, "--result", result, "-o", merged)
     with rasterio.open(merged) as raster, rasterio.open(city / f"{result}.vrt") as tiles:

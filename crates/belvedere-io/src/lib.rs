@@ -56,7 +56,7 @@ pub use files::source::{OpenSource, ReadSeek, Source, SystemBeside, web_address}
 #[cfg(feature = "tiff")]
 pub use geotiff::read::{
     NamedBand, PlacedRaster, ReadBands, read_bands as read_tif_bands, read_f32 as read_tif_f32,
-    read_placed as read_tif, read_u8 as read_tif_u8, read_u16 as read_tif_u16,
+    read_placed as read_tif, read_tags as read_tif_tags, read_u8 as read_tif_u8, read_u16 as read_tif_u16,
 };
 #[cfg(feature = "tiff")]
 pub use geotiff::terrain::read_terrain;

@@ -92,9 +92,9 @@ impl PyScene {
     where
         Q: Ask<Found: Send + 'static> + Clone + Into<Question> + Send + 'static,
     {
-        let (scene, named) = (Arc::clone(&self.0), question.clone());
+        let (scene, named, named_places) = (Arc::clone(&self.0), question.clone(), places.clone());
         let mut answers = run(py, progress, move |control| ask::ask(&scene, &question, &places, control))?;
-        let tags = question_tags(&named.into(), answers.time_zone());
+        let tags = question_tags(&named.into(), &named_places, answers.time_zone());
         for measure in &mut answers.measures {
             let is_new = |(name, _): &&(String, String)| measure.tags.iter().all(|(known, _)| known != name);
             let new: Vec<(String, String)> = tags.iter().filter(is_new).cloned().collect();

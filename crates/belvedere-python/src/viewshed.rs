@@ -76,7 +76,7 @@ impl PyScene {
             (None, None) => return Err(PyRuntimeError::new_err("there are no cells")),
         };
         let remarks = remarks_of(py, &answers.remarks)?;
-        let raster = ResultRaster::of_viewshed(&seen, [grid.0, grid.1]).map_err(exception)?;
+        let raster = ResultRaster::of_measures(&seen.to_measures(), [grid.0, grid.1]).map_err(exception)?;
         let no_data = raster.pixels.kind().in_gdal().1;
         let arrays = match &raster.pixels {
             Pixels::Answers(bands) => arrays_of(py, bands),

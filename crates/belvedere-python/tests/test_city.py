@@ -10,6 +10,7 @@ import time
 
 import belvedere
 import pytest
+import rasterio
 
 
 def results(folder):
@@ -88,5 +89,15 @@ def test_one_question_of_a_survey_of_any_size(folder):
     assert found["cells"]["targets"] > 1000 and 5 < found["cells"]["visible_percent"] < 100
     with pytest.raises(belvedere.BelvedereError, match="use 'shadow'"):
         belvedere.city.answer("balls", cloud, output)
-    with pytest.raises(belvedere.BelvedereError, match="soft edges"):
-        belvedere.city.answer("shadow", cloud, output, sun=[(150, 30)], soft=True, memory="118M")
+    with pytest.raises(belvedere.BelvedereError, match="--casters"):
+        belvedere.city.answer("shadow", cloud, output, sun=[(150, 30)], casters=True, memory="118M")
+    # with all its options, also as a plan for many computers
+    found = belvedere.city.plan(cloud, folder / "soft", "shadow", sun=[(150, 30)], soft=True, cell=1)
+    assert found["results"] == ["shadow"]
+    assert belvedere.city.run(folder / "soft")["is_complete"]
+    belvedere.city.merge(folder / "soft", output)
+    with rasterio.open(output) as raster:
+        lit = raster.read(1, masked=True)
+    expected = scene.shadow(sun=(150, 30), soft=True, cell=1)
+    assert float(lit.mean()) == pytest.approx(expected.mean(), abs=0.02)
+    assert ((lit > 0) & (lit < 1)).any()

@@ -52,6 +52,7 @@ ASK = Path(__file__).parents[2] / "belvedere-apps" / "src" / "ask"
 #: The command of the questions in a file, where it does not have the name of the file.
 COMMANDS = {
     "cells": "sky-view",
+    "given_places": "sky-view",
     "sun": "sun-hours",
     "viewshed/limits": "viewshed",
     "viewshed/question": "viewshed",
@@ -59,7 +60,7 @@ COMMANDS = {
     "cameras/lens": "cameras",
 }
 #: Flags that do not have the names of their fields.
-FLAGS = {"--min-sun-elevation-deg": "--min-sun-elevation", "--fov-deg": "--fov"}
+FLAGS = {"--min-sun-elevation-deg": "--min-sun-elevation", "--fov-deg": "--fov", "--height": "--target-height"}
 #: Defaults that flags call by a name.
 NAMED = {"25": "detect"}
 #: Units in the words of fields, and as flags have them.

@@ -59,7 +59,7 @@ def test_ctrl_c_stops_long_before_the_end(tile):
                 sent[:] = [time.perf_counter(), done / total]
                 threading.Timer(0.05, os.kill, (os.getpid(), signal.SIGINT)).start()
         try:
-            scene.sky_view(directions=20_000, cell=0.1, progress=interrupt)
+            scene.sky_view(directions=5000, cell=0.5, progress=interrupt)
         except KeyboardInterrupt:
             moment, share = sent
             print((time.perf_counter() - moment) / ((moment - begun) / share))
@@ -87,7 +87,8 @@ def test_progress_counts_to_the_end_and_what_it_raises_stops_the_work(scene):
     stopped: list[float] = []
 
     def stop(stage, done, total):
-        stopped.append(done / max(total, 1))
+        # the first stages do not know how long they take
+        stopped.append(done / total if total else 0.0)
         raise Stop
 
     with pytest.raises(Stop):

@@ -8,7 +8,7 @@
 //! Balls are made once for each tile, from the points of the tile and of a margin around it. A ball belongs to the tile
 //! that contains the point of the ball. A question is then answered tile by tile, with the balls of all tiles that can
 //! change the answer. The highest tops of balls, on squares of 16 m, identify these tiles. If balls that can change an
-//! answer are missing, the answer is unproven and never lit.
+//! answer are missing, its cell has no value.
 //!
 //! # Tiles make no difference
 //! Every ball and every answer is the same, bit by bit, for any size of tiles. There are three reasons:
@@ -32,12 +32,13 @@ pub use inputs::InputFile;
 pub use plan::cell_sizes::CellSizes;
 pub use plan::estimate::RunEstimate;
 pub use plan::make_plan::PlanParams;
-pub use plan::question::{TileQuestion, TileRadiation, Topic};
+pub use plan::question::{TileQuestion, Topic};
 pub use plan::record::{TileOutcome, TileRecord};
 pub use plan::side_files::SideFile;
 pub use plan::stage::Stage;
 pub use plan::{Plan, PlanFrame};
 pub use run::any_size::{SurveyCells, SurveyPart, SurveyQuestion, TooLarge};
 pub use run::merge::{Merged, UnfinishedRun, merge, merged_within, write_catalogue};
+pub use run::places::SurveyPlaces;
 pub use run::status::{StageStatus, Status, status};
 pub use run::{RunParams, RunReport, Shard, Steps, run};

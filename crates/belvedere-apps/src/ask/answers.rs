@@ -81,6 +81,12 @@ impl<F> Answers<F> {
         Self { found, measures, headline: Vec::new(), remarks: Vec::new(), report: Report::default() }
     }
 
+    /// This with other results beside measures.
+    pub(super) fn map<G>(self, results: impl FnOnce(F) -> G) -> Answers<G> {
+        let Self { found, measures, headline, remarks, report } = self;
+        Answers { found: results(found), measures, headline, remarks, report }
+    }
+
     /// This with the contents of `context`.
     #[must_use]
     pub fn with(self, context: Context) -> Self {

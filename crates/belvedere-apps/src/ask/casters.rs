@@ -78,6 +78,7 @@ pub(super) fn casters(
 ) -> Result<Vec<Measure>> {
     let kinds = kinds_of_balls(scene, &ClassMeanings::default(), context)?;
     let targets = &light.targets;
+    let (blockers, _) = light.whole()?;
     let of_target = |(row, light_there): (usize, &f32), to_sun: [f64; 3]| {
         control.check()?;
         // at night there are no shadows
@@ -89,7 +90,7 @@ pub(super) fn casters(
         }
         let place = targets.positions[row].map(f64::from);
         let normal = targets.normals.as_ref().map(|normals| normals[row].map(f64::from));
-        Ok(f32::from(number_of(sun_obstacle(&light.blockers, place, normal, &kinds, to_sun))))
+        Ok(f32::from(number_of(sun_obstacle(blockers, place, normal, &kinds, to_sun))))
     };
     let of_sun = |(sun, lit): (&NamedSun, &Measure)| {
         let rows = lit.values.par_iter().enumerate().with_min_len(CHUNK);

@@ -36,7 +36,7 @@ pub(super) fn cells_of(
     control: &Control<'_>,
 ) -> Result<Targets> {
     let name = if params.level == CellLevel::Surface { "finding the surface" } else { "finding hidden ground" };
-    let cloud = scene.ground_cloud()?;
+    let cloud = &*scene.points_over(&ground.grid, control)?;
     let (mut targets, report) = control.stage(name, 0, || Targets::of_cells(cloud, ground, params, control))?;
     let mut under_cover = report.cells_below_objects_excluded;
     if let Some(added) = scene.model().added() {

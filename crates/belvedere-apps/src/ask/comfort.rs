@@ -24,6 +24,7 @@ use serde::{Deserialize, Serialize};
 
 /// Sun and sky along routes and at windows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct ComfortQuestion {
     /// The days.

@@ -18,6 +18,7 @@ use serde::{Deserialize, Serialize};
 
 /// The distance to the first surface for each pixel of a view.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct DepthMapQuestion {
     /// Position and projection of the picture; must be set by whoever reads a question from text.

@@ -34,6 +34,7 @@ const SUN_EXPECTED: &str = "azimuth and elevation in degrees, the elevation abov
 
 /// Maximum building height on a parcel that keeps the protected sun of others.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct EnvelopeQuestion {
     /// The suns that are protected.
@@ -66,6 +67,7 @@ pub struct EnvelopeQuestion {
 
 /// Suns that are protected.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ProtectedSuns {
     /// Azimuths, clockwise from north, and elevations above 0 up to 90, degrees.

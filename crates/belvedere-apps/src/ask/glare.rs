@@ -27,6 +27,7 @@ const TIME_STEP_MIN: f64 = 1.0;
 
 /// Sun that reflectors send to observers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct GlareQuestion {
     /// The reflectors: rectangles with a size.

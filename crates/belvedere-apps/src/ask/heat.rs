@@ -18,6 +18,7 @@ use crate::heat::{
     days_of_heat, fold_absorbed, pet, utci,
 };
 use crate::irradiance::PARTS;
+use crate::rows::Obstacles;
 use crate::sun::{Site, Zone};
 use crate::targets::Measure;
 use crate::window_views::{ClassMeanings, are_made_from};
@@ -41,6 +42,7 @@ const MAX_LISTED_HOURS: usize = 48;
 
 /// Heat at places.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct HeatQuestion {
     /// Name of the file of weather.
@@ -296,11 +298,11 @@ impl Ask for HeatQuestion {
         let mut light = Light::resolve(&places, &directions, trees, scene, context, control)?;
         let seasons = found.wanted().flat_map(|hour| hour.suns.iter().map(|sun| Some(sun.season)));
         context.add(light.crowns().and_then(|crowns| remark_on_leaves(crowns, crowns.known_factors(seasons))));
-        let blockers = Arc::clone(&light.blockers);
+        let blockers = Arc::clone(light.whole()?.0);
         Arc::make_mut(&mut light.targets).leave_out_inside(&blockers, context, control)?;
         let kinds = kinds_of_balls(scene, &ClassMeanings::default(), context)?;
         let cover = self.surfaces.ground;
-        let surfaces = SceneSurfaces { scene: &light.blockers, balls, points, kinds: &kinds, cover };
+        let surfaces = SceneSurfaces { scene: &blockers, balls, points, kinds: &kinds, cover };
         let named: Vec<HourName> = match self.by_hour {
             true => found.wanted().map(|hour| HourName::of(hour, &zone)).collect(),
             false => Vec::new(),
@@ -348,23 +350,31 @@ impl HeatQuestion {
         let days: Vec<&Vec<HeatHour>> = found.days.iter().map(|(hours, _)| hours).collect();
         let before = |day: usize| found.days[..day].iter().flat_map(|(_, wanted)| wanted).filter(|w| **w).count();
         let receiver = Receiver::Body(self.body);
-        fold_absorbed((light.obstacles(), surfaces), &light.targets.positions, receiver, &days, control, |block| {
-            let (hours, wanted) = &found.days[block.day];
-            let first = before(block.day);
-            let of_target = |absorbed: &Vec<f64>| -> Vec<[f64; 2]> {
-                let wanted = hours.iter().zip(wanted).zip(absorbed).filter(|((_, wanted), _)| **wanted);
-                wanted.map(|((hour, _), absorbed)| self.temperatures(hour, *absorbed)).collect()
-            };
-            let temperatures: Vec<Vec<[f64; 2]>> = block.absorbed.par_iter().map(of_target).collect();
-            let hours: Vec<&HeatHour> =
-                hours.iter().zip(wanted).filter(|(_, wanted)| **wanted).map(|(h, _)| h).collect();
-            for (row, temperatures) in block.rows.zip(temperatures) {
-                for (number, (hour, temperatures)) in hours.iter().zip(temperatures).enumerate() {
-                    sums.add(row, hour, temperatures, (single > 0).then_some(first + number));
+        let (scene, trees) = light.whole()?;
+        fold_absorbed(
+            (Obstacles { scene, trees }, surfaces),
+            &light.targets.positions,
+            receiver,
+            &days,
+            control,
+            |block| {
+                let (hours, wanted) = &found.days[block.day];
+                let first = before(block.day);
+                let of_target = |absorbed: &Vec<f64>| -> Vec<[f64; 2]> {
+                    let wanted = hours.iter().zip(wanted).zip(absorbed).filter(|((_, wanted), _)| **wanted);
+                    wanted.map(|((hour, _), absorbed)| self.temperatures(hour, *absorbed)).collect()
+                };
+                let temperatures: Vec<Vec<[f64; 2]>> = block.absorbed.par_iter().map(of_target).collect();
+                let hours: Vec<&HeatHour> =
+                    hours.iter().zip(wanted).filter(|(_, wanted)| **wanted).map(|(h, _)| h).collect();
+                for (row, temperatures) in block.rows.zip(temperatures) {
+                    for (number, (hour, temperatures)) in hours.iter().zip(temperatures).enumerate() {
+                        sums.add(row, hour, temperatures, (single > 0).then_some(first + number));
+                    }
                 }
-            }
-            Ok(())
-        })?;
+                Ok(())
+            },
+        )?;
         Ok(sums)
     }
 }

@@ -23,6 +23,7 @@ const OVERHEAD_DEG: f64 = 89.999;
 
 /// Above which elevation the sky is free around observers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct HorizonQuestion {
     /// Height above the ground of eyes without one, metres, 0 or more; `None` for 1.7.
@@ -43,6 +44,7 @@ pub struct HorizonQuestion {
 
 /// Treatment of elevations below the horizontal plane through the observer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum BelowLevel {
     /// 0, as tools of photovoltaics expect. Default.

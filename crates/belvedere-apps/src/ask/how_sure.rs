@@ -29,6 +29,7 @@ pub const EXPECTED_OBSERVERS: &str = "expected number of observers";
 
 /// Request for the certainty of answers. Needs pulses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct HowSure {
     /// True to give the probability, 0 to 1, that a target is visible or lit. Default: false.
@@ -226,6 +227,9 @@ pub fn check_interval(is_wanted: bool, trees: &ThroughTrees) -> Result<()> {
 /// # Errors
 /// Those of [`Scene::blockers`].
 pub fn knows_intervals(scene: &Scene, control: &Control<'_>) -> Result<bool> {
+    if let Some(parts) = scene.parts() {
+        return Ok(parts.proves());
+    }
     let has_pulses = scene.model().pulses().is_some();
     Ok(has_pulses && !scene.blockers(UnprovenAs::Reported, control)?.proof().is_some_and(Proof::is_from_ground))
 }
@@ -236,6 +240,9 @@ pub(super) fn check_interval_scene(is_wanted: bool, scene: &Scene, control: &Con
         return Ok(());
     }
     scene.check_pulses(Parameter::Interval)?;
+    if scene.parts().and_then(|parts| parts.crowns()).is_some_and(|crowns| crowns.gives_shares()) {
+        return Err(Error::invalid(Parameter::Interval, "given", "left out where light gets through trees"));
+    }
     if knows_intervals(scene, control)? {
         return Ok(());
     }

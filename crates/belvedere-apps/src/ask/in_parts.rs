@@ -1,24 +1,63 @@
 //! Results of cells in parts, such as tile by tile, in the words and figures of one answer.
 
+use super::answers::Answers;
 use super::context::Context;
 use super::how_sure::{EXPECTED, PROBABILITY, UNCERTAIN};
 use super::irradiance;
+use super::places::Places;
 use super::question::Question;
-use super::scene::Whereabouts;
+use super::scene::{Scene, Whereabouts};
 use super::sections::{MeasuresSection, PlacesReport};
 use super::shadow;
 use super::sky_view;
 use super::sun::MAX_LISTED_SUNS;
 use super::sun_hours;
+use super::survey_parts::needs_whole;
+use super::viewshed::ViewshedTargets;
 use crate::targets::Measure;
 use crate::viewshed::title_of_cells;
-use belvedere_data::{Error, Parameter, Result};
+use belvedere_data::Result;
+use belvedere_data::control::Control;
+
+/// Puts a question to a scene of which only parts are in memory, about cells that were made before. Results are
+/// measures.
+///
+/// # Errors
+/// Those of [`Question::ask`]. [`InvalidParameter`](belvedere_data::Error::InvalidParameter) for a question without
+/// measures of cells.
+pub fn ask_in_parts(question: &Question, scene: &Scene, places: &Places, control: &Control<'_>) -> Result<Answers<()>> {
+    if question.needs_whole().is_some() {
+        return Err(needs_whole());
+    }
+    Ok(question.ask(scene, places, control)?.map(|_| ()))
+}
+
+impl Question {
+    /// Returns the first part of a question that needs all of a survey in memory; `None` for one that is answered part
+    /// by part ([`ask_in_parts`]).
+    #[must_use]
+    pub fn needs_whole(&self) -> Option<&'static str> {
+        let parts: &[(&str, bool)] = match self {
+            Self::Shadow(shadow) => &[("what casts shadows", shadow.casters)],
+            Self::Irradiance(energy) => &[("roof planes", energy.roofs.is_some())],
+            Self::Viewshed(view) => &[
+                ("targets other than cells", view.targets != [ViewshedTargets::Cells]),
+                ("masks of observers", view.masks),
+                ("heights that are seen", view.max_height.is_some()),
+            ],
+            Self::SunHours(_) | Self::SkyView(_) => &[],
+            _ => return Some("a question without values of cells"),
+        };
+        parts.iter().find(|(_, is_wanted)| *is_wanted).map(|(what, _)| *what)
+    }
+}
 
 /// Reports in `context` the answer of the measures of cells of a side, metres, to a question; returns the title of a
 /// map. The words are those of [`ask`](super::ask) for a scene.
 ///
 /// # Errors
-/// [`Error::InvalidParameter`] for a question that has no answers of cells in parts, and for a site that is not known.
+/// [`InvalidParameter`](belvedere_data::Error::InvalidParameter) for a question that has no answers of cells in parts,
+/// and for a site that is not known.
 pub fn summarise_parts(
     question: &Question,
     (measures, cell): (&[Measure], f64),
@@ -58,11 +97,7 @@ pub fn summarise_parts(
             about.summarise_parts(answers, (measures, cell), context);
             return Ok(title_of_cells(about.observers.len() == 1, about.reverse).to_owned());
         }
-        _ => {
-            let (value, expected) =
-                ("another".to_owned(), "about shadow, sun hours, sky view, irradiance or viewsheds");
-            return Err(Error::invalid(Parameter::Questions, value, expected));
-        }
+        _ => return Err(needs_whole()),
     };
     context.report.measures = Some(MeasuresSection::of_count(count, listed));
     Ok(title)

@@ -38,6 +38,7 @@ const MIN_CELLS: usize = 10;
 
 /// Energy of sun and sky at places and on roofs over a period.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct IrradianceQuestion {
     /// Source of the radiation.
     pub radiation: Radiation,
@@ -61,6 +62,7 @@ pub struct IrradianceQuestion {
 
 /// Source of radiation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Radiation {
     /// Rows of weather, each cut into parts.
@@ -98,6 +100,7 @@ impl PartialEq for Radiation {
 
 /// Planes of roofs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct Roofs {
     /// Smallest area of a plane, square metres; `None` for the default of [`RoofPlaneParams`].
@@ -119,6 +122,7 @@ pub struct Roofs {
 
 /// A photovoltaic system; values that are not given are those of [`PvSystem`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct PvChoice {
     /// Peak power of a square metre of panels, kW/m².
@@ -165,8 +169,6 @@ pub struct IrradianceResults {
     pub roofs: Option<RoofsResults>,
     /// Location of the scene on earth.
     pub site: Site,
-    /// Obstacles.
-    pub blockers: Arc<MedialScene>,
 }
 
 /// The planes of roofs with their energy.
@@ -187,6 +189,8 @@ pub struct RoofsResults {
     pub radiation: String,
     /// Sums of them.
     pub report: RoofsReport,
+    /// Obstacles to their light.
+    pub blockers: Arc<MedialScene>,
 }
 
 impl RoofsResults {
@@ -397,16 +401,22 @@ impl Ask for IrradianceQuestion {
         let intervals = Intervals::wanted(self.interval);
         let station = self.radiation.weather().map(|weather| [weather.latitude, weather.longitude]);
         let site = self.place.site(scene, context, station)?;
-        let trees = self.trees.of((scene, Some(site.latitude)), context, control)?;
-        let crowns = trees.as_ref().map(|trees| trees.crowns);
+        let trees = match scene.parts() {
+            Some(_) => None,
+            None => self.trees.of((scene, Some(site.latitude)), context, control)?,
+        };
+        let crowns = match scene.parts() {
+            Some(parts) => parts.crowns(),
+            None => trees.as_ref().map(|trees| trees.crowns),
+        };
         let seasons = self.gather(&site, crowns, context, control)?;
         context.add(crowns.and_then(|crowns| remark_on_leaves(crowns, seasons.iter().map(|season| season.factor))));
         let planes = self.roofs.as_ref().map(|roofs| roofs.find(scene, context, control)).transpose()?;
-        let blockers = scene.blockers(UnprovenAs::Visible, control)?;
         let mut measures = Vec::new();
         let on = match places {
             Places::Scene => {
                 let directions = seasons.iter().map(|season| season.radiation.directions().len()).sum();
+                let blockers = scene.blockers(UnprovenAs::Visible, control)?;
                 context.report.lines_of_sight = Some(LinesSection::of(&blockers, Some(directions)));
                 None
             }
@@ -428,15 +438,16 @@ impl Ask for IrradianceQuestion {
         };
         let roofs = match planes {
             Some((planes, buildings)) => {
+                let blockers = scene.blockers(UnprovenAs::Visible, control)?;
                 let obstacles = Obstacles { scene: &blockers, trees: trees.as_ref() };
                 let energies = control.stage("testing sun and sky", planes.len(), || {
                     roof_irradiation(obstacles, &planes, &seasons, intervals, control)
                 })?;
-                Some(self.roofs_found((planes, buildings, energies), &site, crowns, context, control)?)
+                Some(self.roofs_found((planes, buildings, energies, blockers), &site, crowns, context, control)?)
             }
             None => None,
         };
-        Ok(Answers::new(IrradianceResults { on, roofs, site, blockers }, measures))
+        Ok(Answers::new(IrradianceResults { on, roofs, site }, measures))
     }
 }
 
@@ -458,7 +469,7 @@ impl IrradianceQuestion {
     /// The electricity of planes of roofs, with what is reported of them.
     fn roofs_found(
         &self,
-        (planes, buildings, energies): (Vec<RoofPlane>, Buildings, Vec<RoofIrradiation>),
+        (planes, buildings, energies, blockers): (Vec<RoofPlane>, Buildings, Vec<RoofIrradiation>, Arc<MedialScene>),
         site: &Site,
         crowns: Option<CrownLight>,
         context: &mut Context,
@@ -491,7 +502,7 @@ impl IrradianceQuestion {
             ));
         }
         let radiation = self.radiation.in_words();
-        Ok(RoofsResults { planes, buildings, energies, system, yields, rows, radiation, report })
+        Ok(RoofsResults { planes, buildings, energies, system, yields, rows, radiation, report, blockers })
     }
 }
 

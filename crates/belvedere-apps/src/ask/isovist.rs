@@ -22,6 +22,7 @@ use serde::{Deserialize, Serialize};
 
 /// The space that observers see, in numbers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct IsovistsQuestion {
     /// Height above the ground of eyes without one, metres, 0 or more; `None` for 1.7.

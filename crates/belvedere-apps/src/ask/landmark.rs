@@ -27,6 +27,7 @@ use std::sync::Arc;
 
 /// Views of a landmark, with its visible part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LandmarkQuestion {
     /// The landmark.
     pub shape: LandmarkShape,
@@ -61,6 +62,7 @@ pub struct LandmarkQuestion {
 
 /// Shape of a landmark.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum LandmarkShape {
     /// A mesh, metres.

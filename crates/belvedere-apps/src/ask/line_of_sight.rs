@@ -30,6 +30,7 @@ const OUTSIDE_CLOUD_AND_TERRAIN: &str =
 
 /// Visibility of the targets of pairs from their observers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct LinesOfSightQuestion {
     /// Height above the ground of observers without one, metres, 0 or more; `None` for 1.7.
@@ -52,6 +53,7 @@ pub struct LinesOfSightQuestion {
 
 /// The rows of a profile.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct ProfileRows {
     /// Distance between rows, metres, above 0; `None` for a thousandth of the line, at least 0.1.

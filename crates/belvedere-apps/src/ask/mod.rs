@@ -23,6 +23,8 @@ mod comfort;
 mod context;
 mod depth_map;
 mod envelope;
+mod found;
+mod given_places;
 mod glare;
 mod heat;
 mod horizon;
@@ -36,6 +38,7 @@ mod line_of_sight;
 mod mesh_levels;
 pub mod north;
 pub mod observers;
+mod placed_question;
 pub mod places;
 mod protected_view;
 mod question;
@@ -43,12 +46,15 @@ mod reliability;
 pub mod remark;
 pub mod report;
 pub mod scene;
+#[cfg(feature = "schema")]
+mod schema;
 pub mod sections;
 mod seen_kinds;
 mod sentences;
 mod shadow;
 mod shared;
 mod sight_network;
+mod sight_table;
 mod single_places;
 mod sky_view;
 mod standing;
@@ -59,6 +65,7 @@ mod sun_hours;
 mod sun_place;
 mod sun_position;
 mod survey;
+pub mod survey_parts;
 mod survey_plan;
 mod terrain_heights;
 mod towers;
@@ -83,6 +90,7 @@ pub use comfort::{ComfortQuestion, ComfortResults, RoutesOrWindows};
 pub use context::Context;
 pub use depth_map::{DepthMapQuestion, DepthMapResults, ViewFrom};
 pub use envelope::{EnvelopeQuestion, EnvelopeResults, Protected, ProtectedShape, ProtectedSuns};
+pub use given_places::{GivenCells, GivenPlace, GivenPlaces};
 pub use glare::{GlareQuestion, GlareResults, GlareSummary};
 pub use heat::HeatQuestion;
 pub use horizon::{BelowLevel, HorizonQuestion, HorizonResults};
@@ -90,7 +98,7 @@ pub use how_sure::{
     BEING_FREE, EXPECTED, EXPECTED_OBSERVERS, HowSure, PROBABILITY, UNCERTAIN, check_interval, knows_intervals,
     remark_from_ground,
 };
-pub use in_parts::summarise_parts;
+pub use in_parts::{ask_in_parts, summarise_parts};
 pub use irradiance::{
     IrradianceQuestion, IrradianceResults, PvChoice, Radiation, Roofs, RoofsResults, remark_on_radiation,
 };
@@ -100,13 +108,16 @@ pub use line_of_sight::{LinesOfSightQuestion, ProfileRows, SightColumns, SightsR
 pub use mesh_levels::remarks_on_model;
 pub use north::{AzimuthNorth, North};
 pub use observers::Eyes;
+pub use placed_question::PlacedQuestion;
 pub use places::{NetworkPlaces, Places, Turned, remark_on_edge, remark_on_empty_areas};
 pub use protected_view::{ProtectedViewQuestion, ProtectedViewResults};
-pub use question::Question;
+pub use question::{Found, Question};
 pub use reliability::with_reliability;
 pub use remark::{Remark, Severity, remark_on_left_out};
 pub use report::Report;
 pub use scene::Scene;
+#[cfg(feature = "schema")]
+pub use schema::question_schema;
 pub use sections::{
     CertaintySection, EnvelopeSection, ExposureSection, FacesSection, GlareSection, HeatSection, HeightFrom,
     LandmarkSection, NetworkSection, PictureSection, PlaceSection, SeenSection, TargetsSection, TowersSection,

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 /// North of azimuths: true or grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum North {
     /// True north; grid north where the scene has no usable reference system. Default.

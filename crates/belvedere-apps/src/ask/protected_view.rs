@@ -27,6 +27,7 @@ const MAX_LISTED: usize = 10;
 
 /// Maximum building height on cells of the ground ([`Places::Cells`]) outside the view of a landmark.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct ProtectedViewQuestion {
     /// The landmark.

@@ -1,6 +1,6 @@
 //! All questions in one type.
 
-use super::answers::Ask;
+use super::answers::{Answers, Ask, ask};
 use super::cameras::CamerasQuestion;
 use super::comfort::ComfortQuestion;
 use super::depth_map::DepthMapQuestion;
@@ -12,7 +12,9 @@ use super::irradiance::IrradianceQuestion;
 use super::isovist::IsovistsQuestion;
 use super::landmark::LandmarkQuestion;
 use super::line_of_sight::LinesOfSightQuestion;
+use super::places::Places;
 use super::protected_view::ProtectedViewQuestion;
+use super::scene::Scene;
 use super::shadow::ShadowQuestion;
 use super::sky_view::SkyViewQuestion;
 use super::sun_calendar::SunCalendarQuestion;
@@ -24,10 +26,12 @@ use super::view_targets::ViewTargetsQuestion;
 use super::viewshed::ViewshedQuestion;
 use super::window_views::WindowViewsQuestion;
 use belvedere_data::Result;
+use belvedere_data::control::Control;
 use serde::{Deserialize, Serialize};
 
 /// All questions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Question {
@@ -79,12 +83,18 @@ pub enum Question {
 
 /// Makes any question one of all.
 macro_rules! one_of_all {
-    ($($name:ident: $question:ty),* $(,)?) => {
+    ($($name:ident: $question:ty = $command:literal),* $(,)?) => {
         $(impl From<$question> for Question {
             fn from(question: $question) -> Self {
                 Self::$name(question)
             }
         })*
+
+        /// Results of any question beside measures.
+        #[non_exhaustive]
+        pub enum Found {
+            $(#[doc = concat!("Those of [`", stringify!($question), "`].")] $name(<$question as Ask>::Found),)*
+        }
 
         impl Question {
             /// Checks all that does not depend on a scene.
@@ -96,33 +106,51 @@ macro_rules! one_of_all {
                     $(Self::$name(question) => question.check(),)*
                 }
             }
+
+            /// Puts the question to a scene, as [`ask`] does.
+            ///
+            /// # Errors
+            /// Those of [`ask`].
+            pub fn ask(&self, scene: &Scene, places: &Places, control: &Control<'_>) -> Result<Answers<Found>> {
+                match self {
+                    $(Self::$name(question) => Ok(ask(scene, question, places, control)?.map(Found::$name)),)*
+                }
+            }
+
+            /// Returns the command of the program that asks such a question.
+            #[must_use]
+            pub fn command(&self) -> &'static str {
+                match self {
+                    $(Self::$name(_) => $command,)*
+                }
+            }
         }
     };
 }
 
 one_of_all! {
-    Shadow: ShadowQuestion,
-    SunHours: SunHoursQuestion,
-    SunCalendar: SunCalendarQuestion,
-    Glare: GlareQuestion,
-    SkyView: SkyViewQuestion,
-    Irradiance: IrradianceQuestion,
-    Heat: HeatQuestion,
-    SunPosition: SunPositionQuestion,
-    LineOfSight: LinesOfSightQuestion,
-    Horizon: HorizonQuestion,
-    Isovist: IsovistsQuestion,
-    Viewshed: ViewshedQuestion,
-    Towers: TowersQuestion,
-    Landmark: LandmarkQuestion,
-    WindowViews: WindowViewsQuestion,
-    ProtectedView: ProtectedViewQuestion,
-    Cameras: CamerasQuestion,
-    SurveyPlan: SurveyPlanQuestion,
-    DepthMap: DepthMapQuestion,
-    ViewTargets: ViewTargetsQuestion,
-    Comfort: ComfortQuestion,
-    Envelope: EnvelopeQuestion,
+    Shadow: ShadowQuestion = "shadow",
+    SunHours: SunHoursQuestion = "sun-hours",
+    SunCalendar: SunCalendarQuestion = "sun-calendar",
+    Glare: GlareQuestion = "glare",
+    SkyView: SkyViewQuestion = "sky-view",
+    Irradiance: IrradianceQuestion = "irradiance",
+    Heat: HeatQuestion = "heat",
+    SunPosition: SunPositionQuestion = "sun-position",
+    LineOfSight: LinesOfSightQuestion = "line-of-sight",
+    Horizon: HorizonQuestion = "horizon",
+    Isovist: IsovistsQuestion = "isovist",
+    Viewshed: ViewshedQuestion = "viewshed",
+    Towers: TowersQuestion = "towers",
+    Landmark: LandmarkQuestion = "landmark",
+    WindowViews: WindowViewsQuestion = "window-views",
+    ProtectedView: ProtectedViewQuestion = "protected-view",
+    Cameras: CamerasQuestion = "cameras",
+    SurveyPlan: SurveyPlanQuestion = "survey-plan",
+    DepthMap: DepthMapQuestion = "depth-map",
+    ViewTargets: ViewTargetsQuestion = "query",
+    Comfort: ComfortQuestion = "comfort",
+    Envelope: EnvelopeQuestion = "envelope",
 }
 
 #[cfg(test)]
@@ -151,6 +179,8 @@ mod tests {
         for question in questions {
             let text = serde_json::to_string(&question).unwrap();
             assert_eq!(serde_json::from_str::<Question>(&text).unwrap(), question, "{text}");
+            // the command has the name of the question
+            assert_eq!(text.split('"').nth(1), Some(question.command()), "{text}");
         }
     }
 }

@@ -4,6 +4,7 @@
 use super::context::Context;
 pub use super::known_ground::KnownGround;
 use super::remark::Remark;
+use super::survey_parts::{SurveyParts, needs_whole};
 use super::terrain_heights::{remark_on_ground_cloud, remark_on_terrain};
 use super::viewer::remark_on_doubt;
 use crate::horizon::convergence;
@@ -33,6 +34,8 @@ pub struct Scene {
     without_vegetation: OnceResult<MedialScene>,
     ground: Mutex<MadeGround>,
     ground_store: Option<Arc<dyn GroundStore>>,
+    /// Obstacles of a survey of which only parts are in memory; the model has none.
+    parts: Option<Arc<dyn SurveyParts>>,
 }
 
 /// Location of a scene, as suns and norths need it.
@@ -168,7 +171,22 @@ impl Scene {
             without_vegetation: OnceResult::default(),
             ground: Mutex::default(),
             ground_store: None,
+            parts: None,
         }
+    }
+
+    /// Creates a scene of a survey of which only parts are in memory. `model` has its frame, its bounds and the terrain
+    /// beyond it, and no balls.
+    #[must_use]
+    pub fn in_parts(model: SceneModel, parts: Arc<dyn SurveyParts>) -> Self {
+        let cloud = Arc::new(PointCloud::in_frame(model.frame().clone()));
+        Self { parts: Some(parts), ..Self::of_fitted(model, cloud) }
+    }
+
+    /// Returns the obstacles of a survey of which only parts are in memory.
+    #[must_use]
+    pub fn parts(&self) -> Option<&Arc<dyn SurveyParts>> {
+        self.parts.as_ref()
     }
 
     /// This, with the ground of another cloud in the same frame.
@@ -230,6 +248,17 @@ impl Scene {
         Ok(&self.ground_cloud)
     }
 
+    /// Returns the points that show the ground of a grid, and what covers it.
+    ///
+    /// # Errors
+    /// Those of [`Scene::ground_cloud`] and [`SurveyParts::points_over`].
+    pub(super) fn points_over(&self, grid: &MapGrid, control: &Control<'_>) -> Result<Arc<PointCloud>> {
+        match &self.parts {
+            Some(parts) => parts.points_over(grid, control),
+            None => self.ground_cloud().cloned(),
+        }
+    }
+
     /// Returns the frame of local coordinates. A scene without a reference system has that of the cloud that shows its
     /// ground.
     #[must_use]
@@ -247,8 +276,9 @@ impl Scene {
     /// Returns the obstacles to lines of sight. Pulses are left out if nothing depends on them.
     ///
     /// # Errors
-    /// Those of [`SceneModel::scene`].
+    /// Those of [`SceneModel::scene`], and [`Error::InvalidParameter`] for a survey of which only parts are in memory.
     pub fn blockers(&self, unproven: UnprovenAs, control: &Control<'_>) -> Result<Arc<MedialScene>> {
+        self.check_whole()?;
         let kept = if unproven == UnprovenAs::Visible { &self.plain } else { &self.proving };
         kept.get(|| self.model.scene(&self.rule, unproven, control))
     }
@@ -271,7 +301,11 @@ impl Scene {
         if let Some((_, _, known)) = made.last.as_ref().filter(|(of, from, _)| *of == grid && *from == points) {
             return Ok(Arc::clone(known));
         }
-        let cloud = self.ground_cloud()?;
+        let cloud = &self.points_over(&grid, control)?;
+        let points = match &self.parts {
+            Some(parts) if points == GroundPoints::Auto => parts.ground_points(),
+            _ => points,
+        };
         let params = GroundParams { points, ..GroundParams::default() };
         let has_few = grid.len() <= FEW_CELLS;
         let store = self.ground_store.as_deref();
@@ -305,6 +339,19 @@ impl Scene {
         Ok(known)
     }
 
+    /// Refuses surveys of which only parts are in memory.
+    pub(super) fn check_whole(&self) -> Result<()> {
+        if self.parts.is_none() { Ok(()) } else { Err(needs_whole()) }
+    }
+
+    /// Returns true if pulses are known.
+    pub(super) fn has_pulses(&self) -> bool {
+        match &self.parts {
+            Some(parts) => parts.proves(),
+            None => self.model.pulses().is_some(),
+        }
+    }
+
     /// Refuses scenes whose pulses are unknown, where the user sets how unproven answers count.
     pub(super) fn check_proof(&self) -> Result<()> {
         self.check_pulses(Parameter::UnprovenAs)
@@ -312,7 +359,7 @@ impl Scene {
 
     /// Refuses scenes whose pulses are unknown, where a parameter needs them.
     pub(super) fn check_pulses(&self, parameter: Parameter) -> Result<()> {
-        if self.model.pulses().is_some() {
+        if self.has_pulses() {
             return Ok(());
         }
         Err(Error::invalid(

@@ -12,11 +12,9 @@ use super::sun::{MAX_LISTED_SUNS, NamedSun, Suns};
 use super::sun_and_sky::{Light, OnTargets};
 use super::sun_place::SunPlace;
 use super::trees::{ThroughTrees, remark_on_leaves};
-use crate::shadow::{
-    Edges, LIT, ShadowSun, UNPROVEN, half_or_more, lit_probabilities, scene_shadow, sun_directions, unproven_light,
-};
-use crate::targets::{Measure, ResultKind, Targets};
-use crate::tree_light::TreeLight;
+use crate::shadow::{Edges, LIT, ShadowSun, UNPROVEN, half_or_more, scene_shadow, sun_directions};
+use crate::targets::{Measure, ResultKind};
+use crate::tree_light::CrownLight;
 use belvedere_core::query::UnprovenAs;
 use belvedere_data::control::Control;
 use belvedere_data::report::percent;
@@ -26,6 +24,7 @@ use serde::{Deserialize, Serialize};
 
 /// Places in the sun.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ShadowQuestion {
     /// The suns.
     pub suns: Suns,
@@ -98,16 +97,22 @@ impl ShadowQuestion {
     fn sureness(
         &self,
         suns: &[ShadowSun],
-        targets: &Targets,
-        (trees, doubts): (Option<&TreeLight>, Option<&[f32]>),
+        light: &Light,
+        doubts: Option<&[f32]>,
         (scene, context): (&Scene, &mut Context),
         control: &Control<'_>,
     ) -> Result<Vec<Sureness>> {
-        let Some(blockers) = self.how_sure.blockers(scene, context, control)? else { return Ok(Vec::new()) };
+        if !self.how_sure.is_wanted() {
+            return Ok(Vec::new());
+        }
+        let proving = match scene.parts() {
+            Some(_) => None,
+            None => self.how_sure.blockers(scene, context, control)?,
+        };
         let is_unproven = |row: usize| doubts.and_then(|doubts| doubts.get(row)).is_some_and(|&doubt| doubt > 0.0);
-        control.stage("computing probabilities", suns.len() * targets.len(), || {
+        control.stage("computing probabilities", suns.len() * light.targets.len(), || {
             let of_sun = |sun: &ShadowSun| {
-                let probabilities = lit_probabilities((&blockers, trees), targets, *sun, control)?;
+                let probabilities = light.lit_probabilities(proving.as_deref(), *sun, control)?;
                 let uncertain = self.how_sure.uncertain(&probabilities, is_unproven)?;
                 Ok((probabilities, uncertain))
             };
@@ -135,6 +140,7 @@ impl Ask for ShadowQuestion {
     fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         self.how_sure.check_scene(scene)?;
         if self.casters {
+            scene.check_whole()?;
             check_casters(places, scene)?;
         }
         let suns = self.suns.resolve(&self.place, &scene.whereabouts(), context)?;
@@ -151,21 +157,18 @@ impl Ask for ShadowQuestion {
         let mut lit = control.stage("testing sun", light.steps(), || {
             scene_shadow(light.obstacles(), &light.targets, &kinds, self.edges, control)
         })?;
-        let is_answer = self.edges == Edges::Hard && !self.trees.is_light();
-        if is_answer && matches!(&light.trees, Some(TreeLight { medium: Some(_), .. })) {
+        let is_answer = self.edges == Edges::Hard && !light.crowns().is_some_and(|crowns| crowns.gives_shares());
+        if is_answer && matches!(light.crowns(), Some(CrownLight::Measured { .. })) {
             lit.iter_mut().flatten().for_each(|share| *share = half_or_more(*share));
         }
         let doubts = match (&kinds[..], &mut lit[..]) {
-            ([sun], [lit]) if light.blockers.proof().is_some() => {
-                let tested = control.stage("testing pulses", 0, || {
-                    unproven_light(&light.blockers, &light.targets, *sun, lit, control)
-                })?;
+            ([sun], [lit]) if unproven != UnprovenAs::Visible => {
+                let tested = light.unproven(*sun, lit, control)?;
                 settled(lit, tested, unproven)
             }
             _ => None,
         };
-        let beside = (light.trees.as_ref(), doubts.as_deref());
-        let sure = self.sureness(&kinds, &light.targets, beside, (scene, context), control)?;
+        let sure = self.sureness(&kinds, &light, doubts.as_deref(), (scene, context), control)?;
         let decimals = if self.edges == Edges::Soft { 4 } else { 2 };
         let kind = if is_answer { ResultKind::Answer } else { ResultKind::Number };
         let as_band = |measure: Measure| measure.with_range(Some([0.0, 1.0])).with_kind(kind);

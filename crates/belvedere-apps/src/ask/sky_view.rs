@@ -18,6 +18,7 @@ use serde::{Deserialize, Serialize};
 
 /// Visible part of the sky.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct SkyViewQuestion {
     /// The directions of the sky.
@@ -30,6 +31,7 @@ pub struct SkyViewQuestion {
 
 /// Division of the sky.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum SkyParts {
     /// Number of directions, evenly spread, 1 to 100 000. Default 577.

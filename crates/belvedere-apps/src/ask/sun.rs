@@ -19,6 +19,7 @@ pub const MAX_LISTED_SUNS: usize = 5;
 
 /// Suns, one by one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Suns {
     /// Azimuths, clockwise from north, and elevations, degrees.
@@ -31,6 +32,7 @@ pub enum Suns {
 
 /// Days of the sun.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct Days {
     /// Days such as 2026-06-21, or longest-day, shortest-day and equinox of the year.

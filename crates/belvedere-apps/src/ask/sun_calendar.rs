@@ -27,6 +27,7 @@ const TIME_STEP_MIN: f64 = 2.0;
 
 /// Sun and shade at windows or places through days.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct SunCalendarQuestion {
     /// The windows, of which the middle counts; without any, the question is about its places.

@@ -30,6 +30,7 @@ const OWN_RULES: [&str; 8] = ["rule_1", "rule_2", "rule_3", "rule_4", "rule_5", 
 
 /// Hours of sun at places.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct SunHoursQuestion {
     /// The days; none for those of the first rule.

@@ -16,6 +16,7 @@ use std::fmt::{Display, Formatter};
 
 /// A place on earth, its clocks and its air.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct SunPlace {
     /// Latitude and longitude, degrees, north and east positive; `None` for those of the reference system.

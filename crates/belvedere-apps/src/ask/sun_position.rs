@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 /// Position of the sun at some times.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct SunPositionQuestion {
     /// Instants, ISO 8601, with an offset unless the zone says how clocks run.

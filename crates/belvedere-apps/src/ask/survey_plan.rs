@@ -38,6 +38,7 @@ const GROUND_CELL: f64 = 1.0;
 /// Stations for another scan that make unproven lines of sight proven: lines between pairs, or from observers to cells
 /// or points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct SurveyPlanQuestion {
     /// Stations to choose, 1 or more. Default 1.

@@ -33,6 +33,7 @@ pub const MAX_WIRELINES: usize = 100;
 
 /// Visible metres of towers from places.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct TowersQuestion {
     /// The towers.

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 
 /// The light that gets through crowns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ThroughTrees {
     /// The transmission measured by pulses, with the leaves of the date of the question; none without measurements.

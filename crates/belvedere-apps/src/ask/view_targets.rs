@@ -26,6 +26,7 @@ use std::sync::Arc;
 ///
 /// Lines of sight decide. A parallel view of balls that are not carved is answered by its depth map, as in the paper.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct ViewTargetsQuestion {
     /// Position and projection of the view; must be set by whoever reads a question from text.

@@ -1,5 +1,6 @@
 //! Viewshed: cells, points and far terrain that observers see, or the places from where a target is seen.
 
+mod in_parts;
 mod limits;
 mod question;
 mod seen_targets;
@@ -31,7 +32,7 @@ use belvedere_data::control::Control;
 use belvedere_data::raster::Raster;
 use belvedere_data::report::rounded;
 use belvedere_data::{ElevationGrid, Error, Frame, Parameter, Result};
-use seen_targets::{Sights, Things};
+use seen_targets::{Sights, Things, remark_on_inside};
 use std::sync::Arc;
 
 /// Maximum number of eyes below the ground that are named one by one.
@@ -100,7 +101,10 @@ impl ViewshedQuestion {
     pub(super) fn summarise_parts(&self, measures: &[Measure], (all, cell): (&[Measure], f64), context: &mut Context) {
         let answers = answers_of_bands(measures);
         let is_tested = measures.len() > 1;
-        let section = SeenSection::of(&answers, is_tested, &Things::cells(cell), context);
+        let inside_obstacle = context.report.places.targets_inside_obstacle.take();
+        let counts = SeenSection::of(&answers, is_tested, &Things::cells(cell), context);
+        context.add(inside_obstacle.and_then(|count| remark_on_inside(count, counts.targets, "cells")));
+        let section = SeenSection { inside_obstacle, ..counts };
         let is_seen = |answer: &Answer| matches!(answer, Answer::Visible | Answer::Unproven);
         if self.observers.len() == 1 && !answers.iter().any(is_seen) {
             let text = format!("{}; {}", self.who_is_blind(), self.way_to_see());
@@ -284,13 +288,16 @@ impl Ask for ViewshedQuestion {
         }
     }
 
-    fn answer(&self, scene: &Scene, _: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
+    fn answer(&self, scene: &Scene, places: &Places, context: &mut Context, control: &Control<'_>) -> Answered<Self> {
         self.check_observers()?;
         self.how_sure.check_scene(scene)?;
         if self.unproven.is_some_and(|unproven| unproven != UnprovenAs::Visible) {
             scene.check_proof()?;
         }
         let limits = self.sight_limits(scene, context)?;
+        if let Some(parts) = scene.parts() {
+            return self.answer_in_parts(&**parts, limits, places, scene, context, control);
+        }
         let known = scene.ground(self.grid(scene, &limits)?, self.ground, control)?;
         context.ground(scene.frame(), &known);
         let blockers = scene.blockers(self.unproven(), control)?;

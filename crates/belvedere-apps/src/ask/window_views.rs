@@ -25,6 +25,7 @@ const OTHER_WARNING_PERCENT: f64 = 50.0;
 
 /// Views from windows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct WindowViewsQuestion {
     /// The windows.

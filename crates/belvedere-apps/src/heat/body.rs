@@ -20,6 +20,7 @@ const FACES_SIDE: f64 = 0.22;
 /// # Source
 /// Höppe 1992, Ein neues Verfahren zur Bestimmung der mittleren Strahlungstemperatur im Freien; VDI 3787 part 2.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Body {
     /// A standing person as six faces: 0.06 of its surface up and down each, 0.22 to each of four sides, as it is

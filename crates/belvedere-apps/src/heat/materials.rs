@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Cover of the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum GroundCover {
     /// Cobble and concrete. Default.
@@ -120,6 +121,7 @@ impl Material {
 
 /// Surfaces of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct SurfaceParams {
     /// Cover of the ground.

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// Model of the radiation of a clear sky.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ClearSky {
     /// Ineichen & Perez, from the height of the place and the turbidity of the air.
@@ -40,6 +41,7 @@ impl Default for ClearSky {
 
 /// State of the air for [`ClearSky::Bird`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BirdParams {
     /// Optical depth of aerosols at 380 nm, 0 or more. Default 0.15, of Bird & Hulstrom's standard atmosphere.
     pub aerosol_380: f64,

@@ -7,6 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Model of the sky's diffuse radiation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum SkyModel {
     /// The same from all of the sky.

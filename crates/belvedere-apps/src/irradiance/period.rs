@@ -21,6 +21,7 @@ const MAX_SUN_DIRECTIONS: f64 = 200_000.0;
 
 /// Parameters of gathering the radiation of a period, and of its effect on planes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 #[non_exhaustive]
 pub struct IrradianceParams {
@@ -52,6 +53,7 @@ belvedere_data::setters!(IrradianceParams {
 
 /// Radiation that obstacles send to a plane in place of the hidden sky.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Surroundings {
     /// No radiation: the sum is a lower bound, and the loss by shading an upper one. Default.
@@ -63,6 +65,7 @@ pub enum Surroundings {
 
 /// Sums of a period to keep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Grouping {
     /// One, of the whole period.

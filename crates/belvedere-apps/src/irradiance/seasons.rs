@@ -6,7 +6,7 @@ use super::intervals::EnergyOutlines;
 use super::irradiation::{Irradiation, irradiation_through_crowns};
 use super::measures::{ENERGY_NAME, irradiation_measures};
 use super::period::{Instant, IrradianceParams, PeriodRadiation, PeriodReport};
-use crate::rows::{Obstacles, SkyObstacles, check_normals, fold_rows, normals_of};
+use crate::rows::{SkyObstacles, check_normals, fold_rows, normals_of};
 use crate::sum_errors::{Intervals, SumKind, expected_measures};
 use crate::sun::{Date, Site, Zone};
 use crate::targets::{Measure, Targets};
@@ -208,7 +208,7 @@ pub fn season_irradiation<'a>(
 
 /// Returns the number of tests of each target: one for each of `seasons`, or two if trees let light through.
 #[must_use]
-pub fn look_count(obstacles: &Obstacles<'_>, seasons: &[SeasonRadiation]) -> usize {
+pub fn look_count(obstacles: &SkyObstacles<'_>, seasons: &[SeasonRadiation]) -> usize {
     seasons.len() * obstacles.matrix_count()
 }
 

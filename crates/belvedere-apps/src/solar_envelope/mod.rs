@@ -37,6 +37,7 @@ const MAX_PAIRS: usize = 200_000_000;
 
 /// Bounds of an envelope besides the sun.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 #[non_exhaustive]
 pub struct EnvelopeParams {

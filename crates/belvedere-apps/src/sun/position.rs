@@ -23,6 +23,7 @@ const STANDARD_TEMPERATURE: f64 = 10.0;
 
 /// Refraction of the sun by the air.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Refraction {
     /// 10 °C and the pressure of the standard atmosphere at the height of the site, 1013.25 hPa at the sea.

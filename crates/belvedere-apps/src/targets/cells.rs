@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// Level of cells: ground or surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum CellLevel {
     /// The ground. Default.

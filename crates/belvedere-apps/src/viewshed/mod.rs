@@ -2,10 +2,12 @@
 //! which an object becomes visible.
 
 mod far;
+mod measures;
 mod observers;
 mod probabilities;
 
 pub use far::{far_targets, far_viewshed, terrain_within_reach};
+pub use measures::seen_words;
 pub use observers::{Observer, SightLimits, places_along};
 pub use probabilities::{SeenProbabilities, add_known, seen_probabilities};
 

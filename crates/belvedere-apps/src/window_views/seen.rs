@@ -11,6 +11,7 @@ const FARTHEST_FROM_POINT: f64 = 1.0;
 
 /// Kind of surface seen from a window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum SeenKind {
     /// Sky: nothing blocks, at the horizon or above it.

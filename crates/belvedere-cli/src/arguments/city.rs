@@ -7,7 +7,7 @@ use super::{
 };
 use belvedere::weather::CalendarDay;
 use belvedere_tiles::{Plan, Topic};
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 use std::convert::Infallible;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -25,6 +25,8 @@ pub(crate) enum CityStep {
     Plan(Box<CityPlan>),
     /// Compute the tiles that are not done yet
     Run(CityRun),
+    /// List the commands of a run, one a line, for the jobs of a cluster
+    Tasks(CityTasks),
     /// Report which tiles are done, which are left, and which failed
     Status(CityStatus),
     /// Write the tiles of one result as one raster
@@ -95,7 +97,7 @@ pub(crate) struct CityPlan {
     pub(crate) direction_count: usize,
     /// Also map how likely each cell is lit or visible, for --sun, --time and --observer
     ///
-    /// A result of its own for each of them. It needs pulses: docs/methods/confidence.md.
+    /// Further bands of their results. It needs pulses: docs/methods/confidence.md.
     #[arg(long, help_heading = "Questions")]
     pub(crate) probability: bool,
     /// Also map between which values sums lie nine times in ten: --sun-hours, --sky-view, --irradiance
@@ -190,6 +192,28 @@ pub(crate) struct CityRun {
     /// Build only the balls, so that jobs that compute results later find those of all tiles
     #[arg(long)]
     pub(crate) balls_only: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct CityTasks {
+    /// Folder of the plan
+    #[arg(value_name = "DIR", value_parser = folder_of_plan)]
+    pub(crate) run: PathBuf,
+    /// Number of jobs of each step [default: one for each tile, 64 at most]
+    #[arg(long, value_name = "N", value_parser = at_least_one, allow_negative_numbers = true)]
+    pub(crate) count: Option<usize>,
+    /// Step whose commands are listed [default: both, balls first]
+    #[arg(long, value_enum, value_name = "STEP")]
+    pub(crate) step: Option<CityTaskStep>,
+}
+
+/// Step of a run.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CityTaskStep {
+    /// Balls of tiles
+    Balls,
+    /// Results, when all balls are done
+    Results,
 }
 
 #[derive(Args)]

@@ -1,8 +1,8 @@
 //! Flags of irradiance and of photovoltaic loss.
 
 use super::{
-    AreaOutputs, IntervalArgument, MemoryArgument, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces,
-    ThroughTreesArguments, above_zero, at_least_one, location,
+    AreaOutputs, IntervalArgument, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTreesArguments,
+    TilesArguments, above_zero, at_least_one, location,
 };
 use belvedere::apps::ask::PvChoice;
 use belvedere::apps::irradiance::{SkyModel, Surroundings};
@@ -66,7 +66,7 @@ pub(crate) struct IrradianceArguments {
     #[command(flatten)]
     pub(crate) outputs: IrradianceOutputs,
     #[command(flatten)]
-    pub(crate) memory: MemoryArgument,
+    pub(crate) tiles: TilesArguments,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }

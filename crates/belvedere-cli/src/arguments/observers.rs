@@ -1,6 +1,8 @@
 //! Flags of lines of sight and viewsheds.
 
-use super::{MemoryArgument, NorthArguments, Numbers, SceneInput, Usage, above_zero, at_most, height, length};
+use super::{
+    MemoryArgument, NorthArguments, Numbers, SceneInput, TilesArguments, Usage, above_zero, at_most, height, length,
+};
 use belvedere::apps::ask::HowSure;
 use belvedere::ground::GroundPoints;
 use belvedere::query::{Curvature, MAX_RANDOM_PAIRS};
@@ -265,7 +267,7 @@ pub(crate) struct ViewshedArguments {
     #[arg(long, value_name = "OUT", help_heading = "Result")]
     pub(crate) masks: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) memory: MemoryArgument,
+    pub(crate) tiles: TilesArguments,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }

@@ -232,12 +232,23 @@ pub(crate) struct MemoryArgument {
     /// Memory that may be used, such as 3G or 800M [default: half of what is free]
     ///
     /// What needs more is done in parts, where the survey is LAS or LAZ files. Shadow, sun hours, sky view, irradiance
-    /// and viewsheds on cells are answered in tiles: a raster (.tif) or a map (.png). Tiles are kept
-    /// (`belvedere cache`): a command that was stopped goes on, and the next question finds the balls. Questions about
-    /// places within a distance read only the points that they reach. `belvedere city` works in tiles in steps, for
-    /// many computers.
+    /// and viewsheds on cells are answered in tiles, as rasters (.tif), maps (.png) and all that follows from them.
+    /// Tiles are kept (`belvedere cache`): a command that was stopped goes on, and the next question finds the balls.
+    /// Questions about places within a distance read only the points that they reach.
     #[arg(long, value_name = "SIZE", help_heading = "Scene", hide_short_help = true)]
     pub(crate) memory: Option<MemoryAmount>,
+}
+
+/// Tiles of a question on cells.
+#[derive(Args, Clone)]
+pub(crate) struct TilesArguments {
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgument,
+    /// Plan tiles in this folder for many computers, instead of answering
+    ///
+    /// The steps of city compute the plan and join the tiles. None of them takes more memory than is allowed.
+    #[arg(long, value_name = "DIR", help_heading = "Result", hide_short_help = true)]
+    pub(crate) plan: Option<PathBuf>,
 }
 
 /// Plan: changes to the scene.

@@ -1,8 +1,8 @@
 //! Flags of shadows.
 
 use super::{
-    GivingWay, HowSureArguments, MemoryArgument, NorthArguments, Numbers, SceneInput, SkyOutputs, SkyPlaces, SunPeriod,
-    SunPlaceArguments, ThroughTreesArguments, above_zero,
+    GivingWay, HowSureArguments, NorthArguments, Numbers, SceneInput, SkyOutputs, SkyPlaces, SunPeriod,
+    SunPlaceArguments, ThroughTreesArguments, TilesArguments, above_zero,
 };
 use clap::Args;
 use std::path::PathBuf;
@@ -51,7 +51,7 @@ pub(crate) struct ShadowArguments {
         value_parser = above_zero::<f64>, allow_negative_numbers = true)]
     pub(crate) seconds: f64,
     #[command(flatten)]
-    pub(crate) memory: MemoryArgument,
+    pub(crate) tiles: TilesArguments,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }

@@ -1,7 +1,7 @@
 //! Flags of the targets of sun and sky commands, and of the sky view.
 
 use super::{
-    GroundChoice, IntervalArgument, MapPosition, MemoryArgument, SceneInput, Shell, ThroughTreesArguments, above_zero,
+    GroundChoice, IntervalArgument, MapPosition, SceneInput, Shell, ThroughTreesArguments, TilesArguments, above_zero,
     at_least_one, length,
 };
 use clap::{Args, ValueEnum};
@@ -154,7 +154,7 @@ pub(crate) struct SkyViewArguments {
     #[command(flatten)]
     pub(crate) outputs: SkyOutputs,
     #[command(flatten)]
-    pub(crate) memory: MemoryArgument,
+    pub(crate) tiles: TilesArguments,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }

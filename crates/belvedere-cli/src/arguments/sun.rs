@@ -1,8 +1,8 @@
 //! Flags of the location, the time zone, the days and the sun hours.
 
 use super::{
-    CloudInput, IntervalArgument, MemoryArgument, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces,
-    ThroughTreesArguments, above_zero, location,
+    CloudInput, IntervalArgument, Numbers, SceneInput, Shell, SkyOutputs, SkyPlaces, ThroughTreesArguments,
+    TilesArguments, above_zero, location,
 };
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -117,7 +117,7 @@ pub(crate) struct SunHoursArguments {
     #[command(flatten)]
     pub(crate) outputs: SkyOutputs,
     #[command(flatten)]
-    pub(crate) memory: MemoryArgument,
+    pub(crate) tiles: TilesArguments,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }

@@ -3,9 +3,10 @@
 mod questions;
 
 use crate::arguments::{
-    City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, Global, PlanArguments, Usage, refuse,
+    City, CityMerge, CityPlan, CityRun, CityStatus, CityStep, CityTaskStep, CityTasks, Global, PlanArguments, Usage,
+    refuse,
 };
-use crate::in_tiles::{PROGRAM, planned, refuse_failed};
+use crate::in_tiles::{PROGRAM, planned, refuse_failed, report_plan};
 use crate::outputs::formats::{check_folder, check_output};
 use crate::run::CommandContext;
 use crate::summary::{Summary, rounded};
@@ -14,8 +15,7 @@ use belvedere::apps::ask::remark_on_cleared;
 use belvedere::io::Insistence;
 use belvedere::{Error, Parameter};
 use belvedere_tiles::{
-    Plan, PlanParams, RunParams, Shard, Steps, TileQuestion, UnfinishedRun, merge, run as run_tiles,
-    status as status_of,
+    Plan, PlanParams, RunParams, Shard, Steps, UnfinishedRun, merge, run as run_tiles, status as status_of,
 };
 use std::time::Instant;
 
@@ -23,6 +23,7 @@ pub(crate) fn run(arguments: &City, global: &Global) -> Result<Summary> {
     match &arguments.step {
         CityStep::Plan(arguments) => plan(arguments, global),
         CityStep::Run(arguments) => run_plan(arguments, global),
+        CityStep::Tasks(arguments) => tasks(arguments),
         CityStep::Status(arguments) => status(arguments),
         CityStep::Merge(arguments) => merge_tiles(arguments, global),
     }
@@ -46,7 +47,7 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
     let plan = Plan::make(&params, &run.control())?;
     let changes = PlanArguments { add: arguments.add.clone(), clear: arguments.clear.clone() };
     let latitude = arguments.sun.latitude();
-    let plan = planned(plan, &changes, Some(&arguments.far_terrain), Some((&arguments.trees, latitude)))?;
+    let plan = planned(plan, &changes, Some(&arguments.far_terrain), Some((arguments.trees.choice()?, latitude)))?;
     let questions = questions::questions(arguments, &plan, &mut run)?;
     let plan = plan.with_questions(questions, &run.control()).map_err(|error| match error {
         Error::InvalidParameter { parameter: Parameter::Questions, .. } => Usage(error.to_string()).into(),
@@ -55,24 +56,8 @@ fn plan(arguments: &CityPlan, global: &Global) -> Result<Summary> {
     if !arguments.clear.is_empty() && !plan.clears_anything(&run.control())? {
         run.summary.remarks(remark_on_cleared(0));
     }
-    run.summary.remarks(plan.remarks.clone());
     plan.write(&arguments.output)?;
-    let estimate = plan.estimate();
-    run.summary
-        .add("files", plan.inputs.len())
-        .add("tiles", plan.tiles.len())
-        .add("tile_size_m", plan.tile_size)
-        .add("halo_m", plan.buffer)
-        .add("results", plan.questions.iter().map(TileQuestion::name).collect::<Vec<_>>())
-        .add("points", estimate.points)
-        .add("points_read_with_halo", estimate.points_with_buffer)
-        .add("points_of_the_largest_tile", estimate.max_points_of_a_tile)
-        .add("estimated_memory_gb", rounded(estimate.memory_bytes as f64 / 1e9, 2))
-        .add("estimated_disk_gb", rounded(estimate.disk_bytes as f64 / 1e9, 2))
-        .add("written", arguments.output.display().to_string())
-        .headline("<tiles> tiles of <tile_size_m> m, <points> points")
-        .headline("results: <results>")
-        .headline("estimated: <estimated_memory_gb> GB of memory, <estimated_disk_gb> GB on disk");
+    report_plan(&plan, &arguments.output, &mut run);
     Ok(run.finish())
 }
 
@@ -94,6 +79,33 @@ fn run_plan(arguments: &CityRun, global: &Global) -> Result<Summary> {
     Ok(run.finish())
 }
 
+/// Maximum number of jobs of a step by default.
+const USUAL_TASKS: usize = 64;
+
+fn tasks(arguments: &CityTasks) -> Result<Summary> {
+    let plan = Plan::read(&arguments.run)?;
+    let count = arguments.count.unwrap_or(plan.tiles.len().clamp(1, USUAL_TASKS));
+    let folder = arguments.run.display().to_string();
+    let is_plain = |c: char| c.is_alphanumeric() || "/._-+,:=@%".contains(c);
+    let folder = match folder.chars().all(is_plain) {
+        true => folder,
+        false => format!("'{}'", folder.replace('\'', r"'\''")),
+    };
+    let steps = [(CityTaskStep::Balls, " --balls-only"), (CityTaskStep::Results, "")];
+    let wanted = steps.into_iter().filter(|(step, _)| arguments.step.is_none_or(|only| only == *step));
+    let command = |flag: &str, number: usize| format!("belvedere city run {folder} --shard {number}/{count}{flag}");
+    let commands: Vec<String> = wanted
+        .flat_map(|(_, flag)| (1..=count).map(move |number| (flag, number)))
+        .map(|(f, n)| command(f, n))
+        .collect();
+    let mut summary = Summary::default();
+    commands.iter().for_each(|line| {
+        summary.headline(line.as_str());
+    });
+    summary.add("tasks", commands);
+    Ok(summary)
+}
+
 fn status(arguments: &CityStatus) -> Result<Summary> {
     let plan = Plan::read(&arguments.run)?;
     let found = status_of(&plan, &arguments.run);
@@ -112,13 +124,13 @@ fn status(arguments: &CityStatus) -> Result<Summary> {
 fn merge_tiles(arguments: &CityMerge, global: &Global) -> Result<Summary> {
     check_output("-o", &arguments.output, &["tif"])?;
     let plan = Plan::read(&arguments.run)?;
-    let names = || plan.questions.iter().map(TileQuestion::name).collect::<Vec<_>>().join(", ");
+    let names = || plan.questions.iter().map(|one| one.name.as_str()).collect::<Vec<_>>().join(", ");
     let question = match (&arguments.result, &plan.questions[..]) {
         (None, [only]) => only,
         (None, _) => return refuse(format!("--result is missing: give one of {}", names())),
         (Some(name), questions) => questions
             .iter()
-            .find(|question| question.name() == name)
+            .find(|question| &question.name == name)
             .ok_or_else(|| Usage(format!("--result {name}: the results are {}", names())))?,
     };
     let mut run = CommandContext::new(global);

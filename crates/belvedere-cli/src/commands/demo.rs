@@ -27,6 +27,7 @@ use belvedere::view::{View, default_pixel_size, to_sun};
 use belvedere_scenes::{
     AirborneParams, PlanPlacement, Scan, TownParams, TriangleScene, Truth, extruded, scan_airborne, town,
 };
+use serde_json::json;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -50,6 +51,8 @@ const LOOKOUTS_M: [(&str, f64, f64, f64); 5] = [
     ("crane", -40.0, 40.0, 30.0),
     ("street", 0.0, 50.0, 1.7),
 ];
+/// Metres east and north of that middle of a place in a street.
+const STREET_M: [f64; 2] = [-20.0, -30.0];
 /// Distance of the hills, width up to their crests, and height, metres.
 const HILLS_M: [f64; 3] = [900.0, 2500.0, 260.0];
 /// Towers on the hills: azimuth in degrees and distance from the town in metres, and scheme.
@@ -180,6 +183,7 @@ fn write_town(folder: &Path, scene: &TriangleScene, scan: &Scan) -> Result<()> {
         ("towers.csv", towers_on_hills(scene)),
         ("glass.csv", glass_of_planned(scene)),
         ("lookouts.csv", lookouts(scene)),
+        ("question.json", question_in_street(scene)),
     ];
     for (name, text) in texts {
         write_text(&folder.join(name), &text)?;
@@ -245,6 +249,14 @@ fn planned_building(town: &TriangleScene) -> TriangleScene {
     let ground = town.mean_ground_height();
     planned.add_object("planned", &[extruded(&footprint, ground - 1.0, ground + PLANNED_M[2])]);
     planned
+}
+
+/// The hours of sun of a place in a street, as a question in JSON.
+fn question_in_street(town: &TriangleScene) -> String {
+    let Some((low, high)) = town.bounds() else { return String::new() };
+    let [east, north] = [0, 1].map(|axis| f64::midpoint(low[axis], high[axis]).round() + STREET_M[axis]);
+    let question = json!({ "sun-hours": { "days": { "dates": ["2026-06-21"] } } });
+    format!("{}\n", json!({ "question": question, "places": { "at": [[east, north]] } }))
 }
 
 /// A table of places that may see each other: people in streets, a mast and a crane.

@@ -4,7 +4,7 @@ mod hours;
 mod planes;
 
 use crate::arguments::{Global, IrradianceArguments, SkyOutputs, SkyPlaces, refuse_given};
-use crate::in_tiles::TypedCells;
+use crate::in_tiles::{TiledAnswers, TypedCells};
 use crate::inputs::radiation;
 use crate::outputs::formats::warn_of_geojson;
 use crate::outputs::targets::TargetOutput;
@@ -40,6 +40,7 @@ pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Su
     arguments.places.check(&outputs)?;
     let wants_places = !outputs.output.is_empty()
         || !arguments.places.places.at.is_empty()
+        || arguments.tiles.plan.is_some()
         || arguments.planes.is_empty() && outputs.by_area.by_area.is_some();
     if !wants_places {
         refuse_flags_of_places(arguments, &outputs)?;
@@ -64,34 +65,39 @@ pub(crate) fn run(arguments: &IrradianceArguments, global: &Global) -> Result<Su
     };
     question.check()?;
     let cells = TypedCells::of_sky(
-        (&arguments.scene, &arguments.memory),
+        (&arguments.scene, &arguments.tiles),
         &arguments.places,
-        &arguments.trees,
+        question.trees,
         &outputs,
         &[("--shell", arguments.shell.shell.is_some())],
     );
-    if wants_places && cells.answered(ask::Question::Irradiance(question.clone()), None, &mut run)?.is_some() {
+    let write =
+        |tiled: &TiledAnswers, run: &mut CommandContext| tiled.shown().write(&outputs, &tiled.answers.measures, run);
+    if wants_places && cells.answered(question.clone(), write, &mut run)? {
         return Ok(run.finish());
     }
     let points = if question.roofs.is_some() { KeepPoints::Keep } else { arguments.places.needed_points() };
-    let scene = arguments.places.scene(&arguments.scene, arguments.shell.shell, points, &mut run)?;
+    let whole = |run: &mut CommandContext| arguments.places.scene(&arguments.scene, arguments.shell.shell, points, run);
+    let of_places = cells.scene(question.clone(), whole, &mut run)?;
+    let scene = of_places.scene();
     warn_of_geojson(&arguments.planes, &scene.frame().crs, &mut run.summary);
     if let (Some(roofs), Some(path)) = (&mut question.roofs, &arguments.photovoltaics.footprints) {
         let footprints = run.stage("reading footprints", 0, |_| read_footprints(path.as_path(), scene.frame()))?;
         roofs.footprints = Some(Arc::new(footprints));
     }
     let (places, source) = match wants_places {
-        true => arguments.places.places(&scene, &mut run).map(|(places, source)| (places, Some(source)))?,
+        true => arguments.places.places(scene, &mut run).map(|(places, source)| (places, Some(source)))?,
         false => (Places::Scene, None),
     };
-    let answers = run.ask(&scene, &question, &places)?;
+    let answers = run.ask(scene, &question, &places)?;
+    of_places.finish(&run)?;
     if let (Some(on), Some(source)) = (&answers.found.on, source) {
-        let shown = TargetOutput::new(on, source, &scene);
+        let shown = TargetOutput::new(on, source, scene);
         shown.write(&outputs, &answers.measures, &mut run)?;
         shown.write_edge_mask(arguments.places.edge_mask.as_deref(), &mut run)?;
     }
     if let Some(roofs) = &answers.found.roofs {
-        planes::write(arguments, roofs, &answers.found, &scene, &mut run)?;
+        planes::write(arguments, roofs, &answers.found, scene, &mut run)?;
     }
     Ok(run.finish())
 }

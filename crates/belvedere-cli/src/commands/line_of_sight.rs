@@ -11,18 +11,15 @@ use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::{Result, bail};
 use belvedere::apps::ask::{
-    Ask, LinesOfSightQuestion, NetworkPlaces, Places, ProfileRows, Scene, SightColumns, SightNetwork, SightsResults,
-    Standing,
+    Ask, LinesOfSightQuestion, NetworkPlaces, Places, ProfileRows, Scene, SightNetwork, SightsResults, Standing,
 };
 use belvedere::apps::profile::SightProfile;
 use belvedere::apps::result_columns::ResultColumn;
-use belvedere::apps::targets::Measure;
 use belvedere::figures::{DistanceProfile, profile_picture, write_png};
 use belvedere::io::{
     PathLine, RowsAre, TextRows, row_properties, with_columns_read, write_graphml, write_places, write_table,
 };
 use belvedere::query::{Answer, UnprovenAs};
-use belvedere::vector::{length, sub};
 use std::path::Path;
 
 pub(crate) fn run(arguments: &LineOfSightArguments, global: &Global) -> Result<Summary> {
@@ -111,36 +108,10 @@ fn network(path: &Path, max_distance: Option<f64>, scene: &Scene, run: &mut Comm
 
 fn write(output: &Path, found: &SightsResults, scene: &Scene, rows: &TextRows) -> belvedere::Result<()> {
     let frame = scene.frame();
-    let end = |column: usize| found.pairs.iter().map(move |pair| frame.file_from_local(pair[column / 3])[column % 3]);
-    let SightColumns { ranges, unproven, fresnel_free_percent, places, balls, sources, meshes, surfaces, is_terrain } =
-        found.columns(scene);
-    let mut columns = Vec::new();
-    if let Some(network) = &found.network {
-        let names = |end: usize| network.pairs.iter().map(move |pair| &network.names[pair[end]]);
-        columns.extend([ResultColumn::words("a", names(0)), ResultColumn::words("b", names(1))]);
+    let mut columns = found.table(scene);
+    if found.network.is_none() && extension(output) == "csv" {
+        columns.retain(|column| column.name != "length_m");
     }
-    columns.extend(ENDS.iter().enumerate().map(|(column, name)| ResultColumn::real(*name, end(column), 4)));
-    if found.network.is_some() || extension(output) != "csv" {
-        columns.push(ResultColumn::real("length_m", found.pairs.iter().map(|&[a, b]| length(sub(b, a))), 3));
-    }
-    columns.push(ResultColumn::whole("answer", found.answers.iter().map(|&answer| usize::from(answer as u8))));
-    columns.extend(found.sure.iter().map(Measure::to_column));
-    columns.push(ResultColumn::real("first_block_range_m", ranges, 3));
-    columns.extend(unproven.map(|lengths| ResultColumn::real("unproven_m", lengths, 3)));
-    columns.extend(fresnel_free_percent.map(|free| ResultColumn::real("fresnel_free_percent", free, 1)));
-    columns.extend(
-        ["block_x", "block_y", "block_z"]
-            .into_iter()
-            .enumerate()
-            .map(|(axis, name)| ResultColumn::real(name, places.iter().map(|place| place[axis]), 3)),
-    );
-    columns.push(ResultColumn::whole("block_ball", balls));
-    columns.push(ResultColumn::whole("block_source", sources.into_iter().map(|source| source.map(|row| row as usize))));
-    columns.extend(meshes.map(|names| ResultColumn::words("block_mesh", names)));
-    columns.extend(surfaces.map(|names| ResultColumn::words("block_surface", names)));
-    columns.extend(is_terrain.map(|all| {
-        ResultColumn::whole("block_terrain", all.into_iter().map(|is_terrain| is_terrain.map(usize::from)))
-    }));
     let read = rows.columns(0..rows.row_count());
     match (extension(output).as_str(), &found.network) {
         ("geojson" | "gpkg", _) => {

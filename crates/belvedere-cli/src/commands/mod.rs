@@ -1,5 +1,6 @@
 //! The table of commands, a file or folder for each.
 
+mod ask;
 mod balls;
 mod bench;
 mod cache;
@@ -45,6 +46,7 @@ use crate::help;
 use crate::inputs::typed_places;
 use crate::summary::Summary;
 use anyhow::{Context, Result};
+use belvedere::apps::ask::question_schema;
 use std::io::Write;
 
 /// Runs the command that was typed.
@@ -97,8 +99,12 @@ fn run_command(cli: &Cli) -> Result<Summary> {
         #[cfg(feature = "view")]
         Command::View(arguments) => view::run(arguments, global),
         Command::City(arguments) => city::run(arguments, global),
+        Command::Ask(arguments) => ask::run(arguments, global),
         Command::Difference(arguments) => difference::run(arguments, global),
-        Command::Describe => Ok(describe::run()),
+        Command::Describe(arguments) if arguments.json_schema => {
+            print_raw(format!("{:#}\n", serde_json::to_value(question_schema())?).as_bytes())
+        }
+        Command::Describe(_) => Ok(describe::run()),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(*shell, &mut help::command(), "belvedere", &mut script);

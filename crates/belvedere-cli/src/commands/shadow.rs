@@ -1,7 +1,7 @@
 //! `belvedere shadow`.
 
 use crate::arguments::{Global, ShadowArguments, refuse};
-use crate::in_tiles::TypedCells;
+use crate::in_tiles::{TiledAnswers, TypedCells};
 use crate::outputs::fading::{UNPROVEN_COLOR, fade, faded, mixed};
 use crate::outputs::formats::{check_output, check_outputs, extension, warn_of_geojson};
 use crate::outputs::targets::{HighestPoints, TargetOutput};
@@ -16,7 +16,6 @@ use belvedere::ground::MapGrid;
 use belvedere::io::{PolygonArea, atomic, is_mesh, outlines, write_areas};
 use belvedere::query::UnprovenAs;
 use belvedere::raster::Raster;
-use belvedere_tiles::SurveyCells;
 use std::path::Path;
 
 const SHADE_COLOR: [u8; 3] = [38, 52, 96];
@@ -28,45 +27,53 @@ pub(crate) fn run(arguments: &ShadowArguments, global: &Global) -> Result<Summar
     check(arguments, &question)?;
     let mut run = CommandContext::new(global);
     let cells = TypedCells::of_sky(
-        (&arguments.scene, &arguments.memory),
+        (&arguments.scene, &arguments.tiles),
         &arguments.places,
-        &arguments.trees,
+        question.trees,
         &arguments.outputs,
-        &[
-            ("--shell", arguments.giving_way.shell.is_some()),
-            ("--casters", arguments.casters),
-            ("--outlines", arguments.outlines.is_some()),
-            ("--film", arguments.film.is_some()),
-            ("--frames", arguments.frames.is_some()),
-        ],
+        &[("--shell", arguments.giving_way.shell.is_some()), ("--casters", arguments.casters)],
     );
-    let map = |answers: &Answers<SurveyCells>, relief: &HighestPoints| {
-        Maps::new(&answers.found.suns, &answers.measures).draw(0, relief)
+    let write_tiled = |tiled: &TiledAnswers, run: &mut CommandContext| {
+        let maps = Maps::new(&tiled.answers.found.suns, &tiled.answers.measures);
+        write(arguments, &tiled.shown(), &maps, &[], run)
     };
-    if let Some(answers) = cells.answered(ask::Question::Shadow(question.clone()), Some(&map), &mut run)? {
-        warn_of_other_suns(arguments, answers.found.suns.len(), &mut run);
+    if cells.answered(question.clone(), write_tiled, &mut run)? {
         return Ok(run.finish());
     }
     let points = arguments.places.needed_points();
-    let scene = arguments.places.scene(&arguments.scene, arguments.giving_way.shell, points, &mut run)?;
-    let (places, source) = arguments.places.places(&scene, &mut run)?;
-    let answers = run.ask(&scene, &question, &places)?;
-    let shown = TargetOutput::new(&answers.found.on, source, &scene);
-    let maps = Maps::of(&answers);
-    shown.write_with(&arguments.outputs, &answers.measures, &|relief| maps.draw(0, relief), &mut run)?;
+    let whole =
+        |run: &mut CommandContext| arguments.places.scene(&arguments.scene, arguments.giving_way.shell, points, run);
+    let of_places = cells.scene(question.clone(), whole, &mut run)?;
+    let scene = of_places.scene();
+    let (places, source) = arguments.places.places(scene, &mut run)?;
+    let answers = run.ask(scene, &question, &places)?;
+    of_places.finish(&run)?;
+    let shown = TargetOutput::new(&answers.found.on, source, scene);
     shown.write_edge_mask(arguments.places.edge_mask.as_deref(), &mut run)?;
-    if shown.relief().is_some() {
-        warn_of_other_suns(arguments, maps.suns.len(), &mut run);
-    }
-    if let Some(output) = &arguments.outlines {
-        warn_of_geojson(std::slice::from_ref(output), &scene.frame().crs, &mut run.summary);
-        let meshes = scene.model().added().map(|added| added.names()).unwrap_or_default();
-        let casters: Vec<&Measure> = answers.measures.iter().filter(|one| one.name.starts_with(CASTER)).collect();
-        let shapes = ShadowShapes { suns: maps.measures, casters: &casters, meshes };
-        run.stage("writing", 0, |_| shapes.write(output, &answers.found.on.targets))?;
-    }
-    films(arguments, &shown, &maps, &mut run)?;
+    let meshes = scene.model().added().map(|added| added.names()).unwrap_or_default();
+    write(arguments, &shown, &Maps::of(&answers), meshes, &mut run)?;
     Ok(run.finish())
+}
+
+/// Writes the light of suns on targets, their shadows as areas, and pictures of them. `meshes` are the names of added
+/// ones.
+fn write(
+    arguments: &ShadowArguments,
+    shown: &TargetOutput<'_>,
+    maps: &Maps<'_>,
+    meshes: &[String],
+    run: &mut CommandContext,
+) -> Result<()> {
+    shown.write_with(&arguments.outputs, maps.all, &|relief| maps.draw(0, relief), run)?;
+    let Some(ground) = shown.targets().ground() else { return Ok(()) };
+    warn_of_other_suns(arguments, maps.suns.len(), run);
+    if let Some(output) = &arguments.outlines {
+        warn_of_geojson(std::slice::from_ref(output), &shown.targets().frame.crs, &mut run.summary);
+        let casters: Vec<&Measure> = maps.all.iter().filter(|one| one.name.starts_with(CASTER)).collect();
+        let shapes = ShadowShapes { suns: maps.measures, casters: &casters, meshes };
+        run.stage("writing", 0, |_| shapes.write(output, (&ground.grid, shown.targets())))?;
+    }
+    films(arguments, shown, maps, run)
 }
 
 /// Shadows of suns as areas.
@@ -81,18 +88,17 @@ struct ShadowShapes<'a> {
 
 impl ShadowShapes<'_> {
     /// Writes the shadow of each sun as an area, or that of each of its casters.
-    fn write(&self, output: &Path, targets: &Targets) -> belvedere::Result<()> {
-        let Some(ground) = targets.ground() else { return Ok(()) };
+    fn write(&self, output: &Path, (grid, targets): (&MapGrid, &Targets)) -> belvedere::Result<()> {
         let mut areas = Vec::new();
         for (number, sun) in self.suns.iter().enumerate() {
             match self.casters.get(number) {
-                None => areas.push(area_of(sun, None, (&ground.grid, targets), |row| sun.values[row] < HALF_LIGHT)?),
+                None => areas.push(area_of(sun, None, (grid, targets), |row| sun.values[row] < HALF_LIGHT)?),
                 Some(casters) => {
                     for caster in 1..=u8::MAX {
                         let is_of = |row: usize| casters.values[row] == f32::from(caster);
                         if (0..casters.values.len()).any(is_of) {
                             let name = caster_name(caster, self.meshes);
-                            areas.push(area_of(sun, Some(name), (&ground.grid, targets), is_of)?);
+                            areas.push(area_of(sun, Some(name), (grid, targets), is_of)?);
                         }
                     }
                 }
@@ -185,6 +191,8 @@ fn check(arguments: &ShadowArguments, question: &ask::ShadowQuestion) -> Result<
 struct Maps<'a> {
     suns: &'a [NamedSun],
     measures: &'a [Measure],
+    /// All measures, also those that follow.
+    all: &'a [Measure],
     /// Unproven light of the one sun.
     doubts: Option<&'a [f32]>,
     /// Flags of the uncertain answers of each sun; empty if not wanted.
@@ -199,14 +207,14 @@ impl<'a> Maps<'a> {
     }
 
     /// Splits measures into those of each sun and those that follow.
-    fn new(suns: &'a [NamedSun], measures: &'a [Measure]) -> Self {
-        let (measures, rest) = measures.split_at(suns.len().min(measures.len()));
+    fn new(suns: &'a [NamedSun], all: &'a [Measure]) -> Self {
+        let (measures, rest) = all.split_at(suns.len().min(all.len()));
         let doubts = rest.iter().find(|measure| measure.name == UNPROVEN).map(|measure| &measure.values[..]);
         let uncertain = rest.iter().filter(|measure| measure.name.starts_with(UNCERTAIN));
         let uncertain = uncertain.map(|measure| &measure.values[..]).collect();
         let mut shares = measures.iter().flat_map(|measure| &measure.values);
         let has_parts = shares.any(|&share| share > 0.0 && share < 1.0);
-        Self { suns, measures, doubts, uncertain, has_parts }
+        Self { suns, measures, all, doubts, uncertain, has_parts }
     }
 
     /// The map of the sun of that number.
@@ -243,7 +251,10 @@ fn films(
     maps: &Maps<'_>,
     run: &mut CommandContext,
 ) -> Result<()> {
-    let Some(relief) = shown.relief() else { return Ok(()) };
+    if arguments.frames.is_none() && arguments.film.is_none() {
+        return Ok(());
+    }
+    let Some(relief) = shown.relief(run)? else { return Ok(()) };
     if let Some(folder) = &arguments.frames {
         atomic::make_folder(folder)?;
         for (number, sun) in maps.suns.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! `belvedere sky-view`.
 
 use crate::arguments::{Global, SkyViewArguments};
-use crate::in_tiles::TypedCells;
+use crate::in_tiles::{TiledAnswers, TypedCells};
 use crate::inputs::sun::sky_parts;
 use crate::outputs::targets::TargetOutput;
 use crate::run::CommandContext;
@@ -17,20 +17,26 @@ pub(crate) fn run(arguments: &SkyViewArguments, global: &Global) -> Result<Summa
     question.check()?;
     let mut run = CommandContext::new(global);
     let cells = TypedCells::of_sky(
-        (&arguments.scene, &arguments.memory),
+        (&arguments.scene, &arguments.tiles),
         &arguments.places,
-        &arguments.trees,
+        question.trees,
         &arguments.outputs,
         &[("--shell", arguments.shell.shell.is_some())],
     );
-    if cells.answered(ask::Question::SkyView(question.clone()), None, &mut run)?.is_some() {
+    let write = |tiled: &TiledAnswers, run: &mut CommandContext| {
+        tiled.shown().write(&arguments.outputs, &tiled.answers.measures, run)
+    };
+    if cells.answered(question.clone(), write, &mut run)? {
         return Ok(run.finish());
     }
     let points = arguments.places.needed_points();
-    let scene = arguments.places.scene(&arguments.scene, arguments.shell.shell, points, &mut run)?;
-    let (places, source) = arguments.places.places(&scene, &mut run)?;
-    let answers = run.ask(&scene, &question, &places)?;
-    let shown = TargetOutput::new(&answers.found, source, &scene);
+    let whole = |run: &mut CommandContext| arguments.places.scene(&arguments.scene, arguments.shell.shell, points, run);
+    let of_places = cells.scene(question.clone(), whole, &mut run)?;
+    let scene = of_places.scene();
+    let (places, source) = arguments.places.places(scene, &mut run)?;
+    let answers = run.ask(scene, &question, &places)?;
+    of_places.finish(&run)?;
+    let shown = TargetOutput::new(&answers.found, source, scene);
     shown.write(&arguments.outputs, &answers.measures, &mut run)?;
     shown.write_edge_mask(arguments.places.edge_mask.as_deref(), &mut run)?;
     Ok(run.finish())

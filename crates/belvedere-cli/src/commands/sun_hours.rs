@@ -1,13 +1,13 @@
 //! `belvedere sun-hours`.
 
 use crate::arguments::{Global, SunHoursArguments, refuse};
-use crate::in_tiles::TypedCells;
+use crate::in_tiles::{TiledAnswers, TypedCells};
 use crate::outputs::formats::refuse_files_of;
 use crate::outputs::targets::TargetOutput;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
-use belvedere::apps::ask::{self, Ask, HourlySun, Places, SunHoursQuestion};
+use belvedere::apps::ask::{Ask, HourlySun, Places, SunHoursQuestion};
 use belvedere::io::{BandLabel, BandValues, Bands, MetadataTag, atomic, write_tif_bands};
 use belvedere::raster::Raster;
 use belvedere::results::georeference;
@@ -35,28 +35,34 @@ pub(crate) fn run(arguments: &SunHoursArguments, global: &Global) -> Result<Summ
     }
     let mut run = CommandContext::new(global);
     let cells = TypedCells::of_sky(
-        (&arguments.scene, &arguments.memory),
+        (&arguments.scene, &arguments.tiles),
         &arguments.places,
-        &arguments.trees,
+        question.trees,
         &arguments.outputs,
         &[("--shell", arguments.shell.shell.is_some()), ("--hourly-sun", arguments.hourly_sun.is_some())],
     );
-    if cells.answered(ask::Question::SunHours(question.clone()), None, &mut run)?.is_some() {
+    let write = |tiled: &TiledAnswers, run: &mut CommandContext| {
+        tiled.shown().write(&arguments.outputs, &tiled.answers.measures, run)
+    };
+    if cells.answered(question.clone(), write, &mut run)? {
         return Ok(run.finish());
     }
     let points = arguments.places.needed_points();
-    let scene = arguments.places.scene(&arguments.scene, arguments.shell.shell, points, &mut run)?;
-    let (places, source) = arguments.places.places(&scene, &mut run)?;
-    let answers = run.ask(&scene, &question, &places)?;
+    let whole = |run: &mut CommandContext| arguments.places.scene(&arguments.scene, arguments.shell.shell, points, run);
+    let of_places = cells.scene(question.clone(), whole, &mut run)?;
+    let scene = of_places.scene();
+    let (places, source) = arguments.places.places(scene, &mut run)?;
+    let answers = run.ask(scene, &question, &places)?;
+    of_places.finish(&run)?;
     let sun_of_year = match &arguments.hourly_sun {
         Some(folder) => {
             // places have said what there is to remark
             let places = Places::Targets(Arc::clone(&answers.found.targets));
-            Some((folder, question.hourly_sun(None, &places, &scene, &run.control())?.found))
+            Some((folder, question.hourly_sun(None, &places, scene, &run.control())?.found))
         }
         None => None,
     };
-    let shown = TargetOutput::new(&answers.found, source, &scene);
+    let shown = TargetOutput::new(&answers.found, source, scene);
     shown.write(&arguments.outputs, &answers.measures, &mut run)?;
     shown.write_edge_mask(arguments.places.edge_mask.as_deref(), &mut run)?;
     if let Some((folder, sun)) = &sun_of_year {

@@ -388,7 +388,7 @@ fn show_results(
             let area = (on_map(bounds.low), on_map(bounds.high));
             let raster =
                 run.stage("reading results", 0, |control| merged_within(&plan, folder, question, area, control));
-            loading.show_raster(&folder.join(question.name()), raster?, frame, bounds)?;
+            loading.show_raster(&folder.join(&question.name), raster?, frame, bounds)?;
         }
     }
     // the columns of the cloud itself come last

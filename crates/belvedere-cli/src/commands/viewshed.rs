@@ -4,7 +4,7 @@ mod results;
 mod viewshed_observers;
 
 use crate::arguments::{Global, GroundChoice, MapPosition, ViewshedArguments};
-use crate::in_tiles::TypedCells;
+use crate::in_tiles::{TiledAnswers, TypedCells};
 use crate::inputs::far_terrain::set_terrain;
 use crate::outputs::formats::{check_output, check_outputs, extension, warn_of_geojson};
 use crate::outputs::heights::write_heights;
@@ -19,7 +19,7 @@ use belvedere::cast::{to_index, to_row};
 use belvedere::figures::Picture;
 use belvedere::query::UnprovenAs;
 use belvedere::results::UNPROVEN_BAND;
-use belvedere_tiles::SurveyCells;
+use belvedere_tiles::{Plan, SurveyCells};
 use results::{CellSurface, SeenCells, SeenMap, on_points, write_masks};
 use std::path::{Path, PathBuf};
 
@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: &ViewshedArguments, global: &Global) -> Result<Summ
     }
     let places: Vec<MapPosition> = arguments.who.observer.iter().chain(&arguments.who.target).copied().collect();
     let distance = reach(arguments);
-    let input = pipeline::scene_in_reach((&arguments.scene, &arguments.memory), &places, distance, &mut run)?;
+    let input = pipeline::scene_in_reach((&arguments.scene, &arguments.tiles.memory), &places, distance, &mut run)?;
     let mut scene = pipeline::scene(&input, KeepPoints::Keep, &mut run)?;
     if let Some(path) = &arguments.terrain {
         set_terrain(path, &mut scene, &mut run)?;
@@ -62,7 +62,7 @@ pub(crate) fn run(arguments: &ViewshedArguments, global: &Global) -> Result<Summ
 fn question(arguments: &ViewshedArguments) -> Result<ask::ViewshedQuestion> {
     let looking = &arguments.looking;
     let mut targets = Vec::new();
-    if arguments.output.iter().any(|path| !is_of_points(path)) {
+    if arguments.output.iter().any(|path| !is_of_points(path)) || arguments.tiles.plan.is_some() {
         targets.push(ViewshedTargets::Cells);
     }
     if arguments.output.iter().any(|path| is_of_points(path)) {
@@ -99,12 +99,12 @@ fn reach(arguments: &ViewshedArguments) -> Option<f64> {
 
 /// Answers in tiles what one model has no memory for, unless a part of the survey is enough; `false` where it was not.
 fn in_tiles(arguments: &ViewshedArguments, question: &ask::ViewshedQuestion, run: &mut CommandContext) -> Result<bool> {
-    if reach(arguments).is_some() {
+    if reach(arguments).is_some() && arguments.tiles.plan.is_none() {
         return Ok(false);
     }
     let cells = TypedCells {
         scene: &arguments.scene,
-        memory: &arguments.memory,
+        tiles: &arguments.tiles,
         cells: question.grid_cells(),
         far: None,
         trees: None,
@@ -115,14 +115,20 @@ fn in_tiles(arguments: &ViewshedArguments, question: &ask::ViewshedQuestion, run
             ("--ground cloud=FILE", matches!(arguments.ground, GroundChoice::Cloud(_))),
             ("--shell", arguments.giving_way.shell.is_some()),
         ],
+        of_points: Vec::new(),
     };
-    let Some(survey) = cells.survey(&ask::Question::Viewshed(question.clone()), run)? else { return Ok(false) };
-    let observers = viewshed_observers::observers(arguments, (&survey.plan.frame()?, &survey.plan.bounds()), run)?;
-    let question = ask::Question::Viewshed(ask::ViewshedQuestion { observers, ..question.clone() });
+    let complete = |plan: &Plan, run: &mut CommandContext| {
+        let observers = viewshed_observers::observers(arguments, (&plan.frame()?, &plan.bounds()), run)?;
+        Ok(ask::ViewshedQuestion { observers, ..question.clone() }.into())
+    };
     let is_reverse = arguments.who.target.is_some();
-    let map = |answers: &Answers<SurveyCells>, relief: &HighestPoints| map_of_survey(answers, relief, is_reverse);
-    cells.answer(survey, question, Some(&map), run)?;
-    Ok(true)
+    let write = |tiled: &TiledAnswers, run: &mut CommandContext| {
+        let map = |relief: &HighestPoints| map_of_survey(&tiled.answers, relief, is_reverse);
+        let written = tiled.shown().write_files(&arguments.output, &tiled.answers.measures, &map, run)?;
+        run.summary.add("written", written);
+        Ok(())
+    };
+    cells.completed(&question.clone().into(), complete, write, run)
 }
 
 /// A map of what is seen of the cells of a survey.

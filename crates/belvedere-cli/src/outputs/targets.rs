@@ -6,7 +6,7 @@ use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
 use belvedere::apps::ask::{OnTargets, Remark, Scene, remark_on_empty_areas};
-use belvedere::apps::targets::{AreaMeans, Measure};
+use belvedere::apps::targets::{AreaMeans, Measure, Targets};
 use belvedere::figures::{Picture, write_png};
 use belvedere::io::{Georeference, MetadataTag, PolygonArea, TextRows, atomic, read_features, write_tif_u8};
 use belvedere::raster::Raster;
@@ -15,6 +15,7 @@ use belvedere::results::{
     write_raster,
 };
 use belvedere::{Mesh, PointCloud};
+use belvedere_tiles::SurveyCells;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -36,7 +37,14 @@ pub(crate) enum TargetSource {
 pub(crate) struct TargetOutput<'a> {
     on: &'a OnTargets,
     source: TargetSource,
-    scene: &'a Scene,
+    of: Shown<'a>,
+}
+
+/// Scene or survey that targets lie in.
+#[derive(Clone, Copy)]
+enum Shown<'a> {
+    Scene(&'a Scene),
+    Survey(&'a SurveyCells),
 }
 
 /// Heights of the highest points of cells, and where these lie.
@@ -49,17 +57,28 @@ pub(crate) struct HighestPoints {
 
 impl<'a> TargetOutput<'a> {
     pub(crate) fn new(on: &'a OnTargets, source: TargetSource, scene: &'a Scene) -> Self {
-        Self { on, source, scene }
+        Self { on, source, of: Shown::Scene(scene) }
+    }
+
+    /// Cells of a survey that was answered in tiles.
+    pub(crate) fn of_survey(on: &'a OnTargets, cells: &'a SurveyCells) -> Self {
+        Self { on, source: TargetSource::Cells, of: Shown::Survey(cells) }
+    }
+
+    /// Returns the targets.
+    pub(crate) fn targets(&self) -> &Targets {
+        &self.on.targets
     }
 
     /// Returns the relief below maps; `None` if targets are no cells.
-    pub(crate) fn relief(&self) -> Option<HighestPoints> {
-        let ground = self.on.targets.ground()?;
-        Some(HighestPoints {
-            heights: relief_of_cells(&self.on.targets, self.scene)?,
-            cell: ground.grid.cell,
-            place: georeference(&ground.grid, &self.on.targets.frame),
-        })
+    pub(crate) fn relief(&self, run: &CommandContext) -> Result<Option<HighestPoints>> {
+        let Some(ground) = self.on.targets.ground() else { return Ok(None) };
+        let heights = match self.of {
+            Shown::Scene(scene) => relief_of_cells(&self.on.targets, scene),
+            Shown::Survey(cells) => Some(run.stage("reading relief", 0, |control| cells.relief(control))?),
+        };
+        let place = georeference(&ground.grid, &self.on.targets.frame);
+        Ok(heights.map(|heights| HighestPoints { heights, cell: ground.grid.cell, place }))
     }
 
     /// Writes which cells are near the edge of the cloud.
@@ -94,13 +113,7 @@ impl<'a> TargetOutput<'a> {
         map: &dyn Fn(&HighestPoints) -> belvedere::Result<Picture>,
         run: &mut CommandContext,
     ) -> Result<()> {
-        let mut written: Vec<String> = Vec::new();
-        for output in &outputs.output {
-            let mut section = Summary::default();
-            run.stage("writing", 0, |_| self.write_one(output, (measures, &run.tags), map, &mut section))?;
-            run.summary.add_all(section);
-            written.push(output.display().to_string());
-        }
+        let mut written = self.write_files(&outputs.output, measures, map, run)?;
         if let (Some(folder), TargetSource::Cells) = (&outputs.measures, &self.source) {
             atomic::make_folder(folder)?;
             for measure in measures {
@@ -119,6 +132,27 @@ impl<'a> TargetOutput<'a> {
         }
         run.summary.add("written", written);
         Ok(())
+    }
+
+    /// Writes all measures to each of the files, and returns their names.
+    pub(crate) fn write_files(
+        &self,
+        outputs: &[PathBuf],
+        measures: &[Measure],
+        map: &dyn Fn(&HighestPoints) -> belvedere::Result<Picture>,
+        run: &mut CommandContext,
+    ) -> Result<Vec<String>> {
+        let has_pictures = outputs.iter().any(|output| extension(output) == "png");
+        let relief = if has_pictures { self.relief(run)? } else { None };
+        for output in outputs {
+            let mut section = Summary::default();
+            run.stage("writing", 0, |_| match (&relief, extension(output).as_str()) {
+                (Some(relief), "png") => Ok(write_png(output, &map(relief)?)?),
+                _ => self.write_one(output, (measures, &run.tags), &mut section),
+            })?;
+            run.summary.add_all(section);
+        }
+        Ok(outputs.iter().map(|output| output.display().to_string()).collect())
     }
 
     /// Writes the measures of cells, summed up over the areas of a file.
@@ -151,11 +185,10 @@ impl<'a> TargetOutput<'a> {
         &self,
         output: &Path,
         (measures, tags): (&[Measure], &[MetadataTag]),
-        map: &dyn Fn(&HighestPoints) -> belvedere::Result<Picture>,
         summary: &mut Summary,
     ) -> Result<()> {
-        if let (Some(relief), "png") = (self.relief(), extension(output).as_str()) {
-            return Ok(write_png(output, &map(&relief)?)?);
+        if let Shown::Survey(cells) = self.of {
+            return Ok(cells.write_cog(output, measures, tags)?);
         }
         let rows = match &self.source {
             TargetSource::File(_, file) => text_rows_for(file, output)?,
@@ -163,7 +196,10 @@ impl<'a> TargetOutput<'a> {
         };
         let from = match &self.source {
             TargetSource::Cells | TargetSource::Single => TakenFrom::Nothing,
-            TargetSource::Own => TakenFrom::Cloud(self.scene.cloud()),
+            TargetSource::Own => match self.of {
+                Shown::Scene(scene) => TakenFrom::Cloud(scene.cloud()),
+                Shown::Survey(_) => TakenFrom::Nothing,
+            },
             TargetSource::Places(rows) if extension(output) == "csv" => TakenFrom::Rows(rows),
             TargetSource::Places(_) => TakenFrom::Nothing,
             TargetSource::File(cloud, _) => rows.as_ref().map_or(TakenFrom::Cloud(cloud), TakenFrom::Rows),

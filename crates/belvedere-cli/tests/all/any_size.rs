@@ -48,6 +48,10 @@ fn a_shadow_in_tiles_is_that_of_one_model_and_is_found_again() {
     let again = place.summary(&format!("{shadow} -o again.tif --memory 118M --cache kept"));
     assert_eq!((again["balls_made"].as_u64(), again["answers_made"].as_u64()), (Some(0), Some(0)));
     assert!(place.bytes("again.tif") == place.bytes("tiled.tif"));
+    // the question of the raster is the same one
+    let put = place.summary("ask tiled.tif town/cloud.laz -o put.tif --memory 118M --cache kept");
+    assert_eq!((put["balls_made"].as_u64(), put["answers_made"].as_u64()), (Some(0), Some(0)));
+    assert_eq!(bands(&place, "put.tif"), bands(&place, "tiled.tif"));
     let sky = place.summary("sky-view town/cloud.laz --directions 49 --cell 2 -o sky.tif --memory 118M --cache kept");
     assert_eq!(sky["balls_made"].as_u64(), Some(0));
     assert!(sky["measures"]["sky_view_factor"]["mean"].as_f64().unwrap() > 0.2, "{sky}");
@@ -77,15 +81,22 @@ fn what_tiles_do_not_know_is_named_where_memory_was_typed() {
     let place = Workplace::new();
     town(&place);
     for (flag, word) in [
-        ("--soft", "soft edges"),
+        ("--casters", "--casters"),
         ("--edge-mask mask.tif", "--edge-mask"),
         ("--trees opaque", "--trees"),
+        ("--lines 1", "--lines"),
+        ("--dates 2026", "--dates"),
+        ("--only-classes 2,6", "--only-classes"),
         ("--shell 0.1", "--shell"),
         ("-o points.laz", "points.laz"),
-        ("--unproven as-blocked", "unproven light"),
     ] {
         let line = format!("shadow town/cloud.laz --sun 150,30 -o out.tif {flag} --memory 118M --no-cache");
         place.refusal(2, &line, &[word, "in tiles"]);
+    }
+    let plan = "shadow town/cloud.laz --sun 150,30 --plan run";
+    for (flag, word) in [("--casters", "--casters"), ("--bounds 0,0,9,9", "--bounds"), ("-o out.tif", "city merge")] {
+        place.refusal(2, &format!("{plan} {flag}"), &[word, "--plan"]);
+        assert!(!place.path("run").exists());
     }
     let suns: String = (0..6).map(|number| format!(" --sun {},30", 100 + 20 * number)).collect();
     let fine = format!("shadow town/cloud.laz{suns} --cell 0.0625 -o out.tif --memory 118M");
@@ -260,12 +271,140 @@ fn how_sure_answers_are_is_the_same_in_tiles() {
             assert!((of_whole.unwrap_or(0.0) - of_tiles.unwrap_or(0.0)).abs() < near, "{key}: {whole} {tiled}");
         }
     }
-    // another certainty needs no tile again
+    // without the probabilities that it was made of
     let again =
         place.summary("shadow town/cloud.laz --sun 150,30 --cell 1 --certain 0.8 --cache kept -o 8.tif --memory 118M");
-    assert_eq!(again["answers_made"].as_u64(), Some(0), "{again}");
+    assert_eq!(again["balls_made"].as_u64(), Some(0), "{again}");
     let names: Vec<String> = numbers(&place, "8.tif").into_iter().map(|(name, _)| name).collect();
     assert_eq!(names, ["lit", "unproven", "uncertain"]);
+}
+
+#[test]
+fn questions_have_all_their_options_and_bands_in_tiles_and_in_plans() {
+    let place = Workplace::new();
+    town(&place);
+    let info = place.summary("info town/cloud.laz");
+    let [x, y] = [0, 1].map(|axis| info["min_corner"][axis].as_f64().unwrap() + 45.0);
+    let here = "--zone UTC --location 52,4.4";
+    for (number, (question, band_count)) in [
+        ("shadow --soft --sun 150,30".to_owned(), 1),
+        ("shadow --sun 150,30 --unproven as-blocked".to_owned(), 1),
+        (format!("shadow --date 2026-06-21 --time-step-min 60 {here}"), 17),
+        (format!("sun-hours --date 2026-03-21 --rule bre-equinox --time-step-min 60 --year 2026 {here}"), 6),
+        ("sky-view --patches tregenza".to_owned(), 2),
+        ("irradiance --clear-sky haurwitz --months --location 52,4.4 --sun-cell-deg 8".to_owned(), 18),
+        (format!("viewshed --observer {x},{y},30 --azimuth-range 10,200 --elevation-range=-90,-20"), 2),
+        (format!("viewshed --observer {x},{y},30 --unproven as-visible"), 1),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let ask = |rest: &str| place.summary(&format!("{question} town/cloud.laz --cell 2 --cache kept {rest}"));
+        let whole = ask("-o whole.tif");
+        let tiled = ask("-o tiled.tif --memory 118M");
+        assert!(remarks(&tiled).contains(&"in-tiles".to_owned()), "{tiled}");
+        let [of_whole, of_tiles] = ["whole.tif", "tiled.tif"].map(|name| numbers(&place, name));
+        assert_eq!(of_whole.len(), band_count, "{question}");
+        // a plan builds the town anew: three of these are enough
+        if number % 3 == 0 {
+            ask(&format!("--plan plan_{number} --memory 118M"));
+            place.summary(&format!("city run plan_{number}"));
+            place.summary(&format!("city merge plan_{number} -o planned.tif"));
+            let bits = |bands: &[(String, Vec<f32>)]| -> Vec<(String, Vec<u32>)> {
+                let bits_of = |band: &[f32]| band.iter().map(|value| value.to_bits()).collect();
+                bands.iter().map(|(name, band)| (name.clone(), bits_of(band))).collect()
+            };
+            assert!(bits(&of_tiles) == bits(&numbers(&place, "planned.tif")), "{question}");
+        }
+        for ((name, expected), (own, found)) in of_whole.iter().zip(&of_tiles) {
+            assert_eq!((name, expected.len()), (own, found.len()), "{question}");
+            let greatest = expected.iter().copied().filter(|value| value.is_finite()).fold(0.0, f32::max);
+            let differ = |(a, b): &(&f32, &f32)| a.is_nan() != b.is_nan() || (**a - **b).abs() > 0.05 * greatest;
+            let count = expected.iter().zip(found).filter(differ).count();
+            // plans take noise and scanner from samples
+            assert!(count * 50 < found.len(), "{question}, {name}: {count} of {}", found.len());
+        }
+        // the same words, with other figures
+        let words =
+            |summary: &Value| -> Vec<String> { remarks(summary).into_iter().filter(|key| key != "in-tiles").collect() };
+        assert_eq!(words(&whole), words(&tiled), "{question}");
+    }
+}
+
+#[test]
+fn places_in_a_survey_of_any_size_have_the_answers_of_one_model() {
+    let place = Workplace::new();
+    town(&place);
+    let info = place.summary("info town/cloud.laz");
+    let [x, y] = [0, 1].map(|axis| info["min_corner"][axis].as_f64().unwrap() + 30.0);
+    place.write("points.csv", format!("x,y,z\n{x},{y},9\n{},{y},2\n{x},{},30\n", x + 25.0, y + 20.0));
+    let here = "--zone UTC --location 52,4.4";
+    for (question, decimals) in [
+        ("shadow --sun 150,20".to_owned(), 1.0),
+        (format!("sun-hours --date 2026-03-21 --time-step-min 20 {here}"), 0.5),
+        ("sky-view --directions 145".to_owned(), 0.02),
+        ("irradiance --clear-sky haurwitz --location 52,4.4 --sun-cell-deg 8".to_owned(), 20.0),
+    ] {
+        for places in [format!("--at {x},{y} --at {},{},12", x + 20.0, y + 10.0), "--targets points.csv".to_owned()] {
+            let ask = |rest: &str| place.summary(&format!("{question} town/cloud.laz {places} --cache kept {rest}"));
+            let (whole, tiled) = (ask("-o whole.csv"), ask("-o tiled.csv --memory 118M"));
+            assert!(remarks(&tiled).contains(&"in-tiles".to_owned()), "{tiled}");
+            assert_eq!(whole["measures"].as_object().unwrap().len(), tiled["measures"].as_object().unwrap().len());
+            let rows = |name: &str| -> Vec<Vec<f64>> {
+                let text = String::from_utf8(place.bytes(name)).unwrap();
+                let numbers = |line: &str| line.split(',').filter_map(|word| word.parse().ok()).collect();
+                text.lines().skip(1).map(numbers).collect()
+            };
+            let (expected, found) = (rows("whole.csv"), rows("tiled.csv"));
+            assert!(expected.len() >= 2 && expected.len() == found.len(), "{expected:?}");
+            for (expected, found) in expected.iter().zip(&found) {
+                // place, then the first measure: noise and scanner are taken from samples
+                for (axis, near) in [0.001, 0.001, 0.02, decimals].into_iter().enumerate() {
+                    assert!(
+                        (expected[axis] - found[axis]).abs() <= near,
+                        "{question} {places}: {expected:?} {found:?}"
+                    );
+                }
+            }
+        }
+    }
+    place.refusal(2, "shadow town/cloud.laz --sun 150,30 --self -o out.laz --memory 118M", &["--self", "in tiles"]);
+}
+
+#[test]
+fn a_film_and_means_of_areas_come_from_tiles_too() {
+    let place = Workplace::new();
+    town(&place);
+    let info = place.summary("info town/cloud.laz");
+    let [x, y] = [0, 1].map(|axis| info["min_corner"][axis].as_f64().unwrap() + 20.0);
+    let ring = [[x, y], [x + 40.0, y], [x + 40.0, y + 30.0], [x, y + 30.0], [x, y]];
+    let area = serde_json::json!({
+        "type": "FeatureCollection",
+        "crs": { "type": "name", "properties": { "name": "EPSG:28992" } },
+        "features": [{
+            "type": "Feature",
+            "properties": { "name": "yard" },
+            "geometry": { "type": "Polygon", "coordinates": [ring] },
+        }],
+    });
+    place.write("yard.geojson", area.to_string());
+    let shadow = "shadow town/cloud.laz --sun 150,30 --sun 190,40 --cell 1 --cache kept --areas yard.geojson";
+    place.summary(&format!("{shadow} -o whole.tif --by-area whole.csv --film whole.png"));
+    place.summary(&format!(
+        "{shadow} -o tiled.tif --by-area tiled.csv --film tiled.png --measures tiled --outlines tiled.gpkg --memory 118M"
+    ));
+    let mean = |name: &str| -> Vec<f64> {
+        let text = String::from_utf8(place.bytes(name)).unwrap();
+        text.lines().nth(1).unwrap().split(',').filter_map(|word| word.parse().ok()).collect()
+    };
+    let (whole, tiled) = (mean("whole.csv"), mean("tiled.csv"));
+    assert!(whole.len() == tiled.len() && whole.len() > 2, "{whole:?} {tiled:?}");
+    for (expected, found) in whole.iter().zip(&tiled) {
+        assert!((expected - found).abs() <= 0.02 * expected.abs().max(1.0), "{whole:?} {tiled:?}");
+    }
+    for name in ["tiled.png", "tiled/lit_1.tif", "tiled/lit_2.tif", "tiled.gpkg"] {
+        assert!(place.path(name).is_file(), "{name}");
+    }
 }
 
 #[test]

@@ -133,7 +133,7 @@ fn every_parameter_is_described_in_one_short_line_with_its_type() {
     let program = place.summary("describe");
     let commands = program["commands"].as_array().unwrap();
     // four of them are the steps of `city`
-    assert_eq!(commands.len(), 43);
+    assert_eq!(commands.len(), 45);
     for command in commands {
         let name = command["name"].as_str().unwrap();
         assert!(!command["summary"].as_str().unwrap().contains('\n'), "{name}");

@@ -4,7 +4,8 @@ use crate::common::{Workplace, house};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-const COMMANDS: [&str; 38] = [
+const COMMANDS: [&str; 39] = [
+    "ask",
     "demo",
     "fetch",
     "simulate",
@@ -95,7 +96,7 @@ const SCREEN: [usize; 2] = [60, 100];
 #[test]
 fn the_overview_and_every_short_help_fit_a_screen() {
     let place = Workplace::new();
-    let steps = ["city plan", "city run", "city status", "city merge"].map(|step| format!("{step} -h"));
+    let steps = ["city plan", "city run", "city tasks", "city status", "city merge"].map(|step| format!("{step} -h"));
     let of_commands = COMMANDS.iter().map(|command| format!("{command} -h"));
     let mut too_long = Vec::new();
     for arguments in ["--help", "-h", "help"].map(str::to_owned).into_iter().chain(of_commands).chain(steps) {
@@ -115,7 +116,7 @@ fn the_overview_and_every_short_help_fit_a_screen() {
 fn commands_are_listed_by_task() {
     let place = Workplace::new();
     let overview = place.run("--help").stdout;
-    let groups = ["start", "sun", "sight", "scene", "research", "maps", "other"];
+    let groups = ["start", "sun", "sight", "scene", "maps", "other"];
     let headings: Vec<&str> = overview.lines().filter(|line| groups.contains(line)).collect();
     assert_eq!(headings, groups);
     for command in place.summary("describe")["commands"].as_array().unwrap() {
@@ -147,7 +148,7 @@ fn every_example_works_as_printed() {
     assert_eq!(demo.status, 0, "{demo:?}");
     place.write_folder("FOLDER", &house());
     let mut done = BTreeSet::new();
-    let steps = ["city plan", "city run", "city status", "city merge"];
+    let steps = ["city plan", "city run", "city tasks", "city status", "city merge"];
     let of_help =
         COMMANDS.iter().chain(&steps).flat_map(|command| examples(&place.run(&format!("help {command}")).stdout));
     let of_help: Vec<String> = of_help.collect();

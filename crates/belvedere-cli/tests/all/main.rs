@@ -4,6 +4,7 @@
 
 mod answers;
 mod any_size;
+mod ask;
 mod bench;
 mod calibrate;
 mod cameras;

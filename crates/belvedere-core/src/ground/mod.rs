@@ -60,6 +60,7 @@ pub struct GroundParams {
 
 /// Source of ground points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum GroundPoints {
     /// Class 2 and water where at least one point in a thousand has class 2, else [`GroundPoints::Found`].
@@ -92,7 +93,7 @@ impl Default for GroundParams {
 }
 
 /// Source of the ground of a [`Ground`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GroundReport {
     /// [`GroundPoints::Classed`] or [`GroundPoints::Found`].
     pub from: GroundPoints,

@@ -19,6 +19,7 @@ const MAX_CHORDS: f64 = 10_000.0;
 
 /// Lines of sight that follow the curvature of the earth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Curvature {
     /// Lines longer than [`CURVED_FROM`].
@@ -35,6 +36,7 @@ pub enum Curvature {
 /// In a map with heights above the sea a straight line of sight is a parabola. It sags below the straight line between
 /// its ends by (1 − k) · s · (S − s) / 2R at the horizontal distance s of S. k is the refraction and R the radius.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct EarthParams {
     /// Lines that are curved. Default: lines of more than 2 km.

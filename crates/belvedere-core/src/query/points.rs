@@ -31,6 +31,7 @@ pub enum Answer {
 
 /// Treatment of [`Answer::Unproven`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum UnprovenAs {
     /// An answer of its own.

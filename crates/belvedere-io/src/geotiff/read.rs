@@ -200,9 +200,25 @@ fn name_of_band(metadata: &str, band: usize) -> String {
 
 /// The item of a band with a name and a role, as [`name_of_band`].
 fn item_of_band(metadata: &str, band: usize, [name, role]: [&str; 2]) -> String {
-    let item = format!("<Item name=\"{name}\" sample=\"{band}\" role=\"{role}\">");
+    text_of_item(metadata, &format!("name=\"{name}\" sample=\"{band}\" role=\"{role}\"")).unwrap_or_default()
+}
+
+/// Returns the tags of these names in the metadata of a whole raster; `None` for those that it does not have.
+///
+/// # Errors
+/// [`Error::Io`], and [`Error::Malformed`] for other files.
+pub fn read_tags<'a, const N: usize>(source: impl Into<Source<'a>>, names: [&str; N]) -> Result<[Option<String>; N]> {
+    let Input { name, reader, size } = source.into().open()?;
+    let mut decoder = decoder(reader, size).map_err(|e| damaged(&name, e))?;
+    let metadata = decoder.get_tag_ascii_string(Tag::Unknown(GDAL_METADATA)).unwrap_or_default();
+    Ok(names.map(|tag| text_of_item(&metadata, &format!("name=\"{tag}\""))))
+}
+
+/// The text of the first item with exactly these attributes; `None` if there is no such item.
+fn text_of_item(metadata: &str, attributes: &str) -> Option<String> {
+    let item = format!("<Item {attributes}>");
     let text = metadata.split_once(&item).and_then(|(_, rest)| rest.split_once("</Item>")).map(|(text, _)| text);
-    let mut parts = text.unwrap_or_default().split('&');
+    let mut parts = text?.split('&');
     let mut found = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let (entity, rest) = part.split_once(';').unwrap_or(("amp", part));
@@ -215,7 +231,7 @@ fn item_of_band(metadata: &str, band: usize, [name, role]: [&str; 2]) -> String 
         });
         found.push_str(rest);
     }
-    found
+    Some(found)
 }
 
 /// A decoder that allocates no more than a file of `size` bytes can hold.

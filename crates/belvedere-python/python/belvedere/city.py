@@ -66,14 +66,22 @@ def answer(
     >>> 0 < found["measures"]["lit"]["mean"] < 1
     True
     """
+    outputs = [word for path in _paths(output) for word in ("-o", path)]
+    return _program(_command(question), *_paths(clouds), *_words(flags), *outputs)
+
+
+def _command(question: str) -> str:
     if question not in QUESTIONS:
         raise wrong("question", repr(question), f"use {', '.join(map(repr, QUESTIONS))}")
-    command = question.replace("_", "-")
-    outputs = [word for path in _paths(output) for word in ("-o", path)]
-    return _program(command, *_paths(clouds), *_words(flags), *outputs)
+    return question.replace("_", "-")
 
 
-def plan(clouds: str | Path | Iterable[str | Path], folder: str | Path, **flags: object) -> dict[str, Any]:
+def plan(
+    clouds: str | Path | Iterable[str | Path],
+    folder: str | Path,
+    question: Literal["shadow", "sun_hours", "sky_view", "irradiance", "viewshed"] | None = None,
+    **flags: object,
+) -> dict[str, Any]:
     """Reads all points once, and writes the plan of a run into `folder`. Returns what the run will need.
 
     Parameters
@@ -82,6 +90,8 @@ def plan(clouds: str | Path | Iterable[str | Path], folder: str | Path, **flags:
         Files, folders and catalogues (.vpc) of the survey.
     folder
         Folder for the plan and the results; created if it does not exist.
+    question : {'shadow', 'sun_hours', 'sky_view', 'irradiance', 'viewshed'}, optional
+        One question, with all its flags, as for `answer`; without it the flags are those of ``belvedere city plan``.
     **flags
         The flags of ``belvedere city plan`` with underscores: ``sun=[(150, 20)]``, ``time="2026-03-21T10:00+01:00"``,
         ``sun_hours=True``, ``date="2026-03-21"``, ``sky_view=True``, ``cell=1``, ``cell_for={"shadow": 0.5}`` (metres),
@@ -93,7 +103,9 @@ def plan(clouds: str | Path | Iterable[str | Path], folder: str | Path, **flags:
     >>> belvedere.city.plan(tile, folder / "plan", sky_view=True, directions=49, tile_size=64)["results"]
     ['sky_view_factor']
     """
-    return _program("city", "plan", *_paths(clouds), *_words(flags), "-o", folder)
+    if question is None:
+        return _program("city", "plan", *_paths(clouds), *_words(flags), "-o", folder)
+    return _program(_command(question), *_paths(clouds), *_words(flags), "--plan", folder)
 
 
 def run(

@@ -2,23 +2,20 @@
 //! block by block from pulses.
 
 use crate::answer::lines::AreaLines;
-use crate::answer::obstacles::{ObstacleSearch, rule};
+use crate::answer::obstacles::rule;
 use crate::answer::parts::TileObstacles;
 use crate::answer::proof::{self, Line, sampled_lengths};
-use crate::plan::Plan;
-use crate::plan::question::{LightQuestion, PreparedQuestion};
-use crate::plan::side_files::Others;
+use crate::answer::surroundings::TileSurroundings;
+use belvedere::Result;
+use belvedere::apps::ask::survey_parts::Looks;
 use belvedere::apps::eyes::skip_unfit_eyes;
-use belvedere::apps::rows::ObstacleParts;
 use belvedere::apps::shadow::ShadowSun;
-use belvedere::apps::viewshed::{Observer, add_known};
+use belvedere::apps::viewshed::{Observer, SeenProbabilities, add_known};
 use belvedere::control::Control;
 use belvedere::medial::MedialBalls;
 use belvedere::query::{BlockedLines, Certainty, Evidence, MedialScene};
 use belvedere::vector::{dot, sub};
-use belvedere::{Error, Parameter, Result};
 use rayon::prelude::*;
-use std::path::Path;
 
 /// Number of targets that a thread takes at once.
 const CHUNK: usize = 256;
@@ -72,32 +69,25 @@ impl Viewers {
 }
 
 impl<'a> PartialEvidence<'a> {
-    /// Creates empty evidence for the answers of `prepared`.
-    ///
-    /// # Errors
-    /// [`Error::InvalidParameter`] for other questions than a sun or observers.
-    pub(crate) fn new(prepared: &PreparedQuestion, targets: &'a [[f32; 3]]) -> Result<Self> {
-        let viewers = match prepared {
-            PreparedQuestion::Light(LightQuestion::Shadow(sun)) => Viewers::Sun(*sun),
-            PreparedQuestion::Viewshed { observers, is_reverse } => {
-                Viewers::Observers { observers: observers.clone(), is_reverse: *is_reverse }
-            }
-            PreparedQuestion::Light(_) | PreparedQuestion::Probability { .. } => {
-                return Err(Error::invalid(Parameter::Certainty, "given", "left out but for a sun and for observers"));
-            }
-        };
+    /// Creates empty evidence for a sun.
+    pub(crate) fn of_sun(sun: ShadowSun, targets: &'a [[f32; 3]]) -> Self {
+        Self::new(Viewers::Sun(sun), targets)
+    }
+
+    /// Creates empty evidence for observers.
+    pub(crate) fn of_observers(looks: &Looks<'_>, targets: &'a [[f32; 3]]) -> Self {
+        let viewers = Viewers::Observers { observers: looks.observers.to_vec(), is_reverse: looks.is_reverse };
+        Self::new(viewers, targets)
+    }
+
+    fn new(viewers: Viewers, targets: &'a [[f32; 3]]) -> Self {
         let blocked = vec![vec![BlockedLines::NONE; targets.len()]; viewers.count()];
-        Ok(Self { viewers, targets, blocked, solid: Vec::new(), depths: Vec::new() })
+        Self { viewers, targets, blocked, solid: Vec::new(), depths: Vec::new() }
     }
 
     /// Adds the evidence of all `parts` and of the other obstacles.
-    pub(crate) fn gather(
-        &mut self,
-        plan: &Plan,
-        (parts, others): (&TileObstacles<'_>, &Others),
-        lines: &AreaLines<'_>,
-        control: &Control<'_>,
-    ) -> Result<()> {
+    pub(crate) fn gather(&mut self, parts: &TileObstacles, lines: &AreaLines<'_>, control: &Control<'_>) -> Result<()> {
+        let TileSurroundings { plan, others, .. } = &*parts.tile;
         if let (Viewers::Sun(sun), Some(medium)) = (&self.viewers, parts.medium()) {
             let factor = parts.crowns().map_or(1.0, |crowns| crowns.factor(sun.season));
             self.solid = vec![BlockedLines::NONE; self.targets.len()];
@@ -141,28 +131,28 @@ impl<'a> PartialEvidence<'a> {
         Ok(())
     }
 
-    /// Returns the probability that each target is free for the viewer, or for several viewers their expected number.
-    /// With a certainty, a second band counts the answers that miss it. Cells without an answer are NaN. The number of
-    /// targets with missing balls comes last; their answers do not count.
-    pub(crate) fn bands(
+    /// Returns the probability that each target is free for the viewer, or for several viewers their expected number,
+    /// and how many of the answers miss `certainty`. Targets without an answer are NaN, and so are those that missing
+    /// balls may block.
+    pub(crate) fn probabilities(
         &self,
-        (plan, run): (&Plan, &Path),
+        tile: &TileSurroundings,
         certainty: Option<Certainty>,
-        balls: &mut ObstacleSearch,
         control: &Control<'_>,
-    ) -> Result<(Vec<Vec<f32>>, usize)> {
-        let mut is_missing = vec![false; self.targets.len()];
+    ) -> Result<SeenProbabilities> {
+        let TileSurroundings { plan, run, .. } = tile;
+        let mut balls = tile.found();
         let mut expected = vec![f32::NAN; self.targets.len()];
         let mut uncertain = expected.clone();
         let top = proof::top(plan);
         for (number, blocked) in self.blocked.iter().enumerate() {
             let of_row = |row: usize| Some((row, self.viewers.line(number, self.targets[row])?));
             let (rows, lines): (Vec<usize>, Vec<Line>) = (0..self.targets.len()).filter_map(of_row).unzip();
-            let unseen = control.stage("testing pulses", 0, || sampled_lengths((plan, run), &lines, balls, control))?;
+            let unseen =
+                control.stage("testing pulses", 0, || sampled_lengths((plan, run), &lines, &mut balls, control))?;
             for ((row, line), unseen) in rows.into_iter().zip(&lines).zip(unseen) {
                 let &Line { target, towards, range } = line;
                 if !balls.missing.is_empty() && balls.is_unknown(target, towards, range) {
-                    is_missing[row] = true;
                     continue;
                 }
                 let end_height = target[2] + range * towards[2];
@@ -177,7 +167,6 @@ impl<'a> PartialEvidence<'a> {
                 add_known(&mut uncertain[row], f32::from(u8::from(is_uncertain)));
             }
         }
-        let bands = [expected].into_iter().chain(certainty.map(|_| uncertain)).collect();
-        Ok((bands, is_missing.into_iter().filter(|is_missing| *is_missing).count()))
+        Ok(SeenProbabilities { expected, uncertain: certainty.map(|_| uncertain) })
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::grid::{LINE_ROOM, MapArea, TileId, block_area};
 use crate::plan::Plan;
-use crate::plan::question::PreparedQuestion;
+use crate::plan::prepared::SightLines;
+use belvedere::apps::viewshed::Observer;
 use belvedere::query::EarthParams;
 use belvedere::vector::piece_in_box;
 use std::collections::BTreeSet;
@@ -26,30 +27,36 @@ pub(crate) struct AreaLines<'a> {
 pub(crate) enum To<'a> {
     /// Unit vectors upward, for lines without end.
     Directions(&'a [[f64; 3]]),
-    /// Eyes, local metres.
-    Eyes(Vec<[f64; 3]>),
+    /// Eyes, local metres, over the curved earth.
+    Eyes(Vec<[f64; 3]>, EarthParams),
 }
 
 impl<'a> AreaLines<'a> {
-    /// Returns the lines of sight of a question from cells over an area.
-    pub(crate) fn of(prepared: &'a PreparedQuestion, targets: MapArea, lowest: f64) -> Self {
-        let to = match prepared {
-            PreparedQuestion::Light(light) => To::Directions(light.directions()),
-            PreparedQuestion::Probability { of, .. } => return Self::of(of, targets, lowest),
-            PreparedQuestion::Viewshed { observers, .. } => {
-                let is_near = |eye: &[f64; 3], reach: f64| targets.distance(&MapArea::at(*eye)) <= reach;
-                let near = observers.iter().filter(|observer| is_near(&observer.eye, observer.limits.distance[1]));
-                To::Eyes(near.map(|observer| observer.eye).collect())
-            }
-        };
-        Self::new(targets, lowest, to)
+    /// Returns those of `lines` that start in cells over an area.
+    pub(crate) fn of(lines: &'a SightLines, targets: MapArea, lowest: f64) -> Self {
+        match lines {
+            SightLines::Directions(directions) => Self::towards(directions, targets, lowest),
+            SightLines::Observers(observers, earth) => Self::to_observers((observers, earth), targets, lowest),
+        }
+    }
+
+    /// Returns the lines in `directions`, unit vectors upward, from cells over an area.
+    pub(crate) fn towards(directions: &'a [[f64; 3]], targets: MapArea, lowest: f64) -> Self {
+        Self::new(targets, lowest, To::Directions(directions))
+    }
+
+    /// Returns the lines to observers, as far as these see, over the curved earth, from cells over an area.
+    pub(crate) fn to_observers((observers, earth): (&[Observer], &EarthParams), targets: MapArea, lowest: f64) -> Self {
+        let is_near = |eye: &[f64; 3], reach: f64| targets.distance(&MapArea::at(*eye)) <= reach;
+        let near = observers.iter().filter(|observer| is_near(&observer.eye, observer.limits.distance[1]));
+        Self::new(targets, lowest, To::Eyes(near.map(|observer| observer.eye).collect(), *earth))
     }
 
     fn new(targets: MapArea, lowest: f64, to: To<'a>) -> Self {
         let slope = |d: &[f64; 3]| d[2] / d[0].hypot(d[1]).max(1e-12);
         let flattest = match &to {
             To::Directions(directions) => directions.iter().map(slope).fold(f64::INFINITY, f64::min),
-            To::Eyes(_) => f64::INFINITY,
+            To::Eyes(..) => f64::INFINITY,
         };
         Self { targets, lowest, to, flattest }
     }
@@ -58,7 +65,7 @@ impl<'a> AreaLines<'a> {
     pub(crate) fn is_empty(&self) -> bool {
         match &self.to {
             To::Directions(directions) => directions.is_empty(),
-            To::Eyes(eyes) => eyes.is_empty(),
+            To::Eyes(eyes, _) => eyes.is_empty(),
         }
     }
 
@@ -66,7 +73,7 @@ impl<'a> AreaLines<'a> {
     pub(crate) fn may_meet(&self, area: &MapArea, top: f64) -> bool {
         match &self.to {
             To::Directions(directions) => self.may_meet_towards(directions, area, top),
-            To::Eyes(eyes) => eyes.iter().any(|&eye| self.may_meet_from(eye, area, top)),
+            To::Eyes(eyes, earth) => eyes.iter().any(|&eye| self.may_meet_from((eye, earth), area, top)),
         }
     }
 
@@ -98,7 +105,7 @@ impl<'a> AreaLines<'a> {
     }
 
     /// Returns true if an obstacle over `area` may block lines that end in an eye.
-    fn may_meet_from(&self, eye: [f64; 3], area: &MapArea, top: f64) -> bool {
+    fn may_meet_from(&self, (eye, earth): ([f64; 3], &EarthParams), area: &MapArea, top: f64) -> bool {
         let place = MapArea::at(eye);
         // On the map: apart if any axis separates the area from both the eye and the targets.
         let sides = self.targets.corners().map(|corner| [eye[1] - corner[1], corner[0] - eye[0]]);
@@ -115,7 +122,7 @@ impl<'a> AreaLines<'a> {
         let (nearest, farthest) = (place.distance(&self.targets), place.farthest(&self.targets));
         let share = if nearest > 0.0 { (place.farthest(area) / nearest).min(1.0) } else { 1.0 };
         let lowest = eye[2] + share * (self.lowest - eye[2]).min(0.0);
-        top >= lowest - EarthParams::default().sag(farthest, 0.5) - LINE_ROOM
+        top >= lowest - earth.sag(farthest, 0.5) - LINE_ROOM
     }
 }
 
@@ -181,7 +188,7 @@ mod tests {
     #[test]
     fn only_what_stands_between_eye_and_targets_and_high_enough_may_block_the_view() {
         // An eye 300 m east of the targets and 40 m above them.
-        let lines = AreaLines::new(TARGETS, 0.0, To::Eyes(vec![[400.0, 50.0, 40.0]]));
+        let lines = AreaLines::new(TARGETS, 0.0, To::Eyes(vec![[400.0, 50.0, 40.0]], EarthParams::default()));
         for (area, top, expected) in [
             (place(110.0, 50.0), 3.0, true),
             (place(110.0, 50.0), -1.0, false),
@@ -197,7 +204,7 @@ mod tests {
             assert_eq!(lines.may_meet(&area, top), expected, "{area:?} {top}");
         }
         // An eye below the targets, among them.
-        let lines = AreaLines::new(TARGETS, 10.0, To::Eyes(vec![[50.0, 50.0, 2.0]]));
+        let lines = AreaLines::new(TARGETS, 10.0, To::Eyes(vec![[50.0, 50.0, 2.0]], EarthParams::default()));
         assert!(lines.may_meet(&place(70.0, 70.0), 3.0));
         assert!(!lines.may_meet(&place(70.0, 70.0), 1.0));
         assert!(!lines.may_meet(&place(120.0, 70.0), 90.0));

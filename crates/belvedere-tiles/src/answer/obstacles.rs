@@ -10,7 +10,7 @@ use belvedere::blocking::BlockRule;
 use belvedere::control::Control;
 use belvedere::io::{Source, read_balls};
 use belvedere::medial::{MedialBalls, PULSE_TOUCH};
-use belvedere::model::ModelParts;
+use belvedere::model::{ModelParts, SurveyBlock};
 use belvedere::pulses::FreeSegmentColumns;
 use belvedere::{Error, Result};
 use std::path::Path;
@@ -34,6 +34,12 @@ pub(crate) struct ObstacleSearch {
     pub(crate) missing: Vec<(MapArea, f64)>,
     /// Damaged balls that were made again.
     pub(crate) damaged: Vec<String>,
+    /// Number of observers inside obstacles.
+    pub(crate) skipped_observers: usize,
+    /// Number of cells without an answer because balls are missing.
+    pub(crate) unknown_cells: usize,
+    /// Number of blocked cells inside obstacles.
+    pub(crate) inside_cells: usize,
 }
 
 impl ObstacleSearch {
@@ -220,7 +226,7 @@ pub(crate) fn push(balls: &mut MedialBalls, more: &MedialBalls, row: usize) {
 /// Returns the possible obstacles on a tile without balls, from the heights of its points.
 fn unknown(plan: &Plan, tile: TileId) -> Vec<(MapArea, f64)> {
     let core = plan.grid().core(tile);
-    let part = |block: &crate::plan::survey::SurveyBlock| {
+    let part = |block: &SurveyBlock| {
         let own = block_area(block.at);
         let low = [0, 1].map(|axis| own.low[axis].max(core.low[axis]));
         let high = [0, 1].map(|axis| (own.low[axis] + CELL).min(core.high[axis]));

@@ -9,11 +9,10 @@
 use crate::answer::lines::{AreaLines, MAX_BALL};
 use crate::answer::obstacles::{BallTile, ObstacleSearch, ball_tiles, may_block, push, rule};
 use crate::answer::strips::Strips;
+use crate::answer::surroundings::TileSurroundings;
 use crate::build::patches;
 use crate::grid::{MapArea, TOP_SIDE, TileId, square_area};
 use crate::plan::Plan;
-use crate::plan::side_files::Others;
-use belvedere::apps::rows::ObstacleParts;
 use belvedere::apps::tree_light::CrownLight;
 use belvedere::blocking::BlockRule;
 use belvedere::control::Control;
@@ -24,8 +23,7 @@ use belvedere::query::{BlockingTriangles, FreeLines, MedialScene, VisibilityMatr
 use belvedere::{ExtinctionVoxels, Result, SurfacePatches};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Arc;
 
 /// Distances from the cells that divide the balls of a tile into groups, tested from near to far, metres. After the
 /// first group few lines of sight are left.
@@ -36,36 +34,22 @@ const CHUNK: usize = 256;
 const MIN_TEST_BATCH: usize = 100_000;
 
 /// Balls that may block lines from the cells of a tile; only one part is in memory at a time.
-pub(crate) struct TileObstacles<'a> {
-    plan: &'a Plan,
-    run: &'a Path,
-    /// Area of the cells.
-    cells: MapArea,
-    /// Obstacles other than balls.
-    others: &'a Others,
-    /// Maximum number of balls in a part.
-    max_balls: usize,
+pub(crate) struct TileObstacles {
+    pub(crate) tile: Arc<TileSurroundings>,
     /// Squares of tiles, the nearest first.
     squares: Vec<Vec<BallTile>>,
     /// Crowns as a medium, if they were measured and let light through.
     medium: Option<Medium>,
-    found: Mutex<ObstacleSearch>,
 }
 
-impl<'a> TileObstacles<'a> {
-    /// Finds the balls that may block `lines` from the cells of `tile`, in parts of at most `max_balls`. `others` block
-    /// too.
+impl TileObstacles {
+    /// Finds the balls that may block `lines` from the cells of a tile.
     ///
     /// # Errors
     /// [`belvedere::Error::Cancelled`].
-    pub(crate) fn around(
-        (plan, run, tile): (&'a Plan, &'a Path, TileId),
-        lines: &AreaLines<'_>,
-        others: &'a Others,
-        max_balls: usize,
-        control: &Control<'_>,
-    ) -> Result<Self> {
-        let mut found = ObstacleSearch::default();
+    pub(crate) fn around(tile: &Arc<TileSurroundings>, lines: &AreaLines<'_>, control: &Control<'_>) -> Result<Self> {
+        let TileSurroundings { plan, run, tile: number, max_balls, .. } = &**tile;
+        let mut found = tile.found();
         let tiles = ball_tiles(plan, run, lines, &mut found, control)?;
         let medium = match plan.trees {
             Some(CrownLight::Measured { .. }) => {
@@ -80,8 +64,8 @@ impl<'a> TileObstacles<'a> {
             }
             _ => None,
         };
-        let squares = squares(tile, tiles, max_balls);
-        Ok(Self { plan, run, cells: lines.targets, others, max_balls, squares, medium, found: Mutex::new(found) })
+        let squares = squares(*number, tiles, *max_balls);
+        Ok(Self { tile: Arc::clone(tile), squares, medium })
     }
 
     /// Passes to `look` scenes of at most `max_balls` balls that may block one of `lines`, until all were passed. For
@@ -96,19 +80,20 @@ impl<'a> TileObstacles<'a> {
         control: &Control<'_>,
         mut look: impl FnMut(&MedialScene, Option<&MedialScene>) -> Result<()>,
     ) -> Result<()> {
-        let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
+        let TileSurroundings { plan, run, max_balls, .. } = &*self.tile;
+        let mut found = self.tile.found();
         let mut part =
             SceneBatch { solid: self.medium.as_ref().map(|_| MedialBalls::default()), ..SceneBatch::default() };
         for of_tile in self.squares.iter().flatten() {
             control.check()?;
-            let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, of_tile.tile, control))?;
+            let read = control.stage("reading balls", 0, || found.read(plan, run, of_tile.tile, control))?;
             let Some(ModelParts { balls, patches: of_tile, transmission, .. }) = read else { continue };
             let blocking = patches::select(&of_tile, |area, top| lines.may_meet(area, top));
             blocking.iter().for_each(|(corners, kind)| part.patches.push(*corners, kind));
             let vegetation = vegetation_of_transmission(&transmission);
             for row in may_block(&balls, lines) {
-                if part.all.len() == self.max_balls {
-                    let (scene, solid) = part.taken(&rule(self.plan), &mut found, control)?;
+                if part.all.len() == *max_balls {
+                    let (scene, solid) = part.taken(&rule(plan), &mut found, control)?;
                     look(&scene, solid.as_ref())?;
                 }
                 push(&mut part.all, &balls, row);
@@ -117,13 +102,8 @@ impl<'a> TileObstacles<'a> {
                 }
             }
         }
-        let (scene, solid) = part.taken(&rule(self.plan), &mut found, control)?;
+        let (scene, solid) = part.taken(&rule(plan), &mut found, control)?;
         look(&scene, solid.as_ref())
-    }
-
-    /// Returns the report on the balls.
-    pub(crate) fn into_found(self) -> ObstacleSearch {
-        self.found.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Removes the lines of `free` that a square of tiles blocks, part by part.
@@ -134,24 +114,25 @@ impl<'a> TileObstacles<'a> {
         found: &mut ObstacleSearch,
         control: &Control<'_>,
     ) -> Result<()> {
+        let TileSurroundings { plan, run, max_balls, cells, .. } = &*self.tile;
         let mut part = BallBatch::default();
         for BallTile { tile, tops, .. } in square {
             control.check()?;
             if free.strips.meeting(tops).is_empty() {
                 continue;
             }
-            let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, *tile, control))?;
+            let read = control.stage("reading balls", 0, || found.read(plan, run, *tile, control))?;
             let Some(ModelParts { balls, transmission, patches, .. }) = read else { continue };
             patches.iter().for_each(|(corners, kind)| part.patches.push(*corners, kind));
-            let vegetation = self.plan.trees.map(|_| vegetation_of_transmission(&transmission)).unwrap_or_default();
-            let distance = |center: &[f32; 3]| self.cells.distance(&MapArea::at(center.map(f64::from)));
+            let vegetation = plan.trees.map(|_| vegetation_of_transmission(&transmission)).unwrap_or_default();
+            let distance = |center: &[f32; 3]| cells.distance(&MapArea::at(center.map(f64::from)));
             let distances: Vec<f64> = balls.centers.par_iter().map(distance).collect();
             let mut from = f64::NEG_INFINITY;
             for to in BANDS {
                 // The distance to the far corner of a square that a ball reaches into.
                 let reach = 1.5 * TOP_SIDE + MAX_BALL;
                 let may_reach = |&&(number, _): &&([i32; 2], f32)| {
-                    let distance = self.cells.distance(&square_area(number, TOP_SIDE));
+                    let distance = cells.distance(&square_area(number, TOP_SIDE));
                     distance + reach > from && distance <= to + reach
                 };
                 let tops: Vec<_> = tops.iter().filter(may_reach).copied().collect();
@@ -167,53 +148,64 @@ impl<'a> TileObstacles<'a> {
                     if is_vegetation && self.medium.is_some() {
                         continue;
                     }
-                    if part.ball_count() == self.max_balls {
-                        part.hide(free, self.plan, found, control)?;
+                    if part.ball_count() == *max_balls {
+                        part.hide(free, plan, found, control)?;
                     }
                     push(if is_vegetation { &mut part.vegetation } else { &mut part.opaque }, &balls, row);
                 }
                 from = to;
                 if part.ball_count() >= MIN_TEST_BATCH {
-                    part.hide(free, self.plan, found, control)?;
+                    part.hide(free, plan, found, control)?;
                     part.columns.clear();
                 }
             }
         }
-        part.hide(free, self.plan, found, control)
+        part.hide(free, plan, found, control)
     }
 }
 
-impl ObstacleParts for TileObstacles<'_> {
-    fn crowns(&self) -> Option<CrownLight> {
-        self.plan.trees
+impl TileObstacles {
+    /// Returns the transmissivity of crowns; `None` if trees are opaque.
+    pub(crate) fn crowns(&self) -> Option<CrownLight> {
+        self.tile.plan.trees
     }
 
-    fn medium(&self) -> Option<&Medium> {
+    /// Returns the medium of measured crowns.
+    pub(crate) fn medium(&self) -> Option<&Medium> {
         self.medium.as_ref()
     }
 
-    fn look(
+    /// Computes which of `directions` each of `targets` sees, as
+    /// [`ObstacleParts::look`](belvedere::apps::rows::ObstacleParts::look).
+    ///
+    /// # Errors
+    /// Those of reading balls, and [`belvedere::Error::Cancelled`].
+    pub(crate) fn look(
         &self,
         targets: &[[f32; 3]],
         directions: &[[f64; 3]],
         control: &Control<'_>,
     ) -> Result<(VisibilityMatrix, Option<VisibilityMatrix>)> {
+        let TileSurroundings { cells, others, .. } = &*self.tile;
+        // nothing shines from below, so that any answer will do there
+        let upward = |&direction: &[f64; 3]| if direction[2] > 0.0 { direction } else { [0.0, 0.0, 1.0] };
+        let directions = &directions.iter().map(upward).collect::<Vec<_>>()[..];
         let without_trees = FreeLines::new(targets, directions)?;
         let all = matches!(self.crowns(), Some(CrownLight::Share { .. })).then(|| without_trees.clone());
-        let mut strips = Strips::new(directions, &self.cells);
+        let mut strips = Strips::new(directions, cells);
         strips.look_up(&without_trees, &without_trees.free_columns());
         let mut free = Free { without_trees, all, target_count: targets.len(), strips };
-        let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut found = self.tile.found();
         found.ball_count = 0;
         for square in &self.squares {
             control.check()?;
             self.hide(&mut free, square, &mut found, control)?;
         }
         let Free { mut without_trees, mut all, .. } = free;
-        if let Some(added) = &self.others.added {
+        if let Some(added) = &others.added {
             without_trees.hide_behind_triangles(added, control)?;
         }
-        without_trees.hide_behind_terrain(&self.others.far_terrain, control)?;
+        without_trees.hide_behind_terrain(&others.far_terrain, control)?;
         if let Some(all) = &mut all {
             all.hide_what_is_hidden_in(&without_trees)?;
         }
@@ -223,23 +215,28 @@ impl ObstacleParts for TileObstacles<'_> {
         })
     }
 
-    fn are_inside_obstacles(&self, targets: &[[f32; 3]], control: &Control<'_>) -> Result<Vec<bool>> {
+    /// Flags the `targets` that lie inside an obstacle.
+    ///
+    /// # Errors
+    /// Those of reading balls, and [`belvedere::Error::Cancelled`].
+    pub(crate) fn are_inside_obstacles(&self, targets: &[[f32; 3]], control: &Control<'_>) -> Result<Vec<bool>> {
+        let TileSurroundings { plan, run, cells, .. } = &*self.tile;
         let mut are_inside = vec![false; targets.len()];
-        let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut found = self.tile.found();
         for BallTile { tile, tops, .. } in self.squares.iter().flatten() {
             control.check()?;
-            if !tops.iter().any(|(number, _)| square_area(*number, TOP_SIDE).distance(&self.cells) <= 0.0) {
+            if !tops.iter().any(|(number, _)| square_area(*number, TOP_SIDE).distance(cells) <= 0.0) {
                 continue;
             }
-            let read = control.stage("reading balls", 0, || found.read(self.plan, self.run, *tile, control))?;
+            let read = control.stage("reading balls", 0, || found.read(plan, run, *tile, control))?;
             let Some(ModelParts { balls, .. }) = read else { continue };
             let mut near = MedialBalls::default();
             let places = balls.centers.iter().zip(&balls.radii).enumerate();
             let rows = places.filter(|(_, (center, radius))| {
-                self.cells.distance(&MapArea::at(center.map(f64::from))) <= f64::from(**radius)
+                cells.distance(&MapArea::at(center.map(f64::from))) <= f64::from(**radius)
             });
             rows.for_each(|(row, _)| push(&mut near, &balls, row));
-            let scene = MedialScene::new(&near, &rule(self.plan))?;
+            let scene = MedialScene::new(&near, &rule(plan))?;
             are_inside.par_iter_mut().zip(targets).with_min_len(CHUNK).for_each(|(is_inside, target)| {
                 *is_inside |= scene.is_inside_obstacle(target.map(f64::from));
             });

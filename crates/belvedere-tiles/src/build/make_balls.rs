@@ -157,8 +157,8 @@ mod tests {
 
     use super::*;
     use crate::{PlanParams, RunParams, Shard, Steps, TileQuestion, UnfinishedRun, merge, run};
+    use belvedere::apps::ask::{ShadowQuestion, Standing, StandingObserver, Suns, ViewLimits, ViewshedQuestion};
     use belvedere::io::{read_balls, read_tif, write_cloud};
-    use belvedere::view::to_sun;
     use belvedere::{Frame, PatchKind, SurfacePatches};
 
     /// Returns level ground of 150 m, and patches of a long building across it, over which no point lies.
@@ -182,7 +182,9 @@ mod tests {
     fn answers(folder: &Path, side: f64, patches: &SurfacePatches) -> [BTreeMap<[i64; 2], u32>; 2] {
         let control = Control::none();
         let [cloud, run_folder] = ["ground.laz", &format!("tiles_{side}")].map(|name| folder.join(name));
-        let sun = TileQuestion::Shadow { name: "sun".to_owned(), to_sun: to_sun(2.5, 0.5), season: None };
+        let suns = Suns::Directions(vec![[2.5_f64.to_degrees(), 0.5_f64.to_degrees()]]);
+        let sun = ShadowQuestion { suns, ..ShadowQuestion::of_times(Vec::new()) };
+        let sun = TileQuestion::new("sun", sun.into()).unwrap();
         let params = PlanParams { clouds: vec![cloud], tile_size: side, ..PlanParams::default() };
         let plan = Plan::make(&params, &control).unwrap();
         // Relative to the origin of the plan, which may have any value.
@@ -190,7 +192,13 @@ mod tests {
         let by: [f64; 3] = std::array::from_fn(|i| [154_624.0, 462_848.0, 0.0][i] - origin[i]);
         let eyes =
             [[75.0, 20.0, 4.0], [30.0, 120.0, 30.0]].map(|eye: [f64; 3]| std::array::from_fn(|i| eye[i] + by[i]));
-        let view = TileQuestion::Viewshed { eyes: eyes.to_vec(), max_distance: None, is_reverse: false };
+        let observer = |place: [f64; 3]| {
+            let standing = Standing { place, height: None };
+            StandingObserver { standing, limits: ViewLimits::default() }
+        };
+        let observers = eyes.map(observer).to_vec();
+        let view = ViewshedQuestion { observers, ..ViewshedQuestion::default() };
+        let view = TileQuestion::new("view", view.into()).unwrap();
         plan.with_questions(vec![sun.clone(), view.clone()], &control).unwrap().write(&run_folder).unwrap();
         let plan = Plan::read(&run_folder).unwrap();
         let moved = |corner: [f32; 3]| std::array::from_fn(|i| (f64::from(corner[i]) + by[i]) as f32);

@@ -2,8 +2,8 @@
 
 use crate::grid::{CELL, MapArea, block_area};
 use crate::plan::Plan;
-use crate::plan::survey::SurveyBlock;
 use belvedere::cast::to_index;
+use belvedere::model::SurveyBlock;
 use serde::Serialize;
 
 /// Memory for each point of a window while balls are made, and without any point, bytes, as measured in docs/scale.md.
@@ -58,6 +58,11 @@ impl Plan {
             memory_bytes: memory_of(max) as u64,
             disk_bytes: (points as f64 * DISK_PER_POINT) as u64,
         }
+    }
+
+    /// Returns an estimate of the memory for the points of an area, bytes.
+    pub(crate) fn memory_for(&self, area: &MapArea) -> u64 {
+        to_index(memory_of(self.window_points(area))) as u64
     }
 
     /// Returns the maximum number of balls that are tested together. They take no more memory than making the balls of

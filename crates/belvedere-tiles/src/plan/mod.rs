@@ -5,12 +5,12 @@ mod cleared_areas;
 pub(crate) mod estimate;
 mod kept_survey;
 pub(crate) mod make_plan;
+pub(crate) mod prepared;
 pub(crate) mod question;
 pub(crate) mod record;
 pub(crate) mod side_files;
 pub(crate) mod stage;
 pub(crate) mod survey;
-mod tile_questions;
 pub(crate) mod window;
 
 use crate::grid::{MapArea, TileGrid, TileId, block_area};
@@ -18,10 +18,9 @@ use crate::inputs::{InputFile, PointColumns, bytes_of_file, hash};
 use crate::plan::cell_sizes::CellSizes;
 use crate::plan::question::{BALLS, TileQuestion};
 use crate::plan::side_files::{Others, SideFile, added_meshes, far_terrain};
-use crate::plan::survey::SurveyBlock;
 use crate::sealed::{is_sound, sealed};
 use belvedere::apps::ask::scene::Whereabouts;
-use belvedere::apps::ask::{Context, GridCells, Remark, density_at, remark_on_leaves, remark_on_terrain};
+use belvedere::apps::ask::{Context, GridCells, Remark, density_at, remark_on_terrain};
 use belvedere::apps::targets::{CellLevel, CellParams};
 use belvedere::apps::tree_light::CrownLight;
 use belvedere::apps::viewshed::cell_for;
@@ -30,9 +29,8 @@ use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::ground::{GroundPoints, MapGrid};
 use belvedere::io::{Insistence, atomic};
-use belvedere::model::{ClearedArea, ModelParams, SurveyStatistics};
-use belvedere::query::Coverage;
-use belvedere::results::ResultKind;
+use belvedere::model::{ClearedArea, ModelParams, SurveyBlock, SurveyStatistics};
+use belvedere::query::{Coverage, FarTerrain};
 use belvedere::shown::Address;
 use belvedere::weather::CalendarDay;
 use belvedere::{Bounds, Error, Frame, Parameter, Result};
@@ -43,7 +41,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Version of the layout of plans and records.
-pub(crate) const LAYOUT: u32 = 13;
+pub(crate) const LAYOUT: u32 = 14;
 /// Plan: input files, tiles and statistics of the whole survey. The same files and parameters give the same plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
@@ -234,6 +232,17 @@ impl Plan {
         Ok(self)
     }
 
+    /// Returns the cells of the result of a question, as one puts it to a scene.
+    pub(crate) fn grid_cells(&self, question: &TileQuestion) -> GridCells {
+        GridCells {
+            cell: Some(self.cells.of(question)),
+            level: self.targets.level,
+            height: Some(self.targets.height),
+            ground: self.ground,
+            ..GridCells::default()
+        }
+    }
+
     /// Returns the location of the survey for questions about suns.
     #[must_use]
     pub fn whereabouts<'a>(&self, frame: &'a Frame) -> Whereabouts<'a> {
@@ -314,7 +323,8 @@ impl Plan {
     }
 
     /// Returns the parameters of the model that makes the balls of tiles.
-    pub(crate) fn model(&self) -> ModelParams {
+    #[must_use]
+    pub fn model(&self) -> ModelParams {
         ModelParams::default().with_statistics(Some(Arc::new(self.statistics.clone())))
     }
 
@@ -383,13 +393,10 @@ impl Plan {
     pub fn with_questions(self, questions: Vec<TileQuestion>, control: &Control<'_>) -> Result<Self> {
         check_names(&questions)?;
         let mut context = Context::default();
-        let mut factors = Vec::new();
         for question in &questions {
-            let prepared = question.prepare(self.trees, &mut context, control)?;
-            factors.extend(self.trees.map(|crowns| prepared.known_factors(crowns)).unwrap_or_default());
+            let prepared = self.prepared(question, FarTerrain::default(), control)?;
+            prepared.answers.remarks.into_iter().for_each(|remark| context.add(Some(remark)));
         }
-        context.add(self.trees.and_then(|crowns| remark_on_leaves(crowns, factors)));
-        questions.iter().try_for_each(|question| question.check_pulses(self.can_prove()))?;
         let proves = self.proves || self.can_prove() && questions.iter().any(TileQuestion::needs_proof);
         let remarks = self.remarks.into_iter().chain(context.into_answers().remarks).collect();
         Ok(Self { questions, remarks, proves, ..self })
@@ -459,16 +466,15 @@ impl Plan {
     /// # Errors
     /// Those of reading the files, and [`Error::Malformed`] for a file that changed after the plan was made.
     pub(crate) fn others(&self) -> Result<Others> {
-        let frame = self.frame()?;
-        Ok(Others {
-            added: added_meshes(&self.meshes, &frame, None)?,
-            far_terrain: far_terrain(self.terrain.as_ref(), self.horizon.as_ref(), &frame, self.bounds())?,
-        })
+        Ok(Others { added: added_meshes(&self.meshes, &self.frame()?, None)?, far_terrain: self.far_terrain()? })
     }
 
-    /// Returns the kind of the values of a result.
-    pub(crate) fn kind_of(&self, question: &TileQuestion) -> ResultKind {
-        question.kind(self.trees.is_some_and(|trees| trees.gives_shares()))
+    /// Returns far terrain.
+    ///
+    /// # Errors
+    /// Those of [`Plan::others`].
+    pub(crate) fn far_terrain(&self) -> Result<FarTerrain> {
+        far_terrain(self.terrain.as_ref(), self.horizon.as_ref(), &self.frame()?, self.bounds())
     }
 }
 
@@ -499,7 +505,7 @@ fn is_false(value: &bool) -> bool {
 /// Refuses questions with the same folder of results, and folders that do not lie below the folder of the run.
 fn check_names(questions: &[TileQuestion]) -> Result<()> {
     let mut names = BTreeSet::from([BALLS]);
-    for name in questions.iter().map(TileQuestion::name) {
+    for name in questions.iter().map(|question| question.name.as_str()) {
         let is_plain = |c: char| c.is_alphanumeric() || "_-+.".contains(c);
         let refused = |value: String, expected| Err(Error::invalid(Parameter::Questions, value, expected));
         if name.is_empty() || name.starts_with('.') || !name.chars().all(is_plain) {

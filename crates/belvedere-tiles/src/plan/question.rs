@@ -1,21 +1,19 @@
-//! Questions about a city.
+//! Questions about a city: those of `ask`, with what a plan must keep of them.
 
+use crate::plan::Plan;
 use crate::plan::side_files::SideFile;
-use belvedere::apps::ask::{self, Context, SkyParts, SunHoursQuestion};
-use belvedere::apps::irradiance::{self, ClearSky, IrradianceParams, RadiationSource, SeasonRadiation, period_seasons};
-use belvedere::apps::shadow::{self, ShadowSun};
-use belvedere::apps::sky_view::{self, SkyDirections};
-use belvedere::apps::sum_errors::{INTERVAL_MEASURES, Intervals};
-use belvedere::apps::sun::Site;
-use belvedere::apps::sun_hours::{self, SunPlan};
-use belvedere::apps::tree_light::{CrownLight, Season};
-use belvedere::apps::viewshed::{Observer, SightLimits};
+use belvedere::apps::ask::scene::Whereabouts;
+use belvedere::apps::ask::{
+    Context, HowSure, IrradianceQuestion, Question, Radiation, ShadowQuestion, Standing, StandingObserver,
+    SunHoursQuestion, Suns, ViewLimits,
+};
+use belvedere::apps::targets::Measure;
 use belvedere::control::Control;
-use belvedere::io::{BandLabel, Source, read_weather};
-use belvedere::query::Certainty;
-use belvedere::results::{ResultKind, UNPROVEN_BAND, viewshed_words};
+use belvedere::io::{Source, read_weather};
 use belvedere::{Error, Parameter, Result};
 use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::sync::Arc;
 
 /// Folder of the balls of a run, which no question may have.
 pub(crate) const BALLS: &str = "balls";
@@ -55,374 +53,209 @@ impl Topic {
             Self::Viewshed => "viewshed",
         }
     }
+
+    /// Returns the topic of a question; `None` for one without values of cells.
+    fn of(question: &Question) -> Option<Self> {
+        Some(match question {
+            Question::Shadow(_) => Self::Shadow,
+            Question::SunHours(hours) if hours.days.is_empty() => Self::Rule,
+            Question::SunHours(_) => Self::SunHours,
+            Question::SkyView(_) => Self::SkyView,
+            Question::Irradiance(_) => Self::Irradiance,
+            Question::Viewshed(_) => Self::Viewshed,
+            _ => return None,
+        })
+    }
 }
 
-/// Question with an answer for each cell.
+/// Question with an answer for each cell of a survey.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[non_exhaustive]
-pub enum TileQuestion {
-    /// Cells lit by one sun: 1 lit, 0 in shadow.
-    Shadow {
-        /// Name of the folder of its results.
-        name: String,
-        /// Unit vector from the scene to the sun: x east, y grid north, z up.
-        to_sun: [f64; 3],
-        /// Season, which decides whether trees have leaves; `None` without a known date.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        season: Option<Season>,
-    },
-    /// Sky view factor of cells.
-    SkyView {
-        /// Division of the sky into parts.
-        sky: SkyParts,
-        /// True if results include an interval around the truth.
-        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-        interval: bool,
-    },
-    /// Hours of sun a day, mean of several days.
-    SunHours {
-        /// Location of the survey.
-        site: Site,
-        /// Days of the mean.
-        days: SunHoursQuestion,
-    },
-    /// Compliance with a rule of sunlight on all of its days: 1 met, 0 not met.
-    SunRule {
-        /// Name of the folder of its results.
-        name: String,
-        /// Location of the survey.
-        site: Site,
-        /// Rule with its days.
-        days: SunHoursQuestion,
-    },
-    /// Energy of sun and sky on level cells over a period, kWh/m².
-    Irradiance {
-        /// Location of the survey.
-        site: Site,
-        /// Source of the radiation.
-        radiation: TileRadiation,
-        /// Parameters of the sums of energy.
-        params: IrradianceParams,
-        /// True if results include an interval around the truth.
-        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-        interval: bool,
-    },
-    /// Visibility from observers. For one observer 1 is visible and 0 blocked; for several the number with a free line
-    /// of sight to the cell.
-    Viewshed {
-        /// Eyes of the observers, local metres.
-        eyes: Vec<[f64; 3]>,
-        /// Maximum distance of sight on the map, metres; `None` for any distance.
-        max_distance: Option<f64>,
-        /// True for a reverse viewshed: the eyes are targets, which cells look at. Such a target may lie inside an
-        /// obstacle.
-        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-        is_reverse: bool,
-    },
-    /// Probability that a sun lights a cell or that an observer sees it; for several observers the expected number.
-    Probability {
-        /// Name of the folder of its results.
-        name: String,
-        /// Question whose answers get probabilities: the shadow of a sun, or a viewshed.
-        of: Box<Self>,
-        /// Certainty of several observers, above 0.5 up to 1, below which their answers count as uncertain.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        certain: Option<f64>,
-    },
+pub struct TileQuestion {
+    /// Name of the folder of its results.
+    pub name: String,
+    /// Question, without its observers and its weather.
+    question: Question,
+    /// Observers of a viewshed, or the target of a reverse one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    observers: Vec<PlannedObserver>,
+    /// File of weather.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    weather: Option<SideFile>,
+    /// Names of the measures that results keep; empty for all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    kept: Vec<String>,
 }
 
-/// Source of radiation.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[non_exhaustive]
-pub enum TileRadiation {
-    /// Rows of weather, each divided into parts.
-    Weather {
-        /// Weather file.
-        file: SideFile,
-        /// Number of parts of each row.
-        parts: usize,
-    },
-    /// Year without clouds.
-    ClearSky {
-        /// Radiation of the clear sky.
-        clear_sky: ClearSky,
-        /// Calendar year.
-        year: i16,
-    },
-}
-
-/// Question with all data derived from its parameters.
-pub(crate) enum PreparedQuestion {
-    Light(LightQuestion),
-    Viewshed { observers: Vec<Observer>, is_reverse: bool },
-    Probability { of: Box<Self>, certainty: Option<Certainty> },
-}
-
-/// Question about light from given directions.
-pub(crate) enum LightQuestion {
-    Shadow(ShadowSun),
-    Sky(SkyDirections, Intervals),
-    SunHours { plan: Box<SunPlan>, site: Site, intervals: Intervals },
-    SunRule { plan: Box<SunPlan>, site: Site },
-    Irradiance { seasons: Vec<SeasonRadiation>, directions: Vec<[f64; 3]>, intervals: Intervals },
-}
-
-impl PreparedQuestion {
-    /// Returns the factors of crowns in the seasons of the question ([`CrownLight::known_factors`]).
-    pub(crate) fn known_factors(&self, crowns: CrownLight) -> Vec<f64> {
-        let on = |plan: &SunPlan, site: &Site| {
-            crowns.known_factors(plan.dates().map(|date| Some(Season::on(date, site)))).collect()
-        };
-        match self {
-            Self::Light(LightQuestion::Shadow(sun)) => crowns.known_factors([sun.season]).collect(),
-            Self::Light(LightQuestion::Sky(..)) => crowns.known_factors([None]).collect(),
-            Self::Light(LightQuestion::SunHours { plan, site, .. } | LightQuestion::SunRule { plan, site }) => {
-                on(plan, site)
-            }
-            Self::Light(LightQuestion::Irradiance { seasons, .. }) => {
-                seasons.iter().map(|season| season.factor).collect()
-            }
-            Self::Viewshed { .. } | Self::Probability { .. } => Vec::new(),
-        }
-    }
-}
-
-impl LightQuestion {
-    /// Returns the directions of the light as unit vectors.
-    pub(crate) fn directions(&self) -> &[[f64; 3]] {
-        match self {
-            Self::Shadow(sun) => std::slice::from_ref(&sun.to_sun),
-            Self::Sky(sky, _) => &sky.directions,
-            Self::SunHours { plan, .. } | Self::SunRule { plan, .. } => plan.directions(),
-            Self::Irradiance { directions, .. } => directions,
-        }
-    }
-}
-
-impl TileRadiation {
-    fn seasons(
-        &self,
-        site: &Site,
-        crowns: Option<CrownLight>,
-        params: &IrradianceParams,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<Vec<SeasonRadiation>> {
-        params.validate()?;
-        let weather;
-        let (source, weather) = match self {
-            Self::Weather { file, parts } => {
-                weather = read_weather(Source::bytes(file.path(), &file.read()?))?;
-                (RadiationSource::Weather { weather: &weather, parts: *parts }, Some(&weather))
-            }
-            Self::ClearSky { clear_sky, year } => {
-                (RadiationSource::ClearSky { clear_sky: *clear_sky, year: *year }, None)
-            }
-        };
-        let (seasons, report) = period_seasons(&source, site, crowns, params, control)?;
-        ask::remark_on_radiation(weather, site, &report, context);
-        Ok(seasons)
-    }
+/// Observer whose height is known.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct PlannedObserver {
+    /// Local metres.
+    eye: [f64; 3],
+    limits: ViewLimits,
 }
 
 impl TileQuestion {
-    /// Returns the name of the folder of its results.
-    #[must_use]
-    pub fn name(&self) -> &str {
-        match self {
-            Self::Shadow { name, .. } | Self::SunRule { name, .. } | Self::Probability { name, .. } => name,
-            Self::SkyView { .. } => "sky_view_factor",
-            Self::SunHours { .. } => "sun_hours",
-            Self::Irradiance { .. } => "irradiance",
-            Self::Viewshed { .. } => "viewshed",
+    /// Creates a question whose results lie in a folder of this name. Eyes of viewsheds must have heights
+    /// ([`Plan::set_on_ground`]).
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] for a question without values of cells, and for eyes that are missing or not finite.
+    /// Also those of reading the weather file.
+    pub fn new(name: &str, question: Question) -> Result<Self> {
+        let mut question = question;
+        let (mut observers, mut weather) = (Vec::new(), None);
+        match &mut question {
+            Question::Viewshed(view) => {
+                let planned = |one: StandingObserver| PlannedObserver { eye: one.standing.place, limits: one.limits };
+                observers = std::mem::take(&mut view.observers).into_iter().map(planned).collect();
+                let eyes = || observers.iter().map(|one: &PlannedObserver| one.eye);
+                if observers.is_empty() || !eyes().flatten().all(f64::is_finite) {
+                    let value = format!("{:?}", eyes().collect::<Vec<_>>());
+                    return Err(Error::invalid(Parameter::Observer, value, "one or more places with a height"));
+                }
+            }
+            Question::Irradiance(IrradianceQuestion {
+                radiation: Radiation::Weather { file, weather: rows, .. },
+                ..
+            }) => {
+                weather = Some(SideFile::new(Path::new(file))?);
+                *rows = None;
+            }
+            Question::Shadow(_) | Question::SunHours(_) | Question::SkyView(_) | Question::Irradiance(_) => {}
+            _ => {
+                let expected = "shadow, sun hours, rules of sunlight, sky view, irradiance or viewsheds";
+                return Err(Error::invalid(Parameter::Questions, "another", expected));
+            }
         }
+        Ok(Self { name: name.to_owned(), question, observers, weather, kept: Vec::new() })
+    }
+
+    /// Returns the question about all cells of a survey. Eyes of viewsheds are set on the ground.
+    ///
+    /// # Errors
+    /// Those of [`TileQuestion::new`] and [`Plan::set_on_ground`].
+    pub fn of_survey(question: &Question, plan: &Plan, control: &Control<'_>) -> Result<Self> {
+        question.check()?;
+        let mut question = question.clone();
+        match &mut question {
+            Question::Viewshed(view) => {
+                let standing: Vec<([f64; 3], f64)> = view.standing().collect();
+                for (one, (mut eye, height)) in view.observers.iter_mut().zip(standing) {
+                    plan.set_on_ground(std::slice::from_mut(&mut eye), height, control)?;
+                    one.standing = Standing { place: eye, height: None };
+                }
+                view.how_sure = summarised(view.how_sure);
+            }
+            Question::Shadow(shadow) => shadow.how_sure = summarised(shadow.how_sure),
+            _ => {}
+        }
+        let name = Topic::of(&question).map_or("result", Topic::name);
+        Self::new(name, question)
+    }
+
+    /// Returns the questions of a plan for many machines: one for each sun and each rule.
+    ///
+    /// # Errors
+    /// Those of [`TileQuestion::of_survey`] and of suns.
+    pub fn one_by_one(
+        question: &Question,
+        (plan, whereabouts): (&Plan, &Whereabouts<'_>),
+        control: &Control<'_>,
+    ) -> Result<Vec<Self>> {
+        let of_one =
+            |name: &str, question: Question| Self::of_survey(&question, plan, control).map(|one| one.named(name));
+        match question {
+            Question::Shadow(shadow) => {
+                let each: Vec<Suns> = match &shadow.suns {
+                    Suns::Directions(suns) => suns.iter().map(|sun| Suns::Directions(vec![*sun])).collect(),
+                    Suns::Times(times) => times.iter().map(|time| Suns::Times(vec![time.clone()])).collect(),
+                    days @ Suns::Days(_) => vec![days.clone()],
+                };
+                let of_sun = |suns: Suns| {
+                    let named = suns.resolve(&shadow.place, whereabouts, &mut Context::default())?;
+                    if let Some(low) = named.iter().find(|named| named.sun.to_sun[2] <= 0.0) {
+                        let elevation = low.sun.to_sun[2].clamp(-1.0, 1.0).asin().to_degrees();
+                        let value = format!("{elevation:.3} degrees");
+                        return Err(Error::invalid(Parameter::SunElevation, value, "above the horizon"));
+                    }
+                    let label = named.first().map_or("", |sun| sun.label.as_str());
+                    of_one(&format!("shadow_{label}"), ShadowQuestion { suns, ..shadow.clone() }.into())
+                };
+                each.into_iter().map(of_sun).collect()
+            }
+            Question::SunHours(hours) => {
+                let mut questions = Vec::new();
+                if !hours.days.is_empty() {
+                    let days = SunHoursQuestion { rules: Vec::new(), ..hours.clone() };
+                    questions.push(of_one("sun_hours", days.into())?);
+                }
+                for (text, (column, _)) in hours.rules.iter().zip(belvedere::apps::ask::rules(&hours.rules)?) {
+                    let days = belvedere::apps::ask::Days { dates: Vec::new(), between: None, ..hours.days.clone() };
+                    let rule = SunHoursQuestion { days, rules: vec![text.clone()], interval: false, ..hours.clone() };
+                    questions.push(Self { kept: vec![column.to_owned()], ..of_one(column, rule.into())? });
+                }
+                Ok(questions)
+            }
+            Question::SkyView(_) => Ok(vec![of_one("sky_view_factor", question.clone())?]),
+            Question::Irradiance(_) => Ok(vec![of_one("irradiance", question.clone())?]),
+            _ => Ok(vec![of_one("viewshed", question.clone())?]),
+        }
+    }
+
+    /// This with another name.
+    #[must_use]
+    pub fn named(self, name: &str) -> Self {
+        Self { name: name.to_owned(), ..self }
+    }
+
+    /// Removes the measures that results do not keep.
+    pub(crate) fn keep(&self, measures: &mut Vec<Measure>) {
+        measures.retain(|measure| self.kept.is_empty() || self.kept.contains(&measure.name));
     }
 
     /// Returns the topic of the question.
     #[must_use]
     pub fn topic(&self) -> Topic {
-        match self {
-            Self::Shadow { .. } => Topic::Shadow,
-            Self::SkyView { .. } => Topic::SkyView,
-            Self::SunHours { .. } => Topic::SunHours,
-            Self::SunRule { .. } => Topic::Rule,
-            Self::Irradiance { .. } => Topic::Irradiance,
-            Self::Viewshed { .. } => Topic::Viewshed,
-            Self::Probability { of, .. } => of.topic(),
-        }
+        Topic::of(&self.question).unwrap_or(Topic::Viewshed)
     }
 
-    /// Returns a description of the values, in the same words as rasters of one scene.
-    #[must_use]
-    pub fn description(&self) -> &'static str {
-        match self {
-            Self::Shadow { .. } => shadow::LIT,
-            Self::SkyView { .. } => sky_view::SKY_VIEW_FACTOR,
-            Self::SunHours { .. } => sun_hours::SUN_HOURS,
-            Self::SunRule { .. } => sun_hours::RULE_IS_MET,
-            Self::Irradiance { .. } => irradiance::ENERGY,
-            Self::Viewshed { eyes, .. } => viewshed_words(eyes.len())[1],
-            Self::Probability { of, .. } if of.is_of_several() => ask::EXPECTED_OBSERVERS,
-            Self::Probability { .. } => ask::BEING_FREE,
-        }
-    }
-
-    /// True if the question has several observers.
-    pub(crate) fn is_of_several(&self) -> bool {
-        matches!(self, Self::Viewshed { eyes, .. } if eyes.len() > 1)
-    }
-
-    /// Returns the kind of the values; with `shares` shadows are shares of light instead of yes or no.
-    pub(crate) fn kind(&self, shares: bool) -> ResultKind {
-        match self {
-            Self::Shadow { .. } if shares => ResultKind::Number,
-            Self::Shadow { .. } | Self::SunRule { .. } => ResultKind::Answer,
-            Self::Viewshed { eyes, .. } if eyes.len() == 1 => ResultKind::Answer,
-            Self::Viewshed { .. } => ResultKind::Count,
-            Self::SkyView { .. } | Self::SunHours { .. } | Self::Irradiance { .. } | Self::Probability { .. } => {
-                ResultKind::Number
+    /// Returns the question with its observers and its weather.
+    ///
+    /// # Errors
+    /// Those of reading the weather.
+    pub(crate) fn whole(&self) -> Result<Question> {
+        let mut question = self.question.clone();
+        match (&mut question, &self.weather) {
+            (Question::Viewshed(view), _) => {
+                let standing = |one: &PlannedObserver| StandingObserver {
+                    standing: Standing { place: one.eye, height: None },
+                    limits: one.limits,
+                };
+                view.observers = self.observers.iter().map(standing).collect();
             }
+            (
+                Question::Irradiance(IrradianceQuestion {
+                    radiation: Radiation::Weather { weather: rows, .. }, ..
+                }),
+                Some(file),
+            ) => *rows = Some(Arc::new(read_weather(Source::bytes(file.path(), &file.read()?))?)),
+            _ => {}
         }
+        Ok(question)
+    }
+
+    /// Returns the eyes of a viewshed, local metres.
+    pub(crate) fn eyes(&self) -> Vec<[f64; 3]> {
+        self.observers.iter().map(|one| one.eye).collect()
     }
 
     /// True if the answers use the proof by pulses.
     pub(crate) fn needs_proof(&self) -> bool {
-        matches!(self, Self::Shadow { .. } | Self::Viewshed { .. } | Self::Probability { .. })
+        matches!(self.question, Question::Shadow(_) | Question::Viewshed(_))
     }
+}
 
-    /// Refuses probabilities and intervals for a survey without known pulses.
-    ///
-    /// # Errors
-    /// [`Error::InvalidParameter`].
-    pub(crate) fn check_pulses(&self, are_known: bool) -> Result<()> {
-        let parameter = match self {
-            Self::Probability { .. } => Parameter::Certainty,
-            others if others.has_interval() => Parameter::Interval,
-            _ => return Ok(()),
-        };
-        let expected = "left out for surveys whose pulses are not known, or of which something is cleared";
-        let refused = || Err(Error::invalid(parameter, "given", expected));
-        if are_known { Ok(()) } else { refused() }
-    }
-
-    /// True if the values have an interval around the truth.
-    fn has_interval(&self) -> bool {
-        match self {
-            Self::SkyView { interval, .. } | Self::Irradiance { interval, .. } => *interval,
-            Self::SunHours { days, .. } => days.interval,
-            _ => false,
-        }
-    }
-
-    /// Returns the names of the bands of a result. Answers and counts have a second band for unproven cells.
-    #[must_use]
-    pub fn band_names(&self, kind: ResultKind) -> Vec<String> {
-        if let Self::Probability { of, certain, .. } = self {
-            let first = if of.is_of_several() { ask::EXPECTED } else { ask::PROBABILITY };
-            let second = certain.map(|_| ask::UNCERTAIN);
-            return [first].into_iter().chain(second).map(str::to_owned).collect();
-        }
-        let first = match self {
-            Self::Shadow { .. } => "lit",
-            Self::Viewshed { eyes, .. } => viewshed_words(eyes.len())[0],
-            Self::Irradiance { .. } => irradiance::ENERGY_NAME,
-            others => others.name(),
-        };
-        let second = (kind != ResultKind::Number).then(|| UNPROVEN_BAND.to_owned());
-        let stem = match self {
-            Self::SkyView { .. } => "factor",
-            Self::Irradiance { .. } => irradiance::ENERGY_NAME,
-            _ => "hours",
-        };
-        let ends = INTERVAL_MEASURES.iter().filter(|_| self.has_interval()).map(|(end, _)| format!("{stem}_{end}"));
-        [first.to_owned()].into_iter().chain(second).chain(ends).collect()
-    }
-
-    /// Returns the labels of the bands of results of a kind.
-    #[must_use]
-    pub fn band_labels(&self, kind: ResultKind) -> Vec<BandLabel> {
-        let label = |name: &String| BandLabel::new(name, if name == UNPROVEN_BAND { "1" } else { self.unit() });
-        self.band_names(kind).iter().map(label).collect()
-    }
-
-    /// Returns the unit of the values, `1` for those without.
-    #[must_use]
-    pub fn unit(&self) -> &'static str {
-        match self {
-            Self::SunHours { .. } => "h",
-            Self::Irradiance { .. } => "kWh/m2",
-            _ => "1",
-        }
-    }
-
-    /// Returns the question with all data derived from its parameters and from the light through crowns. Remarks on
-    /// radiation go into `context`.
-    ///
-    /// # Errors
-    /// [`Error::InvalidParameter`] for parameters out of range, a sun that is not above the horizon, and missing or
-    /// non-finite eyes. Also those of reading weather.
-    pub(crate) fn prepare(
-        &self,
-        crowns: Option<CrownLight>,
-        context: &mut Context,
-        control: &Control<'_>,
-    ) -> Result<PreparedQuestion> {
-        let invalid = |parameter, value: String, expected| Err(Error::invalid(parameter, value, expected));
-        let gives_shares = crowns.is_some_and(|crowns| crowns.gives_shares());
-        if self.has_interval() && gives_shares {
-            return invalid(Parameter::Interval, self.name().to_owned(), "left out where light gets through trees");
-        }
-        match self {
-            Self::Shadow { to_sun, season, .. } if to_sun[2] > 0.0 => {
-                Ok(PreparedQuestion::Light(LightQuestion::Shadow(ShadowSun { to_sun: *to_sun, season: *season })))
-            }
-            Self::Shadow { to_sun, .. } => {
-                let elevation = to_sun[2].clamp(-1.0, 1.0).asin().to_degrees();
-                invalid(Parameter::SunElevation, format!("{elevation:.3} degrees"), "above the horizon")
-            }
-            Self::SkyView { sky, interval } => {
-                let (sky, intervals) = (sky.directions()?, Intervals::wanted(*interval));
-                Ok(PreparedQuestion::Light(LightQuestion::Sky(sky, intervals)))
-            }
-            Self::SunHours { site, days } => Ok(PreparedQuestion::Light(LightQuestion::SunHours {
-                plan: Box::new(days.plan(site)?.0),
-                site: *site,
-                intervals: Intervals::wanted(days.interval),
-            })),
-            Self::SunRule { site, days, .. } => {
-                Ok(PreparedQuestion::Light(LightQuestion::SunRule { plan: Box::new(days.plan(site)?.0), site: *site }))
-            }
-            Self::Irradiance { site, radiation, params, interval } => {
-                let seasons = radiation.seasons(&site.validate()?, crowns, params, context, control)?;
-                let directions = seasons.iter().flat_map(|season| season.radiation.directions()).collect();
-                let intervals = Intervals::wanted(*interval);
-                Ok(PreparedQuestion::Light(LightQuestion::Irradiance { seasons, directions, intervals }))
-            }
-            Self::Viewshed { eyes, .. } if eyes.is_empty() || !eyes.iter().flatten().all(|v| v.is_finite()) => {
-                invalid(Parameter::Observer, format!("{eyes:?}"), "one or more places with a height")
-            }
-            Self::Viewshed { eyes, max_distance, is_reverse } => {
-                let limits =
-                    SightLimits { distance: [0.0, max_distance.unwrap_or(f64::INFINITY)], ..SightLimits::default() };
-                limits.validate()?;
-                let observers = eyes.iter().map(|&eye| Observer { eye, limits }).collect();
-                Ok(PreparedQuestion::Viewshed { observers, is_reverse: *is_reverse })
-            }
-            Self::Probability { of, certain, .. } => match of.prepare(crowns, context, control)? {
-                PreparedQuestion::Light(light) if !matches!(light, LightQuestion::Shadow(_)) || gives_shares => {
-                    let expected = "that of a sun with opaque trees, or of observers";
-                    invalid(Parameter::Certainty, of.name().to_owned(), expected)
-                }
-                PreparedQuestion::Probability { .. } => {
-                    invalid(Parameter::Certainty, of.name().to_owned(), "that of answers")
-                }
-                of => Ok(PreparedQuestion::Probability {
-                    of: Box::new(of),
-                    certainty: certain.map(Certainty::new).transpose()?,
-                }),
-            },
-        }
-    }
+/// Returns the request for the certainty of answers whose summary needs probabilities, even if they are not written.
+fn summarised(how_sure: HowSure) -> HowSure {
+    HowSure { probability: how_sure.is_wanted(), ..how_sure }
 }

@@ -110,7 +110,7 @@ pub struct TileRecord {
     /// Number of cells on the ground under a cover, which are no targets.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub covered_cells: usize,
-    /// Number of cells with an unproven answer because balls are missing.
+    /// Number of cells without an answer because balls are missing.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub unproven_cells: usize,
     /// Number of cells near the edge of the survey for the light of the question; `None` for questions about other
@@ -120,6 +120,9 @@ pub struct TileRecord {
     /// Number of observers inside an obstacle, which see nothing.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub skipped_observers: usize,
+    /// Number of blocked cells of a viewshed inside obstacles.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub inside_cells: usize,
     /// Time for the tile, seconds; 0 in a program without a clock.
     #[serde(default)]
     pub seconds: f64,

@@ -20,7 +20,7 @@ impl Stage<'_> {
     pub fn name(&self) -> &str {
         match self {
             Self::Balls => BALLS,
-            Self::Answer(question) => question.name(),
+            Self::Answer(question) => &question.name,
         }
     }
 

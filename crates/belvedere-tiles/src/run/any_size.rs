@@ -2,22 +2,25 @@
 //! answer of one model.
 
 use crate::plan::Plan;
+use crate::plan::prepared::PreparedQuestion;
 use crate::plan::question::TileQuestion;
 use crate::run::{RunParams, RunReport, Shard, Steps, run};
 use belvedere::Frame;
-use belvedere::apps::ask::{self, Answers, Context, HowSure, NamedSun, Remark, summarise_parts};
-use belvedere::apps::difference::described;
-use belvedere::apps::sum_errors::INTERVAL_MEASURES;
-use belvedere::apps::targets::Measure;
-use belvedere::apps::viewshed::SeenProbabilities;
+use belvedere::apps::ask::{
+    Answers, Context, EXPECTED, HowSure, NamedSun, OnTargets, PROBABILITY, Question, Remark, summarise_parts,
+};
+use belvedere::apps::edge::EdgeReport;
+use belvedere::apps::targets::{Measure, TargetLayout, Targets};
+use belvedere::cast::to_f32s;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
-use belvedere::ground::MapGrid;
+use belvedere::ground::{Ground, MapGrid};
 use belvedere::io::{MetadataTag, cloud_files, read_las_head, web_address};
 use belvedere::raster::Raster;
-use belvedere::results::{ResultKind, ResultRaster, UNPROVEN_BAND, georeference};
+use belvedere::results::{ADDED_BAND, ResultRaster, georeference};
 use belvedere::{Error, Parameter, Result};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Memory of a model of a whole cloud for each point, and without any point, bytes, as measured in docs/costs.md.
 const BYTES_PER_POINT: u64 = 600;
@@ -105,9 +108,10 @@ pub struct SurveyQuestion {
     plan: Plan,
     /// Folder of its results.
     folder: PathBuf,
-    question: ask::Question,
-    /// Suns of a question about shadows.
-    suns: Vec<NamedSun>,
+    of_survey: Question,
+    /// The same question to tiles, and the answer for no cell.
+    question: TileQuestion,
+    prepared: PreparedQuestion,
     context: Context,
 }
 
@@ -124,7 +128,8 @@ pub struct SurveyCells {
     pub suns: Vec<NamedSun>,
     /// Eyes of viewsheds, local metres.
     pub eyes: Vec<[f64; 3]>,
-    description: &'static str,
+    /// Cells that stand on a planned object; empty without any.
+    on_added: Vec<bool>,
 }
 
 impl SurveyQuestion {
@@ -134,39 +139,23 @@ impl SurveyQuestion {
     /// # Errors
     /// [`Error::InvalidParameter`] for a question that tiles do not answer, and for results over the limit. Also those
     /// of [`Plan::with_questions`] and [`Plan::write`].
-    pub fn new(plan: Plan, folder: &Path, question: ask::Question, limit: u64, control: &Control<'_>) -> Result<Self> {
-        let frame = plan.frame()?;
-        let whereabouts = plan.whereabouts(&frame);
-        let mut context = Context::default();
-        whereabouts.remark(&mut context);
-        let (suns, how_sure) = match &question {
-            ask::Question::Shadow(about) => {
-                (about.suns.resolve(&about.place, &whereabouts, &mut Context::default())?, about.how_sure)
-            }
-            _ => (Vec::new(), HowSure::default()),
-        };
-        let is_up = |sun: &NamedSun| sun.sun.to_sun[2] > 0.0;
-        let mut questions = TileQuestion::of(&question, (&plan, &whereabouts), &mut context, control)?;
-        if suns.iter().any(is_up) {
-            // At night nothing is lit, so that no tile is needed.
-            questions = TileQuestion::of_suns(suns.iter().filter(|&sun| is_up(sun)), &how_sure);
-        }
-        let mut values = 0_u64;
-        for own in &questions {
-            values += plan.cells_of(own)?.len() as u64;
-        }
-        let needed = values.saturating_mul(BYTES_PER_VALUE);
+    pub fn new(plan: Plan, folder: &Path, of_survey: Question, limit: u64, control: &Control<'_>) -> Result<Self> {
+        let question = TileQuestion::of_survey(&of_survey, &plan, control)?;
+        let prepared = plan.prepared(&question, plan.far_terrain()?, control)?;
+        let (results, cells) = (prepared.answers.measures.len(), plan.cells_of(&question)?.len());
+        let needed = (results as u64).saturating_mul(cells as u64).saturating_mul(BYTES_PER_VALUE);
         if needed > limit {
             let [needed, limit] = [needed, limit].map(size_in_words);
             return Err(Error::invalid(
                 Parameter::TileMemory,
-                format!("{limit}, but the {values} values of {} results take {needed} together", questions.len()),
+                format!("{limit}, but {results} results of {cells} cells take {needed} together"),
                 "enough for the answer: give larger cells, fewer suns or more memory, or plan a run in tiles, which writes each result on its own",
             ));
         }
-        if let (ask::Question::Viewshed(view), Some(TileQuestion::Viewshed { eyes, .. })) =
-            (&question, questions.first())
-        {
+        let mut context = Context::default();
+        context.report = prepared.answers.report.clone();
+        if let Question::Viewshed(view) = &of_survey {
+            let (frame, eyes) = (plan.frame()?, question.eyes());
             let above_ground = match eyes[..] {
                 [[x, y, z]] => {
                     let mut feet = [[x, y, f64::NAN]];
@@ -175,12 +164,12 @@ impl SurveyQuestion {
                 }
                 _ => None,
             };
-            view.report_eyes_of_parts(eyes, above_ground, &frame, &mut context);
+            view.report_eyes_of_parts(&eyes, above_ground, &frame, &mut context);
         }
-        let plan = plan.with_questions(questions, control)?;
+        let plan = plan.with_questions(vec![question.clone()], control)?;
         plan.remarks.iter().for_each(|remark| context.add(Some(remark.clone())));
         let (plan, folder) = plan.ready_in(folder)?;
-        Ok(Self { plan, folder, question, suns, context })
+        Ok(Self { plan, folder, of_survey, question, prepared, context })
     }
 
     /// Computes all missing results. `seconds` is a clock of the program.
@@ -199,126 +188,90 @@ impl SurveyQuestion {
     pub fn answers(mut self, report: &RunReport, control: &Control<'_>) -> Result<Answers<SurveyCells>> {
         let frame = self.plan.frame()?;
         let mut measures = self.measures(control)?;
-        let first = self.plan.questions.first();
-        let (Some(first), false) = (first, measures.is_empty()) else {
-            return Err(Error::NoPoints { what: "the question has no result".to_owned() });
-        };
-        let (grid, description) = (self.plan.cells_of(first)?, first.description());
-        let eyes = if let TileQuestion::Viewshed { eyes, .. } = first { eyes.clone() } else { Vec::new() };
+        let grid = self.plan.cells_of(&self.question)?;
+        let on_added = measures.pop_if(|last| last.name == ADDED_BAND);
+        let on_added = on_added.map(|band| band.values.iter().map(|value| *value > 0.0).collect());
         report.remarks().into_iter().for_each(|remark| self.context.add(Some(remark)));
-        self.context.report.places.cells_under_cover_left_out = report.cells_under_cover;
+        let places = &mut self.context.report.places;
+        places.cells_under_cover_left_out = report.cells_under_cover;
+        if matches!(self.of_survey, Question::Viewshed(_)) {
+            places.targets_inside_obstacle = Some(report.inside_cells);
+        }
+        if let Some(edge) = &mut places.edge {
+            *edge = EdgeReport::of_counts(report.cells_near_edge, report.cells_of_light);
+        }
         if let Some(section) = &mut self.context.report.observers {
             section.eyes.skipped = report.skipped_observers;
         }
-        let title = {
+        let (title, suns) = {
             let whereabouts = self.plan.whereabouts(&frame);
-            summarise_parts(&self.question, (&measures, grid.cell), &whereabouts, &mut self.context)?
+            let suns = match &self.of_survey {
+                Question::Shadow(shadow) => {
+                    shadow.suns.resolve(&shadow.place, &whereabouts, &mut Context::default())?
+                }
+                _ => Vec::new(),
+            };
+            (summarise_parts(&self.of_survey, (&measures, grid.cell), &whereabouts, &mut self.context)?, suns)
         };
-        if !self.wanted_sureness().probability {
-            let is_likelihood = |name: &str| [ask::PROBABILITY, ask::EXPECTED].iter().any(|one| name.starts_with(one));
+        let how_sure = match &self.of_survey {
+            Question::Shadow(shadow) => shadow.how_sure,
+            Question::Viewshed(view) => view.how_sure,
+            _ => HowSure::default(),
+        };
+        if !how_sure.probability {
+            let is_likelihood = |name: &str| [PROBABILITY, EXPECTED].iter().any(|one| name.starts_with(one));
             measures.retain(|measure| !is_likelihood(&measure.name));
         }
-        let Self { plan, suns, context, .. } = self;
+        let Self { plan, question, context, .. } = self;
         let Answers { headline, remarks, report, .. } = context.into_answers();
-        let found = SurveyCells { plan, grid, frame, title, suns, eyes, description };
+        let found = SurveyCells {
+            plan,
+            grid,
+            frame,
+            title,
+            suns,
+            eyes: question.eyes(),
+            on_added: on_added.unwrap_or_default(),
+        };
         Ok(Answers { found, measures, headline, remarks, report })
     }
 
-    /// Returns a measure for each sun or result. A single result also has its unproven part, and all have probabilities
-    /// if wanted.
+    /// Returns the measures of all tiles.
     fn measures(&self, control: &Control<'_>) -> Result<Vec<Measure>> {
-        let (mut results, mut likely) = (Vec::new(), Vec::new());
-        let is_likely = |question: &&TileQuestion| matches!(question, TileQuestion::Probability { .. });
-        let answers = self.plan.questions.iter().filter(|question| !is_likely(question)).count();
-        let is_single = self.suns.len().max(answers) == 1;
-        for question in &self.plan.questions {
-            let pixels = self.plan.results_of(&self.folder, question, control)?;
-            let kind = pixels.kind();
-            let bands = question.band_names(kind).into_iter().zip(pixels.to_numbers()?);
-            if is_likely(&question) {
-                likely.push(bands.map(|(_, band)| band.values().to_vec()).collect());
-                continue;
-            }
-            let description = question.description();
-            let range = (kind == ResultKind::Answer).then_some([0.0, 1.0]);
-            let of_band = |(name, band): (String, Raster<f32>)| {
-                let of_interval = INTERVAL_MEASURES.iter().find(|(end, _)| name.ends_with(&format!("_{end}")));
-                let description = match (name == UNPROVEN_BAND, self.suns.is_empty()) {
-                    (false, _) => of_interval.map_or(description, |(_, text)| *text),
-                    (true, false) => "1: lit, but unproven",
-                    (true, true) => "from how many nothing blocks it, but no pulse proves it",
-                };
-                Measure::new(&name, band.values().to_vec())
-                    .with_description(description)
-                    .with_unit(if name == UNPROVEN_BAND { "1" } else { question.unit() })
-                    .with_kind(kind)
-                    .with_range(range)
-            };
-            let has_all = is_single || kind == ResultKind::Number;
-            results.extend(bands.map(of_band).take(if has_all { usize::MAX } else { 1 }));
-        }
-        if self.suns.is_empty() {
-            let sure = likely.into_iter().next().map(|bands| self.how_sure(bands, &results, "")).transpose()?;
-            return Ok(results.into_iter().chain(sure.into_iter().flatten()).collect());
-        }
-        let Some(cells) = results.first().map(|first: &Measure| first.values.clone()) else { return Ok(results) };
-        let night = || cells.iter().map(|value| if value.is_nan() { f32::NAN } else { 0.0 }).collect();
-        let (mut results, mut likely) = (results.into_iter(), likely.into_iter());
-        let (mut of_suns, mut sure) = (Vec::new(), Vec::new());
-        for sun in &self.suns {
-            let is_up = sun.sun.to_sun[2] > 0.0;
-            let lit = if is_up { results.next() } else { None };
-            let lit = lit.unwrap_or_else(|| {
-                Measure::new("", night()).with_kind(ResultKind::Answer).with_range(Some([0.0, 1.0]))
-            });
-            of_suns.push(Measure { name: sun.column.clone(), tags: sun.tags.clone(), ..lit });
-            let bands = if is_up { likely.next() } else { Some(vec![night()]) };
-            let suffix = if self.suns.len() == 1 { String::new() } else { format!("_{}", sun.column) };
-            sure.push((bands, suffix));
-        }
-        of_suns.extend(results);
-        for (bands, suffix) in sure {
-            let measures = bands.map(|bands| self.how_sure(bands, &of_suns, &suffix)).transpose()?;
-            of_suns.extend(measures.into_iter().flatten());
-        }
-        Ok(of_suns)
-    }
-
-    fn wanted_sureness(&self) -> HowSure {
-        match &self.question {
-            ask::Question::Shadow(about) => about.how_sure,
-            ask::Question::Viewshed(about) => about.how_sure,
-            _ => HowSure::default(),
-        }
-    }
-
-    /// Returns the measures of probability from `bands`. `answers` may contain the unproven part of a single answer.
-    fn how_sure(&self, bands: Vec<Vec<f32>>, answers: &[Measure], suffix: &str) -> Result<Vec<Measure>> {
-        // The summary needs probabilities, even if they are not written.
-        let how_sure = HowSure { probability: true, ..self.wanted_sureness() };
-        let is_of_many = matches!(&self.question, ask::Question::Viewshed(about) if about.observers.len() > 1);
-        let mut bands = bands.into_iter();
-        let Some(expected) = bands.next() else { return Ok(Vec::new()) };
-        if is_of_many {
-            return Ok(how_sure.measures_of_many(SeenProbabilities { expected, uncertain: bands.next() }));
-        }
-        let doubts = answers.iter().find(|measure| measure.name == UNPROVEN_BAND);
-        let is_unproven =
-            |row: usize| doubts.and_then(|doubts| doubts.values.get(row)).is_some_and(|&doubt| doubt > 0.0);
-        let uncertain = how_sure.uncertain(&expected, is_unproven)?;
-        Ok(how_sure.measures(expected, uncertain, suffix))
+        let pixels = self.plan.results_of(&self.folder, (&self.question, &self.prepared.bands()?), control)?;
+        let measures = self.prepared.answers.measures.iter().cloned().zip(pixels.to_numbers()?);
+        Ok(measures.map(|(measure, band)| Measure { values: band.values().to_vec(), ..measure }).collect())
     }
 }
 
 impl SurveyCells {
+    /// Returns the cells with a value of a measure as targets, whose heights are not kept.
+    #[must_use]
+    pub fn on_targets(&self, measure: &Measure) -> OnTargets {
+        let MapGrid { width, height, .. } = self.grid;
+        let unknown = || Raster::filled(width, height, f32::NAN);
+        let place = |(cell, value): (usize, &f32)| {
+            let [x, y] = to_f32s(self.grid.center(cell % width.max(1), cell / width.max(1)));
+            if value.is_finite() { [x, y, 0.0] } else { [f32::NAN; 3] }
+        };
+        let positions = measure.values.iter().enumerate().map(place).collect();
+        let ground = Ground { grid: self.grid, heights: unknown(), gaps: unknown() };
+        let layout = TargetLayout::Cells(Box::new(ground));
+        let mut targets = Targets::at(self.frame.clone(), positions, None, layout);
+        if self.on_added.contains(&true) {
+            targets.on_added.clone_from(&self.on_added);
+        }
+        OnTargets { targets: Arc::new(targets), near_edge: Vec::new(), title: self.title.clone() }
+    }
+
     /// Writes measures as one cloud-optimised GeoTIFF, with one band each, and with `tags` as metadata of the whole.
     ///
     /// # Errors
     /// Those of writing.
     pub fn write_cog(&self, path: &Path, measures: &[Measure], tags: &[MetadataTag]) -> Result<()> {
-        let raster = ResultRaster::of_measures(measures, [self.grid.width, self.grid.height])?.with_tags(tags);
-        let subject = if self.suns.is_empty() { "" } else { self.title.as_str() };
-        let raster = ResultRaster { description: described(self.description, subject), ..raster };
+        let added = self.plan.added_band(measures, &self.on_added).filter(|_| self.on_added.contains(&true));
+        let bands: Vec<Measure> = measures.iter().cloned().chain(added).collect();
+        let raster = ResultRaster::of_measures(&bands, [self.grid.width, self.grid.height])?.with_tags(tags);
         raster.write_cog(path, &georeference(&self.grid, &self.frame))
     }
 

@@ -6,14 +6,15 @@ use crate::plan::question::TileQuestion;
 use crate::plan::record::{TileOutcome, TileRecord};
 use crate::plan::stage::Stage;
 use crate::plan::window;
-use belvedere::apps::ask::Remark;
+use belvedere::apps::ask::{Places, Remark};
 use belvedere::cast::{to_i64, to_index};
 use belvedere::control::Control;
 use belvedere::crs::text::wkt_line;
 use belvedere::ground::{HighestPoints, MapGrid};
-use belvedere::io::{Georeference, NamedBand, PlacedRaster, Source, atomic};
+use belvedere::io::{BandLabel, Georeference, NamedBand, PlacedRaster, Source, atomic};
+use belvedere::query::FarTerrain;
 use belvedere::raster::Raster;
-use belvedere::results::{Pixels, ResultRaster, georeference};
+use belvedere::results::{Pixels, ResultRaster, georeference, question_tags};
 use belvedere::{Error, Parameter, Result};
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -121,13 +122,14 @@ fn in_xml(text: &str) -> String {
 
 /// Writes a catalogue (`.vrt`) of the existing results of a question. QGIS, GDAL and rasterio open it as one raster
 /// with a description of its values.
-pub fn write_catalogue(plan: &Plan, folder: &Path, question: &TileQuestion) -> Result<Merged> {
+pub fn write_catalogue(plan: &Plan, folder: &Path, question: &TileQuestion, control: &Control<'_>) -> Result<Merged> {
     let planned = plan.tiles_of(question);
     let (tiles, counts) = results(plan, folder, question, &planned);
     let cells = cells_over(plan, question, &area_of(plan, &planned)?);
     let frame = plan.frame()?;
     let place = georeference(&cells, &frame);
-    let (kind, no_data) = plan.kind_of(question).in_gdal();
+    let bands = plan.prepared(question, FarTerrain::default(), control)?.bands()?;
+    let (kind, no_data) = bands.pixels.kind().in_gdal();
     let mut text = format!("<VRTDataset rasterXSize=\"{}\" rasterYSize=\"{}\">\n", cells.width, cells.height);
     if let Some(system) = wkt_line(&frame.crs) {
         let _ = writeln!(text, "  <SRS>{}</SRS>", in_xml(&system));
@@ -136,10 +138,10 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &TileQuestion) -> R
     let step = place.column_step[0];
     let _ = writeln!(text, "  <GeoTransform>{x}, {step}, 0, {y}, 0, {}</GeoTransform>", -step);
     // GDAL's name for the description of a TIFF, so that a TIFF made from the catalogue has the description too.
-    let what = in_xml(question.description());
+    let what = in_xml(&bands.description);
     let _ = writeln!(text, "  <Metadata>\n    <MDI key=\"TIFFTAG_IMAGEDESCRIPTION\">{what}</MDI>\n  </Metadata>");
-    for (band, name) in (1..).zip(question.band_names(plan.kind_of(question))) {
-        let name = in_xml(&name);
+    for (band, label) in (1..).zip(&bands.labels) {
+        let name = in_xml(&label.name);
         let _ = writeln!(text, "  <VRTRasterBand dataType=\"{kind}\" band=\"{band}\">");
         let _ = writeln!(text, "    <Description>{name}</Description>\n    <NoDataValue>{no_data}</NoDataValue>");
         for &tile in &tiles {
@@ -149,14 +151,14 @@ pub fn write_catalogue(plan: &Plan, folder: &Path, question: &TileQuestion) -> R
                 "    <SimpleSource><SourceFilename relativeToVRT=\"1\">{}/{}.tif</SourceFilename>\
                  <SourceBand>{band}</SourceBand><SrcRect xOff=\"0\" yOff=\"0\" xSize=\"{side}\" ySize=\"{side}\"/>\
                  <DstRect xOff=\"{column}\" yOff=\"{row}\" xSize=\"{side}\" ySize=\"{side}\"/></SimpleSource>",
-                question.name(),
+                question.name,
                 tile.name()
             );
         }
         text.push_str("  </VRTRasterBand>\n");
     }
     text.push_str("</VRTDataset>\n");
-    let path = folder.join(format!("{}.vrt", question.name()));
+    let path = folder.join(format!("{}.vrt", question.name));
     atomic::write(&path, |file| file.write_all(text.as_bytes()).map_err(Error::io(&path)))?;
     Ok(counts)
 }
@@ -178,7 +180,7 @@ pub fn merge(
     let tiles = plan.tiles_of(question);
     let (with_result, merged) = results(plan, folder, question, &tiles);
     let refused = |what: String| Err(Error::malformed(folder, what));
-    let (name, Merged { missing, .. }) = (question.name(), merged);
+    let (name, Merged { missing, .. }) = (&question.name, merged);
     if with_result.is_empty() {
         let advice = if missing > 0 { "compute it with `belvedere city run`" } else { "no tile has a cell for it" };
         return refused(format!("has no result of {name}: {advice}"));
@@ -191,11 +193,12 @@ pub fn merge(
         ));
     }
     let cells = cells_over(plan, question, &area_with_cells(plan, question, &tiles)?);
-    let (pixels, place) = gather(plan, folder, question, (&with_result, &cells), control)?;
-    let labels = question.band_labels(pixels.kind());
-    let tags = vec![("QUESTION".to_owned(), serde_json::to_string(question).unwrap_or_default())];
-    let description = question.description().to_owned();
-    ResultRaster { pixels, labels, tags, description }.write_cog(output, &place)?;
+    let prepared = plan.prepared(question, FarTerrain::default(), control)?;
+    let places = Places::Cells(plan.grid_cells(question));
+    let tags = question_tags(&prepared.question, &places, prepared.answers.time_zone());
+    let bands = prepared.bands()?.with_tags(&tags);
+    let (pixels, place) = gather(plan, folder, (question, &bands), (&with_result, &cells), control)?;
+    ResultRaster { pixels, ..bands }.write_cog(output, &place)?;
     Ok(merged)
 }
 
@@ -212,10 +215,15 @@ impl Plan {
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] for more cells than fit into memory. Also those of reading rasters.
-    pub fn results_of(&self, folder: &Path, question: &TileQuestion, control: &Control<'_>) -> Result<Pixels> {
+    pub(crate) fn results_of(
+        &self,
+        folder: &Path,
+        (question, bands): (&TileQuestion, &ResultRaster),
+        control: &Control<'_>,
+    ) -> Result<Pixels> {
         let cells = self.cells_of(question)?;
         let (tiles, _) = results(self, folder, question, &self.tiles_of(question));
-        Ok(gather(self, folder, question, (&tiles, &cells), control)?.0)
+        Ok(gather(self, folder, (question, bands), (&tiles, &cells), control)?.0)
     }
 
     /// Returns the height of the highest point in each cell of a grid, for maps. A cell without points has the mean of
@@ -251,22 +259,21 @@ pub fn merged_within(
     let tiles: Vec<TileId> = plan.tiles_of(question).into_iter().filter(touches).collect();
     let cells = cells_over(plan, question, &area_of(plan, &tiles)?);
     let with_result = results(plan, folder, question, &tiles).0;
-    let (pixels, place) = gather(plan, folder, question, (&with_result, &cells), control)?;
-    let description = Some(question.description().to_owned());
-    let mut bands = question.band_names(pixels.kind()).into_iter().zip(pixels.to_numbers()?);
-    let Some((name, values)) = bands.next() else {
+    let bands = plan.prepared(question, FarTerrain::default(), control)?.bands()?;
+    let (pixels, place) = gather(plan, folder, (question, &bands), (&with_result, &cells), control)?;
+    let mut labelled = bands.labels.into_iter().zip(pixels.to_numbers()?);
+    let Some((BandLabel { name, unit, .. }, values)) = labelled.next() else {
         return Err(Error::NoPoints { what: "the result has no band".to_owned() });
     };
-    let further_bands = bands.map(|(name, values)| NamedBand { name, values }).collect();
-    let unit = question.unit().to_owned();
-    Ok(PlacedRaster { values, name, unit, place: Some(place), description, further_bands })
+    let further_bands = labelled.map(|(label, values)| NamedBand { name: label.name, values }).collect();
+    Ok(PlacedRaster { values, name, unit, place: Some(place), description: Some(bands.description), further_bands })
 }
 
 /// Joins the results of tiles into one raster of cells.
 fn gather(
     plan: &Plan,
     folder: &Path,
-    question: &TileQuestion,
+    (question, bands): (&TileQuestion, &ResultRaster),
     (tiles, cells): (&[TileId], &MapGrid),
     control: &Control<'_>,
 ) -> Result<(Pixels, Georeference)> {
@@ -278,8 +285,7 @@ fn gather(
             "at most 268 million cells; open the .vrt, or convert it with gdal_translate",
         ));
     }
-    let kind = plan.kind_of(question);
-    let mut all = Pixels::nothing(kind, question.band_names(kind).len(), [width, height]);
+    let mut all = Pixels::nothing(bands.pixels.kind(), bands.labels.len(), [width, height]);
     for &tile in tiles {
         control.check()?;
         let stage = Stage::Answer(question);

@@ -2,10 +2,12 @@
 
 pub(crate) mod any_size;
 pub(crate) mod merge;
+pub(crate) mod places;
 pub(crate) mod status;
 
-use crate::answer::cell_answers::{SharedSurfaces, TileTask, answer};
+use crate::answer::cell_answers::{TileTask, answer};
 use crate::answer::lines::{AreaLines, tiles};
+use crate::answer::surface_cells::SharedSurfaces;
 use crate::build::make_balls::make_balls;
 use crate::grid::TileId;
 use crate::plan::Plan;
@@ -14,11 +16,12 @@ use crate::plan::side_files::Others;
 use crate::plan::stage::Stage;
 use crate::run::merge::write_catalogue;
 use crate::run::status::write_report;
-use belvedere::apps::ask::{Context, Remark, remark_on_edge};
+use belvedere::apps::ask::{Remark, remark_on_edge};
 use belvedere::control::Control;
 use belvedere::{Error, Parameter, Result};
 use serde::Serialize;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Share of the tiles: every `of`-th tile from number `number` on, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +70,7 @@ pub struct RunReport {
     pub answers_made: usize,
     /// Number of tiles and answers that existed already.
     pub already_done: usize,
-    /// Number of cells with an unproven answer because balls are missing.
+    /// Number of cells without an answer because balls are missing.
     pub unproven_cells: usize,
     /// Number of cells of questions about light, counted once for each question.
     pub cells_of_light: usize,
@@ -82,6 +85,9 @@ pub struct RunReport {
     pub max_balls: usize,
     /// Number of observers of viewsheds inside an obstacle, which see nothing.
     pub skipped_observers: usize,
+    /// Number of blocked cells of viewsheds inside obstacles.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub inside_cells: usize,
     /// Damaged or missing results that were made again.
     pub damaged: Vec<String>,
     /// Failed tiles and answers, with the reasons.
@@ -97,7 +103,7 @@ impl RunReport {
             damaged.map(|damage| Remark::warning("result-damaged", format!("{damage}; it was computed again")));
         let unproven = (self.unproven_cells > 0).then(|| {
             let text =
-                format!("{} cells are unproven because tiles that may block them are missing", self.unproven_cells);
+                format!("{} cells have no answer because tiles that may block them are missing", self.unproven_cells);
             Remark::warning("cells-unproven", text).with("count", self.unproven_cells as f64)
         });
         let skipped = (self.skipped_observers > 0).then(|| {
@@ -112,11 +118,17 @@ impl RunReport {
         if let (Some(covered), true) = (&mut self.cells_under_cover, is_first) {
             *covered += record.covered_cells;
         }
+        self.inside_cells += record.inside_cells;
         if let Some(near) = record.near_edge_cells {
             self.cells_near_edge += near;
             self.cells_of_light += record.cells;
         }
     }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde requires a reference")]
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// Maximum number of damaged results in remarks.
@@ -142,13 +154,11 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
     let questions = if params.steps == Steps::All { &plan.questions[..] } else { &[] };
     let max_balls = params.max_balls.unwrap_or_else(|| plan.balls_at_a_time());
     let others = if questions.is_empty() { Others::none() } else { plan.others()? };
+    let (others, shared) = (Arc::new(others), Arc::new(plan.clone()));
     let mut ready = Vec::new();
     for question in questions {
-        ready.push((
-            plan.cells.of(question),
-            question,
-            question.prepare(plan.trees, &mut Context::default(), control)?,
-        ));
+        let prepared = plan.prepared(question, others.far_terrain.clone(), control)?;
+        ready.push((plan.cells.of(question), question, prepared));
     }
     // Answers on cells of one size follow each other and share the surface of a tile.
     ready.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -169,15 +179,16 @@ pub fn run(plan: &Plan, folder: &Path, params: &RunParams<'_>, control: &Control
             // Other shares may not have reached these tiles yet.
             let core = plan.grid().core(tile);
             let lowest = plan.lowest_of_cells(tile, *cell);
-            for other in tiles(plan, &AreaLines::of(prepared, core, lowest)) {
+            for other in tiles(plan, &AreaLines::of(&prepared.lines, core, lowest)) {
                 work.missing_balls(other)?;
             }
-            let task = TileTask { question, prepared, others: &others, max_balls };
-            work.answer(task, tile, &mut surfaces)?;
+            let (plan, others) = (Arc::clone(&shared), Arc::clone(&others));
+            let task = TileTask { plan, question, prepared, others, max_balls };
+            work.answer(&task, tile, &mut surfaces)?;
         }
     }
     for question in questions {
-        write_catalogue(plan, folder, question)?;
+        write_catalogue(plan, folder, question, control)?;
     }
     write_report(plan, folder)?;
     Ok(work.report)
@@ -220,10 +231,9 @@ impl RunWork<'_> {
         Ok(())
     }
 
-    fn answer(&mut self, task: TileTask<'_>, tile: TileId, surfaces: &mut SharedSurfaces) -> Result<()> {
+    fn answer(&mut self, task: &TileTask<'_>, tile: TileId, surfaces: &mut SharedSurfaces) -> Result<()> {
         let stage = Stage::Answer(task.question);
-        let record =
-            self.attempt(stage, tile, || answer(self.plan, self.folder, task, tile, surfaces, self.control))?;
+        let record = self.attempt(stage, tile, || answer(self.folder, task, tile, surfaces, self.control))?;
         self.report.answers_made += 1;
         self.report.unproven_cells += record.unproven_cells;
         self.report.count(&record, self.plan.questions.first() == Some(task.question));

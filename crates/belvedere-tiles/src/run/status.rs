@@ -96,7 +96,7 @@ pub(crate) fn write_report(plan: &Plan, folder: &Path) -> Result<()> {
         plan.buffer
     );
     for question in &plan.questions {
-        let _ = writeln!(text, "Cells of `{}`: {} m.", question.name(), plan.cells.of(question));
+        let _ = writeln!(text, "Cells of `{}`: {} m.", question.name, plan.cells.of(question));
     }
     let _ = writeln!(text, "Made with {}.\n", if plan.program.is_empty() { "belvedere" } else { &plan.program });
     text.push_str("| step | tiles done | empty | left | failed | cells unproven | points read | hours |\n|---|---|---|---|---|---|---|---|\n");

@@ -2,8 +2,8 @@
 
 use crate::common::{MIDDLE, SMALL, WIDE, write_town};
 use belvedere::apps::ask::{
-    Answers, GridCells, HowSure, Places, Question, Remark, Report, Scene, ShadowQuestion, SunPlace, Suns, ThroughTrees,
-    ask,
+    Answers, Days, GridCells, HowSure, Places, Question, Remark, Report, SOLAR, Scene, ShadowQuestion, SkyParts,
+    SkyViewQuestion, SunHoursQuestion, SunPlace, Suns, ThroughTrees, ask,
 };
 use belvedere::apps::shadow::Edges;
 use belvedere::apps::targets::Measure;
@@ -103,6 +103,54 @@ fn cells_on_the_ground_and_proof_are_those_of_any_tiles_and_of_one_model() {
 }
 
 #[test]
+fn one_model_in_the_frame_and_with_the_statistics_of_a_plan_answers_as_its_tiles_do() {
+    let place = tempfile::tempdir().unwrap();
+    let clouds = &SMALL.clouds;
+    let control = Control::none();
+    let folder = place.path().join("kept");
+    let plan = Plan::kept_in(&folder, &params(clouds, 64.0), &control).unwrap().with_grid_cells(&cells()).unwrap();
+    let options = ReadOptions::new().with_frame(plan.frame().unwrap());
+    let (cloud, _) = read_cloud(clouds, &options, &control).unwrap();
+    let (model, _) = SceneModel::build(&cloud, &plan.model(), &control).unwrap();
+    let scene = Scene::new(model, Arc::new(cloud));
+    let solar = SunPlace { zone: Some(SOLAR.to_owned()), ..SunPlace::default() };
+    let dates = vec!["2026-04-10".to_owned()];
+    let days = Days { dates, time_step_min: Some(60.0), ..Days::default() };
+    let suns = Suns::Directions(vec![[140.0, 12.0], [200.0, 35.0]]);
+    let soft = ShadowQuestion { edges: Edges::Soft, suns, ..question([0.0, 0.0]) };
+    let hours = SunHoursQuestion { days, place: solar, ..SunHoursQuestion::default() };
+    let sky = SkyViewQuestion { sky: SkyParts::Even(49), ..SkyViewQuestion::default() };
+    let of_tiles = |question: Question| {
+        let survey = SurveyQuestion::new(plan.clone(), &folder, question, u64::MAX, &control).unwrap();
+        let report = survey.run(&|| 0.0, &control).unwrap();
+        survey.answers(&report, &control).unwrap().measures
+    };
+    let cells = Places::Cells(cells());
+    for (number, (of_model, of_tiles)) in [
+        (
+            ask(&scene, &question([140.0, 25.0]), &cells, &control).unwrap().measures,
+            of_tiles(question([140.0, 25.0]).into()),
+        ),
+        (ask(&scene, &soft, &cells, &control).unwrap().measures, of_tiles(soft.into())),
+        (ask(&scene, &hours, &cells, &control).unwrap().measures, of_tiles(hours.into())),
+        (ask(&scene, &sky, &cells, &control).unwrap().measures, of_tiles(sky.into())),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        assert_eq!(of_model.len(), of_tiles.len());
+        for (expected, found) in of_model.iter().zip(&of_tiles) {
+            let differ = |(a, b): &(&f32, &f32)| a.is_nan() != b.is_nan() || !a.is_nan() && a.to_bits() != b.to_bits();
+            let count = expected.values.iter().zip(&found.values).filter(differ).count();
+            let known = found.values.iter().filter(|value| value.is_finite()).count();
+            assert!(known > 1000, "{known}");
+            assert_eq!(expected.without_values(), found.without_values());
+            assert_eq!(count, 0, "{number}, {}: of {known}", found.name);
+        }
+    }
+}
+
+#[test]
 fn a_kept_survey_is_looked_at_once_and_its_balls_serve_all_questions() {
     let place = tempfile::tempdir().unwrap();
     let clouds = &MIDDLE.clouds;
@@ -183,9 +231,10 @@ fn suns_below_the_horizon_light_nothing_and_results_that_are_too_large_together_
     assert_eq!((answers.measures.len(), lit(0), known(0)), (2, 0, known(1)));
     assert!(lit(1) > known(1) / 4, "{} of {}", lit(1), known(1));
     assert!(answers.remarks.iter().any(|remark| remark.key == "suns-below-horizon"));
-    let soft = Question::Shadow(ShadowQuestion { edges: Edges::Soft, ..question([140.0, 40.0]) });
-    let error = SurveyQuestion::new(plan, &folder, soft, u64::MAX, &control).err().unwrap().to_string();
-    assert!(error.contains("soft edges"), "{error}");
+    let casters = Question::Shadow(ShadowQuestion { casters: true, ..question([140.0, 40.0]) });
+    assert_eq!(casters.needs_whole(), Some("what casts shadows"));
+    let error = SurveyQuestion::new(plan, &folder, casters, u64::MAX, &control).err().unwrap().to_string();
+    assert!(error.contains("all of a survey in memory"), "{error}");
 }
 
 #[test]

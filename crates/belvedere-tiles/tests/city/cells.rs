@@ -1,9 +1,7 @@
 //! Results with cells of different sizes in one plan.
 
-use crate::common::LARGE;
-use belvedere::apps::ask::{Days, SkyParts, SunHoursQuestion};
-use belvedere::apps::shadow::ShadowSun;
-use belvedere::apps::sun::Site;
+use crate::common::{LARGE, shadow, sky_view, sun_hours};
+use belvedere::apps::ask::Days;
 use belvedere::control::Control;
 use belvedere::io::read_tif;
 use belvedere_tiles::{
@@ -13,19 +11,13 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 fn questions() -> Vec<TileQuestion> {
-    let site = Site { latitude: 0.91, longitude: 0.09, height: 10.0, convergence: 0.02 };
     let days = Days {
         dates: vec!["2026-04-10".to_owned()],
         time_step_min: Some(60.0),
         min_sun_elevation_deg: Some(8.0),
         ..Days::default()
     };
-    let to_sun = ShadowSun::at(2.2, 0.4).to_sun;
-    vec![
-        TileQuestion::Shadow { name: "shadow".to_owned(), to_sun, season: None },
-        TileQuestion::SunHours { site, days: SunHoursQuestion { days, ..SunHoursQuestion::default() } },
-        TileQuestion::SkyView { sky: SkyParts::Even(25), interval: false },
-    ]
+    vec![shadow("shadow", 2.2, 0.4), sun_hours(days), sky_view(25)]
 }
 
 /// Returns 0.5 m for a sun, 1 m for the hours of a day and 4 m for the sky.
@@ -59,13 +51,13 @@ fn results_with_their_own_cells_are_those_of_plans_with_one_question_and_of_any_
     assert!(tiles.tiles.len() >= 9 && whole.tiles.len() == 1);
     for (question, side) in questions().iter().zip([0.5, 1.0, 4.0]) {
         assert_eq!(tiles.cells.of(question), side);
-        let name = question.name();
+        let name = &question.name;
         // The same tiles with one question.
         let alone = place.path().join(format!("alone_{name}"));
         let plan = done(&alone, 64.0, CellSizes::all(side), vec![question.clone()]);
         assert!(raster(&plan, &alone, question) == raster(&tiles, &folder, question), "{name}");
         let catalogues = [(&plan, &alone), (&tiles, &folder)].map(|(plan, folder)| {
-            write_catalogue(plan, folder, question).unwrap();
+            write_catalogue(plan, folder, question, &Control::none()).unwrap();
             std::fs::read_to_string(folder.join(format!("{name}.vrt"))).unwrap()
         });
         assert_eq!(catalogues[0], catalogues[1]);

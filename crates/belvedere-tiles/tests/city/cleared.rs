@@ -1,12 +1,11 @@
 //! Cleared areas, tile by tile: the same as in one tile over all, and as in one scene.
 
-use crate::common::{MIDDLE, cells, plan, run_with, suns};
-use belvedere::apps::ask::SkyParts;
+use crate::common::{MIDDLE, cells, plan, run_with, sky_view, suns};
 use belvedere::control::Control;
 use belvedere::io::{ReadOptions, read_balls, read_cloud, read_tif_f32, read_tif_u8};
 use belvedere::medial::{LIMIT_TOUCH, MedialBalls};
 use belvedere::model::{ClearedArea, ModelParams, SceneModel};
-use belvedere_tiles::{Plan, TileQuestion, UnfinishedRun, merge, status};
+use belvedere_tiles::{Plan, TileQuestion, Topic, UnfinishedRun, merge, status};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -62,7 +61,7 @@ fn closing(balls: &MedialBalls, rows: std::ops::Range<usize>) -> BTreeMap<[u32; 
 fn values(plan: &Plan, folder: &Path, question: &TileQuestion) -> BTreeMap<[i64; 2], u32> {
     let path = folder.join("merged.tif");
     merge(plan, folder, question, &path, UnfinishedRun::Refused, &Control::none()).unwrap();
-    if let TileQuestion::Shadow { .. } = question {
+    if question.topic() == Topic::Shadow {
         let raster = read_tif_u8(&path).unwrap();
         let wide: Vec<u32> = raster.values().iter().map(|&v| v.into()).collect();
         return cells(&path, &wide, raster.width(), 255);
@@ -76,7 +75,7 @@ fn values(plan: &Plan, folder: &Path, question: &TileQuestion) -> BTreeMap<[i64;
 fn cleared_areas_are_the_same_for_tiles_of_any_size_and_those_of_one_scene() {
     let place = tempfile::tempdir().unwrap();
     let clouds = &MIDDLE.clouds;
-    let questions = [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25), interval: false }];
+    let questions = [suns()[1].clone(), sky_view(25)];
     let plain_folder = place.path().join("plain");
     let plain = plan(clouds, &plain_folder, 512.0, questions.to_vec());
     MIDDLE.run(&plain, &plain_folder, None);
@@ -103,7 +102,7 @@ fn cleared_areas_are_the_same_for_tiles_of_any_size_and_those_of_one_scene() {
         for question in &questions {
             let [found, expected] =
                 [(&tiles, &folder), (&one, &whole)].map(|(plan, folder)| values(plan, folder, question));
-            assert!(found == expected, "{} of tiles of {size} m differs", question.name());
+            assert!(found == expected, "{} of tiles of {size} m differs", question.name);
         }
     }
     // Every cell still has a value, and no cleared cell lies in a shadow of a cleared object.

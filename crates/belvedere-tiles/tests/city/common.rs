@@ -1,13 +1,19 @@
 //! Files of a flown town, and plans of it.
 
-use belvedere::apps::shadow::ShadowSun;
+use belvedere::apps::ask::north::North;
+use belvedere::apps::ask::{
+    Days, IrradianceQuestion, Radiation, SOLAR, ShadowQuestion, SkyParts, SkyViewQuestion, SunHoursQuestion, SunPlace,
+    Suns, ThroughTrees,
+};
+use belvedere::apps::irradiance::{ClearSky, IrradianceParams};
+use belvedere::apps::sun::Site;
 use belvedere::cloud::to_local;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{read_tif, write_cloud};
 use belvedere::{Attributes, Frame, GpsTimeKind, PointCloud};
 use belvedere_scenes::{AirborneParams, TownParams, scan_airborne, town};
-use belvedere_tiles::{Plan, PlanParams, RunParams, RunReport, Shard, Steps, TileQuestion, run};
+use belvedere_tiles::{Plan, PlanParams, RunParams, RunReport, Shard, Steps, TileQuestion, Topic, run};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock, Mutex, OnceLock};
@@ -60,10 +66,8 @@ impl TownSurvey {
     /// Copies balls into the folder of a run. They depend on the survey, on the size of its tiles, and on whether a
     /// question needs the pulses.
     fn share_balls(&self, plan_of_run: &Plan, folder: &Path) {
-        let proves = plan_of_run
-            .questions
-            .iter()
-            .any(|question| matches!(question, TileQuestion::Shadow { .. } | TileQuestion::Viewshed { .. }));
+        let proves =
+            plan_of_run.questions.iter().any(|question| matches!(question.topic(), Topic::Shadow | Topic::Viewshed));
         let tile_size = plan_of_run.tile_size;
         let shared = self.balls.lock().unwrap().entry((tile_size.to_bits(), proves)).or_default().clone();
         let made = shared.get_or_init(|| {
@@ -114,14 +118,47 @@ pub(crate) fn write_town(folder: &Path, extent: f64, pulses_per_m2: f64) -> Vec<
     sides.iter().enumerate().map(file).collect()
 }
 
+/// Returns the shadow of a sun at an azimuth from grid north and an elevation, radians.
+pub(crate) fn shadow(name: &str, azimuth: f64, elevation: f64) -> TileQuestion {
+    let suns = Suns::Directions(vec![[azimuth.to_degrees(), elevation.to_degrees()]]);
+    let place = SunPlace { north: North::Grid, ..SunPlace::default() };
+    let question = ShadowQuestion { suns, place, ..ShadowQuestion::of_times(Vec::new()) };
+    TileQuestion::new(name, question.into()).unwrap()
+}
+
 /// Returns suns in the south-east at 5, 20 and 60 degrees.
 pub(crate) fn suns() -> Vec<TileQuestion> {
-    let sun = |elevation: f64| TileQuestion::Shadow {
-        name: format!("shadow_{elevation}"),
-        to_sun: ShadowSun::at(2.2, elevation.to_radians()).to_sun,
-        season: None,
-    };
-    [5.0, 20.0, 60.0].map(sun).to_vec()
+    [5.0_f64, 20.0, 60.0].map(|degrees| shadow(&format!("shadow_{degrees}"), 2.2, degrees.to_radians())).to_vec()
+}
+
+/// Returns the sky view by so many directions.
+pub(crate) fn sky_view(directions: usize) -> TileQuestion {
+    let question = SkyViewQuestion { sky: SkyParts::Even(directions), ..SkyViewQuestion::default() };
+    TileQuestion::new("sky_view_factor", question.into()).unwrap()
+}
+
+/// Returns the hours of sun of days, by the clock of the sun.
+pub(crate) fn sun_hours(days: Days) -> TileQuestion {
+    let question = SunHoursQuestion { days, place: solar(), ..SunHoursQuestion::default() };
+    TileQuestion::new("sun_hours", question.into()).unwrap()
+}
+
+/// Returns the energy of a year without clouds.
+pub(crate) fn clear_year(params: IrradianceParams) -> TileQuestion {
+    let radiation = Radiation::ClearSky { clear_sky: ClearSky::Haurwitz, year: 2026 };
+    let (trees, roofs, interval) = (ThroughTrees::default(), None, false);
+    let question = IrradianceQuestion { radiation, params, place: solar(), trees, roofs, interval };
+    TileQuestion::new("irradiance", question.into()).unwrap()
+}
+
+/// Returns the place of the survey with the clock of the sun.
+pub(crate) fn solar() -> SunPlace {
+    SunPlace { zone: Some(SOLAR.to_owned()), ..SunPlace::default() }
+}
+
+/// Returns the location of a survey.
+pub(crate) fn site(plan: &Plan) -> Site {
+    SunPlace::default().site_of(&plan.frame().unwrap(), &plan.bounds(), None).unwrap().0
 }
 
 /// Plans a run and writes the plan into `folder`.

@@ -1,6 +1,7 @@
 //! Plans, records and balls with any bytes are refused or read, and never end the program.
 
 use crate::common::{SMALL, plan, suns};
+use belvedere::control::Control;
 use belvedere::io::{Source, read_balls};
 use belvedere_tiles::{Plan, status, write_catalogue};
 
@@ -62,7 +63,7 @@ fn plans_records_and_balls_with_any_bytes_never_end_the_program() {
             let _ = (plan.estimate(), plan.bounds(), plan.frame(), status(&plan, &folder).is_complete());
             // Each catalogue is flushed to the disk, which takes time.
             for question in plan.questions.iter().filter(|_| read % 20 == 0) {
-                let _ = write_catalogue(&plan, place.path(), question);
+                let _ = write_catalogue(&plan, place.path(), question, &Control::none());
             }
         }
     }

@@ -1,16 +1,15 @@
 //! Planned buildings and light through trees, tile by tile: correct, and the same as in one tile over all.
 
-use crate::common::{MIDDLE, cells, plan, suns};
-use belvedere::apps::ask::{Days, SkyParts, SunHoursQuestion};
-use belvedere::apps::irradiance::{ClearSky, IrradianceParams};
+use crate::common::{MIDDLE, cells, clear_year, plan, shadow, sky_view, solar, sun_hours, suns};
+use belvedere::apps::ask::{Days, SunHoursQuestion};
+use belvedere::apps::irradiance::IrradianceParams;
 use belvedere::apps::shadow::ShadowSun;
-use belvedere::apps::sun::Site;
 use belvedere::apps::tree_light::{CrownLight, CrownShadows, Foliage, Leaves, Transmissivity, crown_density};
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{Georeference, read_balls, read_tif_f32, read_tif_u8, write_tif_f32};
 use belvedere::raster::Raster;
-use belvedere_tiles::{Plan, SideFile, TileQuestion, TileRadiation, UnfinishedRun, merge};
+use belvedere_tiles::{Plan, SideFile, TileQuestion, UnfinishedRun, merge};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -76,23 +75,22 @@ fn done(folder: &Path, size: f64, questions: &[TileQuestion], change: impl FnOnc
 }
 
 /// Returns a rule of two hours of sun on a day in spring, with few suns.
-fn rule() -> TileQuestion {
-    let site = site();
+fn rule(plan: &Plan) -> TileQuestion {
     let days =
         Days { year: Some(2026), time_step_min: Some(60.0), min_sun_elevation_deg: Some(8.0), ..Days::default() };
-    let days = SunHoursQuestion { days, rules: vec!["bre-equinox".to_owned()], ..SunHoursQuestion::default() };
-    TileQuestion::SunRule { name: "bre_equinox".to_owned(), site, days }
-}
-
-fn site() -> Site {
-    Site { latitude: 0.91, longitude: 0.09, height: 10.0, convergence: 0.02 }
+    let rules = vec!["bre-equinox".to_owned()];
+    let question = SunHoursQuestion { days, rules, place: solar(), ..SunHoursQuestion::default() };
+    let frame = plan.frame().unwrap();
+    let of_plan = (plan, &plan.whereabouts(&frame));
+    TileQuestion::one_by_one(&question.into(), of_plan, &Control::none()).unwrap().remove(0)
 }
 
 #[test]
 fn a_planned_building_blocks_exactly_whatever_the_tiles() {
     let place = tempfile::tempdir().unwrap();
     let mesh = block(place.path());
-    let questions = [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25), interval: false }, rule()];
+    let survey = plan(&MIDDLE.clouds, &place.path().join("survey"), 512.0, Vec::new());
+    let questions = [suns()[1].clone(), sky_view(25), rule(&survey)];
     let folders = ["plain", "whole", "tiles"].map(|name| place.path().join(name));
     let add = |plan: Plan| plan.with_meshes(vec![SideFile::new(&mesh).unwrap()]).unwrap();
     let plain = done(&folders[0], 512.0, &questions, |plan| plan);
@@ -153,11 +151,8 @@ fn a_planned_building_blocks_exactly_whatever_the_tiles() {
 #[test]
 fn light_through_trees_lies_between_opaque_trees_and_none_whatever_the_tiles() {
     let place = tempfile::tempdir().unwrap();
-    let radiation = TileRadiation::ClearSky { clear_sky: ClearSky::Haurwitz, year: 2026 };
-    let params = IrradianceParams::default().with_patch_division(1).with_sun_cell(0.6);
-    let site = site();
-    let energy = TileQuestion::Irradiance { site, radiation, params, interval: false };
-    let questions = [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25), interval: false }, energy];
+    let energy = clear_year(IrradianceParams::default().with_patch_division(1).with_sun_cell(0.6));
+    let questions = [suns()[1].clone(), sky_view(25), energy];
     let through = |share: f64| {
         move |plan: Plan| {
             let transmissivity = Transmissivity::constant(share).unwrap();
@@ -188,13 +183,13 @@ fn light_through_trees_lies_between_opaque_trees_and_none_whatever_the_tiles() {
     for question in &questions[1..] {
         let [opaque, none, half, tiles] = [(&opaque, "opaque"), (&none, "none"), (&half, "half"), (&tiles, "tiles")]
             .map(|(plan, name)| numbers(plan, &folder(name), question));
-        assert!(half == tiles, "{}: tiles differ", question.name());
+        assert!(half == tiles, "{}: tiles differ", question.name);
         // Rounding of f32: a ten-millionth of the values, which are up to 1 and up to about a thousand.
         let is_between =
             |(cell, &v): (_, &f32)| (v - 0.5 * (opaque[cell] + none[cell])).abs() <= 1e-6 * none[cell].max(1.0);
-        assert!(half.iter().all(is_between), "{}", question.name());
+        assert!(half.iter().all(is_between), "{}", question.name);
         let more = none.iter().filter(|(cell, v)| **v > opaque[*cell]).count();
-        assert!(more > 100, "{}: {more} cells see more without trees", question.name());
+        assert!(more > 100, "{}: {more} cells see more without trees", question.name);
     }
 }
 
@@ -203,10 +198,9 @@ fn light_through_measured_crowns_is_the_same_in_tiles_of_any_size() {
     let place = tempfile::tempdir().unwrap();
     let hours = |date: &str| {
         let days = Days { dates: vec![date.to_owned()], time_step_min: Some(60.0), ..Days::default() };
-        TileQuestion::SunHours { site: site(), days: SunHoursQuestion { days, ..SunHoursQuestion::default() } }
+        sun_hours(days)
     };
-    let questions =
-        [suns()[1].clone(), TileQuestion::SkyView { sky: SkyParts::Even(25), interval: false }, hours("2026-01-10")];
+    let questions = [suns()[1].clone(), sky_view(25), hours("2026-01-10")];
     let density = |plan: &Plan| plan.crown_density(None).unwrap();
     let measured = |plan: Plan| {
         let crowns =
@@ -285,14 +279,11 @@ fn mountains_beyond_a_survey_take_the_light_of_all_tiles() {
     std::fs::write(&horizon, "azimuth,elevation\n90,0\n180,30\n270,0\n").unwrap();
     // The sun stands over the ridge and below its top, over it and above its top, and beside it. 31 degrees in the
     // south are above the given horizon.
-    let sun = |azimuth: f64, elevation: f64| TileQuestion::Shadow {
-        name: format!("shadow_{azimuth}_{elevation}"),
-        to_sun: ShadowSun::at(azimuth.to_radians(), elevation.to_radians()).to_sun,
-        season: None,
+    let sun = |azimuth: f64, elevation: f64| {
+        shadow(&format!("shadow_{azimuth}_{elevation}"), azimuth.to_radians(), elevation.to_radians())
     };
     let suns = [sun(0.0, 39.0), sun(0.0, 60.0), sun(180.0, 29.0), sun(180.0, 31.0)];
-    let questions: Vec<TileQuestion> =
-        suns.iter().cloned().chain([TileQuestion::SkyView { sky: SkyParts::Even(25), interval: false }]).collect();
+    let questions: Vec<TileQuestion> = suns.iter().cloned().chain([sky_view(25)]).collect();
     let folders = ["without", "whole", "tiles"].map(|name| place.path().join(name));
     let far = |plan: Plan| {
         let [terrain, horizon] = [&terrain, &horizon].map(|path| Some(SideFile::new(path).unwrap()));

@@ -5,9 +5,7 @@ use belvedere::Error;
 use belvedere::control::{Control, Watcher};
 use belvedere::crs::Crs;
 use belvedere::io::{ReadBands, ReadOptions, read_cloud, read_tif_bands, write_cloud};
-use belvedere_tiles::{
-    CellSizes, Plan, PlanParams, RunParams, Shard, Steps, TileQuestion, UnfinishedRun, merge, run, status,
-};
+use belvedere_tiles::{CellSizes, Plan, PlanParams, RunParams, Shard, Steps, UnfinishedRun, merge, run, status};
 use std::fs::File;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -103,7 +101,7 @@ fn shares_of_the_tiles_give_the_whole_together() {
     // Answers before the balls of other shares: the balls that they need are made.
     std::fs::remove_dir_all(shared.join("balls")).unwrap();
     for sun in suns() {
-        std::fs::remove_dir_all(shared.join(sun.name())).unwrap();
+        std::fs::remove_dir_all(shared.join(&sun.name)).unwrap();
     }
     let mixed = [3, 1, 2].map(|number| run_share(number, Steps::All));
     assert!(mixed.iter().all(|made| made.1 > 0), "{mixed:?}");
@@ -283,10 +281,7 @@ fn a_plan_that_was_edited_or_leads_out_of_its_folder_is_refused() {
     }
     std::fs::write(&path, named("shadow-5.5+a")).unwrap();
     assert!(Plan::read(&folder).is_ok());
-    let question = |name: &str| match suns().remove(0) {
-        TileQuestion::Shadow { to_sun, season, .. } => TileQuestion::Shadow { name: name.to_owned(), to_sun, season },
-        other => other,
-    };
+    let question = |name: &str| suns().remove(0).named(name);
     assert!(good.with_questions(vec![question("../out")], &Control::none()).is_err());
 }
 

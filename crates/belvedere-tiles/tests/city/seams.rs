@@ -1,13 +1,14 @@
 //! Tiles of any size have the balls and the answers of one tile over all.
 
-use crate::common::{LARGE, cells, plan, suns};
-use belvedere::apps::ask::{Days, SkyParts, SunHoursQuestion};
+use crate::common::{LARGE, cells, clear_year, plan, shadow, site, sky_view, sun_hours, suns};
+use belvedere::apps::ask::{Days, Standing, StandingObserver, ViewLimits, ViewshedQuestion};
 use belvedere::apps::irradiance::{ClearSky, IrradianceParams, clear_instants};
 use belvedere::apps::sun::{Date, DayParams, Period, Site, SunStep, Zone, sun_days};
 use belvedere::control::Control;
 use belvedere::io::{read_balls, read_tif_f32, read_tif_u8, read_tif_u16};
-use belvedere_tiles::{Plan, TileQuestion, TileRadiation, UnfinishedRun, merge, status};
+use belvedere_tiles::{Plan, TileQuestion, Topic, UnfinishedRun, merge, status};
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use std::path::Path;
 
 /// Maximum number of balls at a time for tiles of two sizes.
@@ -30,10 +31,6 @@ fn balls(plan: &Plan, folder: &Path) -> Vec<[u32; 4]> {
     all
 }
 
-fn site() -> Site {
-    Site { latitude: 0.91, longitude: 0.09, height: 10.0, convergence: 0.02 }
-}
-
 /// Returns the parameters of hours of a day in spring with the sun above 8 degrees.
 fn params() -> DayParams {
     DayParams::default().with_step(3600.0).with_min_elevation(8_f64.to_radians())
@@ -51,23 +48,28 @@ fn all_questions(eyes: [[f64; 3]; 2]) -> Vec<TileQuestion> {
         min_sun_elevation_deg: Some(8.0),
         ..Days::default()
     };
-    let radiation = TileRadiation::ClearSky { clear_sky: ClearSky::Haurwitz, year: 2026 };
     let coarse = IrradianceParams::default().with_patch_division(1).with_sun_cell(0.3);
+    let observer = |eye: [f64; 3]| StandingObserver {
+        standing: Standing { place: eye, height: None },
+        limits: ViewLimits::default(),
+    };
+    let view = ViewshedQuestion {
+        observers: eyes.map(observer).to_vec(),
+        limits: ViewLimits { max_distance: Some(120.0), ..ViewLimits::default() },
+        ..ViewshedQuestion::default()
+    };
     let mut questions = suns();
-    questions.extend([
-        TileQuestion::SkyView { sky: SkyParts::Even(49), interval: false },
-        TileQuestion::SunHours { site: site(), days: SunHoursQuestion { days, ..SunHoursQuestion::default() } },
-        TileQuestion::Irradiance { site: site(), radiation, params: coarse, interval: false },
-        TileQuestion::Viewshed { eyes: eyes.to_vec(), max_distance: Some(120.0), is_reverse: false },
-    ]);
+    let view = TileQuestion::new("viewshed", view.into()).unwrap();
+    questions.extend([sky_view(49), sun_hours(days), clear_year(coarse), view]);
     questions
 }
 
 /// Returns the shadow of each of the suns whose hours are summed.
-fn suns_of_the_day() -> Vec<(TileQuestion, f64)> {
-    let days = sun_days(&site(), &Zone::mean_solar(&site()), &day(), &params()).unwrap();
+fn suns_of_the_day(site: &Site) -> Vec<(TileQuestion, f64)> {
+    let days = sun_days(site, &Zone::mean_solar(site), &day(), &params()).unwrap();
     let question = |(number, step): (usize, &SunStep)| {
-        let question = TileQuestion::Shadow { name: format!("step_{number}"), to_sun: step.direction, season: None };
+        let [x, y, z] = step.direction;
+        let question = shadow(&format!("step_{number}"), x.atan2(y).rem_euclid(TAU), z.asin());
         (question, (step.end - step.start) / 3600.0)
     };
     days[0].steps.iter().enumerate().map(question).collect()
@@ -76,13 +78,13 @@ fn suns_of_the_day() -> Vec<(TileQuestion, f64)> {
 fn values(plan: &Plan, folder: &Path, question: &TileQuestion) -> BTreeMap<[i64; 2], u32> {
     let path = folder.join("merged.tif");
     merge(plan, folder, question, &path, UnfinishedRun::Refused, &Control::none()).unwrap();
-    match question {
-        TileQuestion::Shadow { .. } => {
+    match question.topic() {
+        Topic::Shadow => {
             let raster = read_tif_u8(&path).unwrap();
             let wide: Vec<u32> = raster.values().iter().map(|&v| v.into()).collect();
             cells(&path, &wide, raster.width(), 255)
         }
-        TileQuestion::Viewshed { .. } => {
+        Topic::Viewshed => {
             let raster = read_tif_u16(&path).unwrap();
             let wide: Vec<u32> = raster.values().iter().map(|&v| v.into()).collect();
             cells(&path, &wide, raster.width(), 65_535)
@@ -111,7 +113,7 @@ fn tiles_of_any_size_give_the_balls_and_answers_of_one_tile_over_all() {
     .map(|eye| eye.map(f64::from));
     whole.set_on_ground(&mut eyes, 1.7, &Control::none()).unwrap();
     let questions = all_questions(eyes);
-    let steps = suns_of_the_day();
+    let steps = suns_of_the_day(&site(&whole));
     let of_whole = questions.iter().cloned().chain(steps.iter().map(|(question, _)| question.clone())).collect();
     let whole = plan(clouds, &whole_folder, 512.0, of_whole);
     assert_eq!(whole.tiles.len(), 1);
@@ -127,7 +129,7 @@ fn tiles_of_any_size_give_the_balls_and_answers_of_one_tile_over_all() {
         assert!(of_sun.values().all(|&value| value < 2), "nothing is missing");
     }
     sun_hours_are_the_sum_of_shadows(&expected[4], &whole, &whole_folder, &steps);
-    energies_are_those_of_an_open_plane_less_what_obstacles_take(&expected[5]);
+    energies_are_those_of_an_open_plane_less_what_obstacles_take(&expected[5], &site(&whole));
     each_observer_sees_its_share(&expected[6]);
     // With few balls at a time, a part of a tile is tested alone; with more, some tiles are tested together.
     for (size, max_balls) in [64.0, 100.0].into_iter().zip(MAX_BALLS) {
@@ -145,7 +147,7 @@ fn tiles_of_any_size_give_the_balls_and_answers_of_one_tile_over_all() {
         for (question, expected) in questions.iter().zip(&expected) {
             let found = values(&plan, &folder, question);
             let different = expected.iter().filter(|(place, value)| found.get(*place) != Some(value)).count();
-            assert!(found == *expected, "tiles of {size} m, {}: {different} cells differ", question.name());
+            assert!(found == *expected, "tiles of {size} m, {}: {different} cells differ", question.name);
         }
     }
 }
@@ -183,11 +185,11 @@ fn sun_hours_are_the_sum_of_shadows(
 
 /// Checks energies. A plane without obstacles gets the global radiation of the year, with any model of the sky; other
 /// planes get less.
-fn energies_are_those_of_an_open_plane_less_what_obstacles_take(energies: &BTreeMap<[i64; 2], u32>) {
+fn energies_are_those_of_an_open_plane_less_what_obstacles_take(energies: &BTreeMap<[i64; 2], u32>, site: &Site) {
     let instants = {
-        let zone = Zone::mean_solar(&site());
+        let zone = Zone::mean_solar(site);
         let year = [2026, 2027].map(|year| zone.instant_of(Date::new(year, 1, 1).unwrap(), 0.0).unwrap());
-        clear_instants(&ClearSky::Haurwitz, &site(), year, 600.0, &zone).unwrap()
+        clear_instants(&ClearSky::Haurwitz, site, year, 600.0, &zone).unwrap()
     };
     let global: f64 = instants.iter().map(|instant| instant.irradiance.ghi * instant.hours / 1000.0).sum();
     let found: Vec<f64> = energies.values().map(|&bits| f64::from(f32::from_bits(bits))).collect();

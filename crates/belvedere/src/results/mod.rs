@@ -25,8 +25,10 @@ pub use difference::{difference_map, relief_of};
 pub use faces::FaceRows;
 #[cfg(feature = "figures")]
 pub use map::{measure_map, relief_of_cells};
-pub use question::{file_name, question_tags};
-pub use raster::{ADDED_BAND, Pixels, ResultRaster, UNPROVEN_BAND, viewshed_words};
+#[cfg(feature = "tiff")]
+pub use question::question_of_raster;
+pub use question::{file_name, question_tags, read_question};
+pub use raster::{ADDED_BAND, Pixels, ResultRaster, UNPROVEN_BAND};
 #[cfg(feature = "figures")]
 pub use wirelines::{wireline_files, write_wirelines};
 

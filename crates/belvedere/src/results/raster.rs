@@ -3,14 +3,12 @@
 
 use crate::apps::difference::described;
 use crate::apps::targets::{Measure, ResultKind};
-use crate::apps::viewshed::{SEEN, SEEN_BY, Viewshed};
 use crate::cast::to_u32;
 use crate::error::check_length;
 use crate::io::{
     BandLabel, BandValues, Bands, Georeference, MetadataTag, ReadBands, Source, read_tif_bands, write_cog,
     write_tif_bands,
 };
-use crate::query::Answer;
 use crate::raster::Raster;
 use crate::{Error, Result};
 use std::path::Path;
@@ -182,52 +180,6 @@ impl ResultRaster {
         Ok(Self { pixels, labels, tags: Vec::new(), description: description.unwrap_or_default() })
     }
 
-    /// Creates the raster of a viewshed of cells. One observer gives 1 where nothing blocks the view, several give
-    /// their number. If proof was tested, a second band has the unproven part ([`UNPROVEN_BAND`]).
-    ///
-    /// # Errors
-    /// [`Error::LengthMismatch`] unless there is an answer for each cell.
-    pub fn of_viewshed(seen: &Viewshed, size: [usize; 2]) -> Result<Self> {
-        let is_target = |answer: Answer| !matches!(answer, Answer::OutsideView | Answer::OutsideCloud);
-        let rows = || seen.answers.iter().map(|&answer| is_target(answer)).enumerate();
-        let unproven = |row: usize| seen.unproven_counts.get(row).copied().unwrap_or(0);
-        let free = |row: usize| seen.counts.get(row).map_or(0, |count| count + unproven(row));
-        let is_tested = !seen.unproven_counts.is_empty();
-        let pixels = if seen.seen_counts.len() == 1 {
-            let band = |count: &dyn Fn(usize) -> u32| {
-                rows().map(|(row, is_target)| ResultKind::answer(is_target.then(|| count(row) > 0))).collect()
-            };
-            Pixels::answers([band(&free)].into_iter().chain(is_tested.then(|| band(&unproven))), size)?
-        } else {
-            let band = |count: &dyn Fn(usize) -> u32| {
-                rows().map(|(row, is_target)| ResultKind::count(is_target.then(|| count(row)))).collect()
-            };
-            Pixels::counts([band(&free)].into_iter().chain(is_tested.then(|| band(&unproven))), size)?
-        };
-        let [name, description] = viewshed_words(seen.seen_counts.len());
-        let names = [name].into_iter().chain(is_tested.then_some(UNPROVEN_BAND));
-        let labels = names.map(|name| BandLabel::new(name, "1")).collect();
-        Ok(Self { pixels, labels, tags: Vec::new(), description: description.to_owned() })
-    }
-
-    /// This with a further band for each measure. Bands of different kinds become numbers.
-    ///
-    /// # Errors
-    /// [`Error::LengthMismatch`] unless each measure has a value for each cell.
-    pub fn with_measures(self, measures: &[Measure], size: [usize; 2]) -> Result<Self> {
-        if measures.is_empty() {
-            return Ok(self);
-        }
-        let kind = self.pixels.kind();
-        let own = self.pixels.to_numbers()?;
-        let own = own.iter().zip(&self.labels);
-        let own = own.map(|(band, label)| Measure::new(&label.name, band.values().to_vec()).with_kind(kind));
-        let all: Vec<Measure> = own.chain(measures.iter().cloned()).collect();
-        let pixels = Pixels::of_measures(&all, size)?;
-        let labels = self.labels.into_iter().chain(measures.iter().map(label)).collect();
-        Ok(Self { pixels, labels, ..self })
-    }
-
     /// This with metadata of the whole.
     #[must_use]
     pub fn with_tags(self, tags: &[MetadataTag]) -> Self {
@@ -259,12 +211,6 @@ impl ResultRaster {
 /// The label of the band of a measure.
 fn label(measure: &Measure) -> BandLabel {
     BandLabel { tags: measure.tags.clone(), ..BandLabel::new(&measure.name, measure.unit) }
-}
-
-/// Name of the first band of what so many observers see, and what its values are.
-#[must_use]
-pub fn viewshed_words(observer_count: usize) -> [&'static str; 2] {
-    if observer_count == 1 { ["visible", SEEN] } else { ["observers", SEEN_BY] }
 }
 
 fn rasters<T: Copy>(bands: impl IntoIterator<Item = Vec<T>>, [width, height]: [usize; 2]) -> Result<Vec<Raster<T>>> {

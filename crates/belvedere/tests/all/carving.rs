@@ -59,7 +59,11 @@ fn pencil(i: u64) -> Tangent {
     Tangent { point: point.map(|v| v as f32), inward: direction.map(|v| (v / length) as f32), margin: 0.02 }
 }
 
-/// Least radius of the balls of a pencil that touch one of many places along the free segments, in f64.
+/// Radius of the largest ball of a pencil, metres.
+const LARGEST: f32 = 12.0;
+
+/// Least radius of the balls of a pencil that touch one of many places along the free segments, in f64. Free segments
+/// that no ball up to [`LARGEST`] reaches are left out.
 fn brute_force(tangent: &Tangent, returns: &[[f32; 3]], scanner: &[[f32; 3]], params: &FreeSegmentParams) -> f64 {
     let top = returns.iter().map(|p| p[2]).fold(f32::NEG_INFINITY, f32::max) + params.headroom;
     let inward = tangent.inward.map(f64::from);
@@ -72,8 +76,15 @@ fn brute_force(tangent: &Tangent, returns: &[[f32; 3]], scanner: &[[f32; 3]], pa
         let up = sight.map(|v| v / range);
         let to_top = if up[2] > 0.0 { (f64::from(top) - f64::from(p[2])) / up[2] } else { f64::INFINITY };
         let (from, to) = (f64::from(params.end_margin), to_top.min(range));
+        let offset = |t: f64| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) + t * up[i] - touching[i]) };
+        let from_start = offset(0.0);
+        let nearest = offset((0..3).map(|i| -from_start[i] * up[i]).sum::<f64>().max(from).min(to));
+        // all of a ball lies within its diameter of any place on it
+        if nearest.iter().map(|v| v * v).sum::<f64>().sqrt() > 2.0 * f64::from(LARGEST) {
+            continue;
+        }
         let radius = |t: f64| {
-            let q: [f64; 3] = std::array::from_fn(|i| f64::from(p[i]) + t * up[i] - touching[i]);
+            let q = offset(t);
             let height: f64 = (0..3).map(|i| inward[i] * q[i]).sum();
             let square: f64 = q.iter().map(|v| v * v).sum();
             if height > 0.0 { square / (2.0 * height) } else { f64::INFINITY }
@@ -106,7 +117,7 @@ fn the_ball_that_no_pulse_enters_is_that_of_all_pulses_tried_in_turn() {
         for i in 0..120 {
             let tangent = pencil(i);
             let expected = brute_force(&tangent, &returns, &scanner, &params);
-            let found = free_segments.smallest_tangent_ball(&tangent, 12.0);
+            let found = free_segments.smallest_tangent_ball(&tangent, LARGEST);
             if let Some(radius) = found {
                 cut_count += 1;
                 // ends of free segments are f32, off by 1e-5 m, which a ball of the pencil magnifies where the segment

@@ -51,8 +51,10 @@ const LEVELS: [(&str, u8); 18] = [
 ];
 
 /// Crates of others that only one file or folder may name.
-const ONE_HOME: [(&str, &str); 39] = [
+/// `schemars` is derived beside `serde` wherever a question has a type; schemas are made in one place.
+const ONE_HOME: [(&str, &str); 40] = [
     ("ab_glyph_rasterizer::", "figures/src/font.rs"),
+    ("schemars::generate::", "apps/src/ask/schema.rs"),
     ("sha2::", "/src/cache/key.rs"),
     ("skrifa::", "figures/src/font.rs"),
     ("colorous::", "io/src/colors.rs"),

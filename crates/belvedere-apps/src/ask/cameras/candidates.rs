@@ -18,6 +18,7 @@ const SPACING: f64 = 5.0;
 
 /// Possible positions of cameras.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Candidates {
     /// Above the ground, in the middle of each cell of this side, metres. Default: 5.

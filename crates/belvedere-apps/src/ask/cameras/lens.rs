@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Lens and mounting of cameras, where nothing else is said of one.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct CameraLens {
     /// Horizontal field of view, degrees, above 0 to 360; `None` for 90. From 180 on it sees all around: a person, a

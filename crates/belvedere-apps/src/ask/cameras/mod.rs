@@ -35,6 +35,7 @@ use serde::{Deserialize, Serialize};
 
 /// Selection of cameras from many possible ones that covers much of some places.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct CamerasQuestion {
     /// Goal of the selection.
@@ -75,6 +76,7 @@ pub struct CamerasQuestion {
 
 /// Goal of a selection of cameras.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum CameraGoal {
     /// To cover as much as possible with so many new ones.

@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 /// Targets of cameras beside [`Places`], and places that must stay private.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct CameraTargets {
     /// Height of cells, and of points without a height, above the ground, metres. Default 1.5.

@@ -16,6 +16,7 @@ pub struct StandingObserver {
 
 /// Limits of direction and distance; targets outside have no answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct ViewLimits {
     /// Azimuths from and to, clockwise from the north of the question, degrees; 300 to 60 runs through north. `None`

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 /// Places visible from observers, or from which a target is visible.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct ViewshedQuestion {
     /// Observers; for a reverse viewshed the one target.
@@ -46,6 +47,7 @@ pub struct ViewshedQuestion {
 
 /// Targets of a viewshed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum ViewshedTargets {
     /// Cells on the ground.

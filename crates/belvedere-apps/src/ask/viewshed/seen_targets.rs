@@ -76,6 +76,12 @@ impl SeenSection {
     }
 }
 
+/// Returns a note on targets inside obstacles; `name` is what the targets are.
+pub(super) fn remark_on_inside(count: usize, targets: usize, name: &str) -> Option<Remark> {
+    let so = "lie inside an obstacle, and count as blocked";
+    Remark::of_share("targets-inside-obstacle", count, targets, name, so).map(Remark::into_note)
+}
+
 /// Observers and the obstacles before them.
 pub(super) struct Sights<'a> {
     pub(super) question: &'a ViewshedQuestion,
@@ -236,9 +242,7 @@ impl Sights<'_> {
         self.blockers.mark_inside_obstacles(anywhere, targets, &mut marked, control)?;
         let inside_obstacle = AnswerCounts::of(&marked).inside_obstacle;
         let section = SeenSection { inside_obstacle: Some(inside_obstacle), ..self.section(answers, things, context) };
-        let so = "lie inside an obstacle, and count as blocked";
-        let remark = Remark::of_share("targets-inside-obstacle", inside_obstacle, section.targets, things.name, so);
-        context.add(remark.map(Remark::into_note));
+        context.add(remark_on_inside(inside_obstacle, section.targets, things.name));
         Ok(section)
     }
 

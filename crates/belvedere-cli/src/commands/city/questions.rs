@@ -5,7 +5,7 @@ use crate::inputs::radiation;
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::Error;
-use belvedere::apps::ask::{self, Context, SkyParts, SunPlace, Suns};
+use belvedere::apps::ask::{self, SkyParts, SunPlace, Suns};
 use belvedere::apps::shadow::Edges;
 use belvedere::apps::sun::zone_of_instant;
 use belvedere::crs::Crs;
@@ -143,11 +143,9 @@ fn of_sun_and_sky(arguments: &CityPlan) -> Result<Vec<ask::Question>> {
 pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandContext) -> Result<Vec<TileQuestion>> {
     let frame = plan.frame()?;
     let whereabouts = plan.whereabouts(&frame);
-    let mut context = Context::default();
-    whereabouts.remark(&mut context);
     let mut questions = Vec::new();
     for question in of_sun_and_sky(arguments)? {
-        questions.extend(TileQuestion::of(&question, (plan, &whereabouts), &mut context, &run.control())?);
+        questions.extend(TileQuestion::one_by_one(&question, (plan, &whereabouts), &run.control())?);
     }
     if arguments.irradiance {
         let from = (arguments.weather.as_deref(), arguments.clear_sky);
@@ -159,7 +157,7 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandCont
             roofs: None,
             interval: arguments.interval,
         });
-        questions.extend(TileQuestion::of(&question, (plan, &whereabouts), &mut context, &run.control())?);
+        questions.extend(TileQuestion::one_by_one(&question, (plan, &whereabouts), &run.control())?);
     }
     if arguments.sky_view {
         let sky = SkyParts::Even(arguments.direction_count);
@@ -168,7 +166,7 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandCont
             trees: arguments.trees.choice()?,
             interval: arguments.interval,
         });
-        questions.extend(TileQuestion::of(&question, (plan, &whereabouts), &mut context, &run.control())?);
+        questions.extend(TileQuestion::one_by_one(&question, (plan, &whereabouts), &run.control())?);
     }
     if !arguments.observers.is_empty() {
         let bounds = plan.bounds();
@@ -183,8 +181,7 @@ pub(super) fn questions(arguments: &CityPlan, plan: &Plan, run: &mut CommandCont
             how_sure: how_sure(arguments),
             ..ask::ViewshedQuestion::default()
         });
-        questions.extend(TileQuestion::of(&question, (plan, &whereabouts), &mut context, &run.control())?);
+        questions.extend(TileQuestion::one_by_one(&question, (plan, &whereabouts), &run.control())?);
     }
-    run.answered(&context.into_answers());
     Ok(questions)
 }

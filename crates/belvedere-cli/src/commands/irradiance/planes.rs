@@ -110,11 +110,11 @@ fn write_horizons(
     run: &CommandContext,
 ) -> Result<usize> {
     atomic::make_folder(folder)?;
-    let places = horizon_places(&roofs.planes, &found.blockers);
+    let places = horizon_places(&roofs.planes, &roofs.blockers);
     let eyes: Vec<[f64; 3]> = places.iter().map(|(place, _)| place.map(f64::from)).collect();
     let params = HorizonParams::default().with_azimuth_count(AZIMUTHS).with_turn(found.site.convergence);
     let skylines =
-        run.stage("computing ranges", eyes.len(), |control| horizons(&found.blockers, &eyes, &params, control))?;
+        run.stage("computing ranges", eyes.len(), |control| horizons(&roofs.blockers, &eyes, &params, control))?;
     for (number, skyline) in skylines.iter().enumerate() {
         let path = folder.join(format!("plane_{}.txt", number + 1));
         write_lines(&path, skyline.iter().map(|point| format!("{:.2}", point.elevation.to_degrees().max(0.0))))?;

@@ -72,7 +72,7 @@ impl SeenCells<'_> {
             _ => {
                 let size = self.on.size();
                 let raster =
-                    ResultRaster::of_viewshed(self.seen, size)?.with_measures(self.sure, size)?.with_tags(tags);
+                    ResultRaster::of_measures(&[&self.seen.to_measures(), self.sure].concat(), size)?.with_tags(tags);
                 Ok(raster.write(output, Some(&place))?)
             }
         }

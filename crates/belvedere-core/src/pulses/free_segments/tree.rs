@@ -55,6 +55,15 @@ impl SegmentAxis {
         (self.axis + 1) % 3 + if self.is_backward { 3 } else { 0 }
     }
 
+    /// Returns a place as its part along the axis, and those across in the order of [`SegmentAxis::across`].
+    fn turned(self, [x, y, z]: [f32; 3]) -> [f32; 3] {
+        match self.axis {
+            0 => [x, y, z],
+            1 => [y, z, x],
+            _ => [z, x, y],
+        }
+    }
+
     /// The two axes across it.
     pub(super) fn across(self) -> [usize; 2] {
         [(self.axis + 1) % 3, (self.axis + 2) % 3]
@@ -144,26 +153,38 @@ impl SegmentTree {
     pub(super) fn may_enter(&self, node: &SegmentNode, center: [f32; 3], radius: f32) -> bool {
         // rounding of f32 at coordinates of kilometres is a tenth of a millimetre
         let reach = radius * (1.0 + 1e-5) + 1e-3;
-        let along = center[self.way.axis];
-        let low = node.planes[0].max(along - reach);
-        let high = node.planes[1].min(along + reach);
+        let [along, across @ ..] = self.way.turned(center);
+        let low = larger(node.planes[0], along - reach);
+        let high = smaller(node.planes[1], along + reach);
         if low > high {
             return false;
         }
         let span = node.planes[1] - node.planes[0];
-        let share = |at: f32| (at - node.planes[0]) / span;
-        let (s, t) = (share(low), share(high));
+        let sides = |at: f32| -> [f32; 4] {
+            let share = (at - node.planes[0]) / span;
+            std::array::from_fn(|side| node.below[side] + share * (node.above[side] - node.below[side]))
+        };
+        let (s, t) = (sides(low), sides(high));
         let mut square = 0.0;
-        for (side, axis) in self.way.across().into_iter().enumerate() {
-            let at = |share: f32, side: usize| node.below[side] + share * (node.above[side] - node.below[side]);
-            let min = at(s, side).min(at(t, side));
-            let max = at(s, side + 2).max(at(t, side + 2));
-            let off = (min - center[axis]).max(center[axis] - max).max(0.0);
+        for (side, at) in across.into_iter().enumerate() {
+            let min = smaller(s[side], t[side]);
+            let max = larger(s[side + 2], t[side + 2]);
+            let off = larger(larger(min - at, at - max), 0.0);
             square += off * off;
         }
-        let off = (low - along).max(along - high).max(0.0);
+        let off = larger(larger(low - along, along - high), 0.0);
         square + off * off < reach * reach
     }
+}
+
+/// The smaller number, in one instruction: `f32::min` takes five to pass over what is not a number.
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The larger number, as [`smaller`].
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
 
 impl SegmentNode {

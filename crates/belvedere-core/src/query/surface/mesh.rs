@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// Treatment of faces that are turned away from the viewer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum BackFaces {
     /// They count as not visible: shares are those of the whole surface.
