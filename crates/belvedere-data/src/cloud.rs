@@ -212,7 +212,7 @@ impl PointCloud {
     /// Rows that are not finite are left out; their number is returned beside the cloud.
     #[must_use]
     pub fn from_coordinates(coordinates: &[[f64; 3]]) -> (Self, usize) {
-        let origin = centre_rounded(coordinates.iter().copied());
+        let origin = origin_of(coordinates.iter().copied());
         let positions: Vec<[f32; 3]> =
             coordinates.iter().filter(|c| c.iter().all(|v| v.is_finite())).map(|&c| to_local(c, origin)).collect();
         let left_out = coordinates.len() - positions.len();
@@ -306,9 +306,31 @@ impl PointCloud {
     }
 }
 
+/// Spacing of the origins of surveys, metres. It is a multiple of blocks of 64 m, and large so that neighbouring surveys
+/// share an origin.
+const ORIGIN_STEP: f64 = 1024.0;
+/// Width from which on a cloud has the origin of a survey, metres. Smaller objects need more digits.
+const MIN_SURVEY: f64 = 64.0;
+
+/// Origin of local coordinates of a survey between two corners, metres: near their middle, a corner of blocks of 64 m.
+#[must_use]
+pub fn survey_origin(low: [f64; 3], high: [f64; 3]) -> [f64; 3] {
+    // adding zero turns −0 into 0, which prints better
+    std::array::from_fn(|i| (f64::midpoint(low[i], high[i]) / ORIGIN_STEP).round() * ORIGIN_STEP + 0.0)
+}
+
+/// Origin of local coordinates of a cloud with these `coordinates`, metres: [`survey_origin`] of a wide one, otherwise
+/// [`centre_rounded`]. Coordinates that are not finite are left out.
+#[must_use]
+pub fn origin_of(coordinates: impl Iterator<Item = [f64; 3]>) -> [f64; 3] {
+    let [low, high] = box_around(coordinates.filter(|c| c.iter().all(|v| v.is_finite())));
+    let is_survey = (0..2).any(|i| high[i] - low[i] >= MIN_SURVEY);
+    if is_survey { survey_origin(low, high) } else { centre_rounded([low, high].into_iter()) }
+}
+
 /// Middle of the bounding box of the finite `coordinates`, rounded to whole metres so that it prints short; zero if
 /// there is none.
 pub fn centre_rounded(coordinates: impl Iterator<Item = [f64; 3]>) -> [f64; 3] {
     let [low, high] = box_around(coordinates.filter(|c| c.iter().all(|v| v.is_finite())));
-    std::array::from_fn(|i| if low[i] <= high[i] { (low[i] / 2.0 + high[i] / 2.0).round() } else { 0.0 })
+    std::array::from_fn(|i| if low[i] <= high[i] { (low[i] / 2.0 + high[i] / 2.0).round() + 0.0 } else { 0.0 })
 }

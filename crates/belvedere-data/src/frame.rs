@@ -76,12 +76,16 @@ impl Bounds {
     /// The smallest box around `positions`, (N, 3), or `None` without any.
     #[must_use]
     pub fn around(positions: impl IntoIterator<Item = [f32; 3]>) -> Option<Self> {
-        let mut positions = positions.into_iter();
-        let first = positions.next()?;
-        Some(positions.fold(Self { low: first, high: first }, |bounds, p| Self {
-            low: std::array::from_fn(|i| bounds.low[i].min(p[i])),
-            high: std::array::from_fn(|i| bounds.high[i].max(p[i])),
-        }))
+        positions.into_iter().map(|p| Self { low: p, high: p }).reduce(|bounds, p| bounds.joined(&p))
+    }
+
+    /// The smallest box around both.
+    #[must_use]
+    pub fn joined(&self, other: &Self) -> Self {
+        Self {
+            low: std::array::from_fn(|i| self.low[i].min(other.low[i])),
+            high: std::array::from_fn(|i| self.high[i].max(other.high[i])),
+        }
     }
 
     /// Lowest and highest corner in f64.

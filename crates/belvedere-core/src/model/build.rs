@@ -1,6 +1,7 @@
 //! Builds a scene model from a cloud.
 
 use super::blocked_pulses::blocked_pulses;
+use super::estimate_statistics::WholeStatistics;
 use super::flight_days::FlightDays;
 use super::params::{BallParams, ModelParams};
 use super::prepare::{OrientedSurvey, prepare};
@@ -32,9 +33,10 @@ impl SceneModel {
     /// - [`Error::InvalidParameter`] for a parameter out of range.
     /// - [`Error::Cancelled`].
     pub fn build(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<(Self, BuildReport)> {
-        let (survey, report) = prepare(Cow::Borrowed(cloud), params, control)?;
+        let whole = WholeStatistics::of_cloud(cloud, params, control)?;
+        let (survey, report) = prepare(Cow::Borrowed(cloud), params, whole.as_ref(), control)?;
         let normals = survey.normals_of_rows(cloud.len());
-        let (mut model, report) = of_survey(survey, cloud.frame.clone(), params, report, control)?;
+        let (mut model, report) = of_survey(survey, cloud.frame.clone(), (params, whole.as_ref()), report, control)?;
         model.normals = Some(normals);
         Ok((model, report))
     }
@@ -46,15 +48,16 @@ impl SceneModel {
     /// Those of [`SceneModel::build`].
     pub fn build_owned(cloud: PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<(Self, BuildReport)> {
         let frame = cloud.frame.clone();
-        let (survey, report) = prepare(Cow::Owned(cloud), params, control)?;
-        of_survey(survey, frame, params, report, control)
+        let whole = WholeStatistics::of_cloud(&cloud, params, control)?;
+        let (survey, report) = prepare(Cow::Owned(cloud), params, whole.as_ref(), control)?;
+        of_survey(survey, frame, (params, whole.as_ref()), report, control)
     }
 }
 
 fn of_survey(
     survey: OrientedSurvey,
     frame: Frame,
-    params: &ModelParams,
+    (params, whole): (&ModelParams, Option<&WholeStatistics>),
     mut report: BuildReport,
     control: &Control<'_>,
 ) -> Result<(SceneModel, BuildReport)> {
@@ -71,7 +74,8 @@ fn of_survey(
             let is_assumed = input.is_assumed;
             let (attributes, free_segments, pulses) = (&input.attributes, &input.free_segments, input.pulses.as_ref());
             let (oriented, measured, index) = (&survey.oriented, &survey.measured[..], &survey.index);
-            let statistics = params.statistics.as_deref().map(|statistics| &statistics.whole);
+            let statistics = params.statistics.as_deref().or(whole.map(|whole| &whole.statistics));
+            let statistics = statistics.map(|statistics| &statistics.whole);
             let input = CarvedInput { oriented, measured, index, attributes, free_segments, pulses, statistics };
             let found;
             let returns;

@@ -1,13 +1,16 @@
 //! Statistics of a whole survey from samples of it, and how far around a place they matter.
 
 use super::flight_days::FlightDays;
-use super::params::{BallParams, ModelParams, OrientBy};
+use super::params::{BallParams, Carving, ModelParams, OrientBy};
 use super::prepare::{OrientedSurvey, prepare};
+use super::report::BuildReport;
 use super::statistics::{SurveyStatistics, lean};
+use super::survey_sample::{SampledRows, SurveySampler};
 use crate::ground::GROUND_REACH;
 use crate::medial::{BLOCK, CarvedInput, CarvedParams, RuleStatistics, rule_statistics};
 use crate::neighbors::FARTHEST_NEIGHBOR;
-use crate::pulses::{Means, locate};
+use crate::pulses::{Means, ScannerReport, locate};
+use crate::strips::StripReport;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
 use std::borrow::Cow;
@@ -32,6 +35,132 @@ pub struct SurveyExtremes {
     pub has_vegetation: bool,
 }
 
+/// Samples of a survey, in the frame that its parts will have.
+struct SurveySamples<'a> {
+    /// Whole pulses at random, all over the survey.
+    along_lines: &'a PointCloud,
+    /// All points of some places.
+    places: &'a PointCloud,
+    extremes: &'a SurveyExtremes,
+}
+
+/// Statistics of a survey, and how they were found.
+struct Estimate {
+    statistics: SurveyStatistics,
+    is_from_the_ground: bool,
+    /// Report of the search for the scanner along flight lines.
+    scanner: ScannerReport,
+    /// Report of the model of the places.
+    places: BuildReport,
+}
+
+/// Statistics of a whole survey that is in memory, and how they were found.
+pub(super) struct WholeStatistics {
+    pub(super) statistics: SurveyStatistics,
+    /// Report of the search for the scanner.
+    pub(super) scanner: ScannerReport,
+    /// Heights of flight lines, where some of them differ.
+    pub(super) strips: Option<StripReport>,
+}
+
+impl WholeStatistics {
+    /// Estimates the statistics of a cloud as those of a survey in parts, so that one model of it has the same balls.
+    /// `None` for clouds that are no survey from the air with known times, and for scanners that are given.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub(super) fn of_cloud(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<Option<Self>> {
+        let is_survey = matches!(params.orient, OrientBy::Auto | OrientBy::Pulses)
+            && params.balls.carving() != Carving::Unwanted
+            && params.statistics.is_none()
+            && cloud.scanner_positions.is_empty()
+            && cloud.attributes.gps_time.is_some();
+        let Some(bounds) = cloud.bounds().filter(|_| is_survey) else { return Ok(None) };
+        let corner = |corner: [f32; 3]| [corner[0], corner[1]].map(f64::from);
+        let mut sampler = SurveySampler::new([corner(bounds.low), corner(bounds.high)], cloud.len() as u64);
+        let SampledRows { along_lines, in_places } = sampler.pass(cloud, cloud.attributes.gps_time.as_deref());
+        let sample = (along_lines.len() < cloud.len()).then(|| cloud.select(&along_lines));
+        let samples = SurveySamples {
+            along_lines: sample.as_ref().unwrap_or(cloud),
+            places: &cloud.select(&in_places),
+            extremes: &sampler.finish().extremes,
+        };
+        match Estimate::new(&samples, params, control) {
+            Ok(Estimate { statistics, is_from_the_ground: false, scanner, places })
+                if statistics.carves && !statistics.are_pulses_assumed() =>
+            {
+                Ok(Some(Self { statistics, scanner, strips: places.survey.strips }))
+            }
+            Err(Error::Cancelled) => Err(Error::Cancelled),
+            // the model of the cloud says what is wrong
+            Ok(_) | Err(_) => Ok(None),
+        }
+    }
+}
+
+impl Estimate {
+    fn new(samples: &SurveySamples<'_>, params: &ModelParams, control: &Control<'_>) -> Result<Self> {
+        let &SurveySamples { along_lines, places, extremes } = samples;
+        let means = match params.orient {
+            OrientBy::Pulses => Means::Pulses,
+            OrientBy::Auto | OrientBy::Up => Means::Automatic,
+            _ => {
+                let value = "a scanner, a trajectory or a mesh that is given".to_owned();
+                let expected = "auto, pulses or up where a survey is built in parts";
+                return Err(Error::invalid(Parameter::Orientation, value, expected));
+            }
+        };
+        let (positions, report) = control.stage("estimating scanner positions", along_lines.len(), || {
+            locate(along_lines, &means, &params.locate, control)
+        })?;
+        let leans = along_lines.positions.iter().zip(&positions).filter_map(lean);
+        let max_lean = if report.paths.is_empty() { 0.0 } else { leans.fold(0.0, f64::max) };
+        let mut statistics = SurveyStatistics {
+            paths: report.paths.clone(),
+            max_lean: LEAN_ROOM * max_lean,
+            carves: true,
+            top: extremes.top,
+            relief: extremes.relief,
+            flight_days: FlightDays::of(&along_lines.attributes),
+            measures_crowns: true,
+            finds_ground: !(extremes.has_ground || extremes.has_vegetation),
+            whole: RuleStatistics {
+                // found otherwise
+                has_ground: extremes.has_ground || !extremes.has_vegetation,
+                has_vegetation: extremes.has_vegetation,
+                ..RuleStatistics::default()
+            },
+            ..SurveyStatistics::default()
+        };
+        let scanner_report = report;
+        // what the model of these places estimates for itself
+        let cloud = places.clone();
+        let scanner = OrientBy::ScannerOfEachPoint(statistics.scanner(&cloud, control)?);
+        let free = if statistics.paths.is_empty() { params.clone() } else { params.clone().with_orient(scanner) };
+        let (survey, report) = prepare(Cow::Owned(cloud), &free, None, control)?;
+        statistics.isolation_radius = report.removed_by_cleaning.isolation_radius;
+        statistics.strips = report.survey.moved_strips().to_vec();
+        statistics.noise = report.smoothing.map(|smoothing| smoothing.noise);
+        let mut estimate = Self { statistics, is_from_the_ground: false, scanner: scanner_report, places: report };
+        let statistics = &mut estimate.statistics;
+        let Some(input) = &survey.carving else {
+            statistics.carves = false;
+            return Ok(estimate);
+        };
+        if input.free_segments.are_from_the_ground() {
+            estimate.is_from_the_ground = true;
+            return Ok(estimate);
+        }
+        statistics.measures_crowns = input.pulses.is_some();
+        if let BallParams::Carved(carved) | BallParams::CarvedIfPossible(carved, _) = &params.balls {
+            let RuleStatistics { transmission, crown_spacing, spacing, .. } =
+                statistics.crowns(&survey, carved, control)?;
+            statistics.whole = RuleStatistics { transmission, crown_spacing, spacing, ..statistics.whole };
+        }
+        Ok(estimate)
+    }
+}
+
 impl SurveyStatistics {
     /// Estimates the statistics of a survey. `along_lines` is a sample that is spread over all of it, whole pulses at
     /// random. `places` has all points of some places. Both are in the frame that its parts will have. Errors name it
@@ -48,60 +177,15 @@ impl SurveyStatistics {
         params: &ModelParams,
         control: &Control<'_>,
     ) -> Result<Self> {
-        let means = match params.orient {
-            OrientBy::Pulses => Means::Pulses,
-            OrientBy::Auto | OrientBy::Up => Means::Automatic,
-            _ => {
-                let value = "a scanner, a trajectory or a mesh that is given".to_owned();
-                let expected = "auto, pulses or up where a survey is built in parts";
-                return Err(Error::invalid(Parameter::Orientation, value, expected));
-            }
-        };
-        let (positions, report) = control.stage("estimating scanner positions", along_lines.len(), || {
-            locate(along_lines, &means, &params.locate, control)
-        })?;
-        let leans = along_lines.positions.iter().zip(&positions).filter_map(lean);
-        let max_lean = if report.paths.is_empty() { 0.0 } else { leans.fold(0.0, f64::max) };
-        let mut statistics = Self {
-            paths: report.paths,
-            max_lean: LEAN_ROOM * max_lean,
-            carves: true,
-            top: extremes.top,
-            relief: extremes.relief,
-            flight_days: FlightDays::of(&along_lines.attributes),
-            measures_crowns: true,
-            finds_ground: !(extremes.has_ground || extremes.has_vegetation),
-            whole: RuleStatistics {
-                // found otherwise
-                has_ground: extremes.has_ground || !extremes.has_vegetation,
-                has_vegetation: extremes.has_vegetation,
-                ..RuleStatistics::default()
-            },
-            ..Self::default()
-        };
-        // what the model of these places estimates for itself
-        let cloud = places.clone();
-        let scanner = OrientBy::ScannerOfEachPoint(statistics.scanner(&cloud, control)?);
-        let free = if statistics.paths.is_empty() { params.clone() } else { params.clone().with_orient(scanner) };
-        let (survey, report) = prepare(Cow::Owned(cloud), &free, control)?;
-        statistics.isolation_radius = report.removed_by_cleaning.isolation_radius;
-        statistics.strips = report.survey.moved_strips().to_vec();
-        statistics.noise = report.smoothing.map(|smoothing| smoothing.noise);
-        let Some(input) = &survey.carving else { return Ok(Self { carves: false, ..statistics }) };
-        if input.free_segments.are_from_the_ground() {
-            return Err(Error::malformed(
+        let samples = SurveySamples { along_lines, places, extremes };
+        match Estimate::new(&samples, params, control)? {
+            Estimate { is_from_the_ground: true, .. } => Err(Error::malformed(
                 name,
                 "this survey was measured from the ground, and only surveys from the air can be worked on in tiles; \
                  ask about one cloud at a time, with `balls`, `shadow` or `viewshed`",
-            ));
+            )),
+            Estimate { statistics, .. } => Ok(statistics),
         }
-        statistics.measures_crowns = input.pulses.is_some();
-        if let BallParams::Carved(carved) | BallParams::CarvedIfPossible(carved, _) = &params.balls {
-            let RuleStatistics { transmission, crown_spacing, spacing, .. } =
-                statistics.crowns(&survey, carved, control)?;
-            statistics.whole = RuleStatistics { transmission, crown_spacing, spacing, ..statistics.whole };
-        }
-        Ok(statistics)
     }
 
     fn crowns(&self, survey: &OrientedSurvey, params: &CarvedParams, control: &Control<'_>) -> Result<RuleStatistics> {

@@ -23,6 +23,7 @@ mod questions;
 mod report;
 mod statistics;
 mod surfaces;
+mod survey_sample;
 mod terrain;
 
 pub use belvedere_data::model::{DerivedParts, ModelParts};
@@ -36,6 +37,7 @@ pub use params::{BallParams, ModelParams, OrientBy, StripHeights};
 pub use prepare::OrientedSurvey;
 pub use report::{BallsReport, BlockedPulses, BuildReport, NormalsReport, PulsesReport, SurfacesReport};
 pub use statistics::SurveyStatistics;
+pub use survey_sample::{SampledRows, SurveyBlock, SurveyCounts, SurveySampler, is_counted};
 pub use terrain::{TerrainReport, check_terrain};
 
 use crate::medial::{MedialBalls, PULSE_TOUCH, vegetation_of_transmission};
@@ -229,6 +231,12 @@ impl SceneModel {
         }
         self.far_terrain = self.far_terrain.with_grid(terrain, coverage.map(|coverage| coverage.bounds().on_map()));
         Ok(self)
+    }
+
+    /// The same model before far terrain. It is not saved.
+    #[must_use]
+    pub fn with_far_terrain(self, far_terrain: FarTerrain) -> Self {
+        Self { far_terrain, ..self }
     }
 
     /// Returns the terrain beyond the cloud, as far as it was given.

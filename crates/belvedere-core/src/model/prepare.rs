@@ -1,11 +1,13 @@
 //! Prepares a cloud: cleaning, outward normals, and the space that its pulses prove empty.
 
 use super::close_range_normals::CloseRange;
+use super::estimate_statistics::WholeStatistics;
 use super::findings::SurveyFindings;
 use super::flight_days::FlightDays;
 use super::in_space_order::{points_at, space_order};
 use super::params::{Carving, ModelParams, OrientBy, StripHeights};
 use super::report::{BuildReport, NormalsReport, PulsesReport, SmoothingReport};
+use super::statistics::SurveyStatistics;
 use crate::clean::clean;
 use crate::ground::ground_in_blocks;
 use crate::neighbors::{FARTHEST_NEIGHBOR, NeighborIndex};
@@ -92,7 +94,8 @@ impl OrientedSurvey {
     /// [`Error::NoPoints`] where cleaning leaves none, [`Error::NoSurface`] where it leaves fewer than four or all on
     /// one line; those of [`clean`], [`locate`], [`estimate_within`] and [`orient()`]; [`Error::Cancelled`].
     pub fn prepare(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<(Self, BuildReport)> {
-        prepare(Cow::Borrowed(cloud), params, control)
+        let whole = WholeStatistics::of_cloud(cloud, params, control)?;
+        prepare(Cow::Borrowed(cloud), params, whole.as_ref(), control)
     }
 
     /// Normals for the `count` points of the cloud as it was given, (N, 3); zero for those that were cleaned away.
@@ -144,16 +147,19 @@ fn check_memory(count: usize) -> Result<()> {
     Vec::<u8>::new().try_reserve_exact(bytes).map_err(refused)
 }
 
-/// Prepares a cloud as [`OrientedSurvey::prepare`]. A cloud that is given away is freed as soon as nothing needs it.
+/// Prepares a cloud as [`OrientedSurvey::prepare`], with statistics of the `whole` where these are known. A cloud that
+/// is given away is freed as soon as nothing needs it.
 pub(super) fn prepare(
     cloud: Cow<'_, PointCloud>,
     params: &ModelParams,
+    whole: Option<&WholeStatistics>,
     control: &Control<'_>,
 ) -> Result<(OrientedSurvey, BuildReport)> {
     let mut report = BuildReport::default();
     let read_count = cloud.len();
     check_memory(read_count)?;
-    let statistics = params.statistics.as_deref();
+    let is_part = params.statistics.is_some();
+    let statistics = params.statistics.as_deref().or(whole.map(|whole| &whole.statistics));
     let cleaning = statistics.map(|statistics| statistics.cleaning(&params.clean));
     let cleaning = cleaning.as_ref().unwrap_or(&params.clean);
     // where nothing carves, balls have the rows of their points
@@ -169,7 +175,7 @@ pub(super) fn prepare(
         return Err(Error::NoPoints { what: format!("{read_count} were read, and cleaning removed all of them") });
     }
     // what is no surface on its own may be the edge of one
-    if statistics.is_none() {
+    if !is_part {
         check_surface(kept.iter().filter_map(|&row| cloud.positions.get(row as usize)))?;
     }
     if kept.len() < read_count {
@@ -178,12 +184,12 @@ pub(super) fn prepare(
     if let Some(rows) = order {
         kept.iter_mut().for_each(|row| *row = rows.get(*row as usize).copied().unwrap_or(*row));
     }
+    if !is_part {
+        report.survey = findings(&cloud, params, whole, control)?;
+    }
     let moved = match statistics {
         Some(statistics) => statistics.strips.clone(),
-        None => {
-            report.survey = findings(&cloud, params, control)?;
-            report.survey.moved_strips().to_vec()
-        }
+        None => report.survey.moved_strips().to_vec(),
     };
     if !moved.is_empty() {
         move_strips(cloud.to_mut(), &moved);
@@ -192,7 +198,7 @@ pub(super) fn prepare(
     let wants_scanner = carving != Carving::Unwanted
         || matches!(params.orient, OrientBy::Pulses | OrientBy::ScannerOfEachPoint(_) | OrientBy::Stations(_));
     let scanner = if wants_scanner {
-        let (scanner, found) = find_scanner(&cloud, &kept, read_count, params, control)?;
+        let (scanner, found) = find_scanner(&cloud, (&kept, read_count), params, whole, control)?;
         let missed = found.height_offset.map(|offset| offset.miss_angle.to_degrees());
         report.survey.trajectory_miss_deg = missed.filter(|miss| *miss > MAX_MISS_DEG).map(|miss| rounded(miss, 1));
         report.scanner = Some(found);
@@ -203,7 +209,7 @@ pub(super) fn prepare(
     let mut carving = match carving {
         Carving::Unwanted => None,
         carving => {
-            let (input, pulses) = carving_input(&cloud, &scanner, carving, params, control)?;
+            let (input, pulses) = carving_input(&cloud, &scanner, (carving, statistics), params, control)?;
             report.pulses = Some(pulses);
             input
         }
@@ -258,8 +264,17 @@ pub(super) fn prepare(
 }
 
 /// Finds the properties of the survey of a whole cloud. Heights of lines are compared if they are flight lines.
-fn findings(cloud: &PointCloud, params: &ModelParams, control: &Control<'_>) -> Result<SurveyFindings> {
+fn findings(
+    cloud: &PointCloud,
+    params: &ModelParams,
+    whole: Option<&WholeStatistics>,
+    control: &Control<'_>,
+) -> Result<SurveyFindings> {
     let mut findings = SurveyFindings::of_cloud(cloud);
+    if let Some(whole) = whole {
+        findings.strips = whole.strips.clone();
+        return Ok(findings);
+    }
     let is_flown = cloud.scanner_positions.is_empty()
         && cloud.attributes.gps_time.is_some()
         && !matches!(params.orient, OrientBy::Stations(_) | OrientBy::Scanner | OrientBy::ScannerAt(_));
@@ -354,11 +369,15 @@ fn orientation<'a>(
 /// Locates the scanner for each point of `cloud`, whose points are the rows `kept` of `read_count` that were given.
 fn find_scanner(
     cloud: &PointCloud,
-    kept: &[u32],
-    read_count: usize,
+    (kept, read_count): (&[u32], usize),
     params: &ModelParams,
+    whole: Option<&WholeStatistics>,
     control: &Control<'_>,
 ) -> Result<(ScannerPositions, ScannerReport)> {
+    if let Some(whole) = whole {
+        let positions = whole.statistics.scanner(cloud, control)?;
+        return Ok((ScannerPositions { positions, ..ScannerPositions::default() }, whole.scanner.clone()));
+    }
     if let Some(statistics) = &params.statistics {
         let positions = statistics.scanner(cloud, control)?;
         let known_count = positions.iter().filter(|p| p.iter().all(|v| v.is_finite())).count();
@@ -393,21 +412,21 @@ fn find_scanner(
 fn carving_input(
     cloud: &PointCloud,
     scanner: &ScannerPositions,
-    carving: Carving,
+    (carving, statistics): (Carving, Option<&SurveyStatistics>),
     params: &ModelParams,
     control: &Control<'_>,
 ) -> Result<(Option<CarvingInput>, PulsesReport)> {
     let (free_segments, report) = control.stage("indexing pulses", cloud.len(), || {
-        let top = params.statistics.as_ref().map(|statistics| statistics.top);
+        let top = statistics.map(|statistics| statistics.top);
         FreeSegments::of_cloud_below(cloud, &scanner.positions, top, &params.free_segments, control)
     })?;
     let mut report = PulsesReport { free_segments: report, ..PulsesReport::default() };
     let used = report.free_segments.used as f64;
-    if params.statistics.as_ref().is_some_and(|statistics| !statistics.carves) {
+    if statistics.is_some_and(|statistics| !statistics.carves) {
         return Ok((None, report));
     }
     // of a part it was decided with the whole
-    let carving = if params.statistics.is_some() { Carving::Wanted } else { carving };
+    let carving = if statistics.is_some() { Carving::Wanted } else { carving };
     if scanner.is_assumed && used < MIN_ASSUMED_SHARE * cloud.len() as f64 && carving == Carving::IfPossible {
         report.remark = Some(format!(
             "pulses do not carve here: they are only assumed to be vertical, and {:.0} % of the points have something above them; give \
@@ -416,7 +435,7 @@ fn carving_input(
         ));
         return Ok((None, report));
     }
-    let finds_ground = match &params.statistics {
+    let finds_ground = match statistics {
         Some(statistics) => statistics.finds_ground,
         None => !free_segments.are_from_the_ground() && !tell_ground(cloud),
     };
@@ -441,7 +460,7 @@ fn carving_input(
         Err(error) => return Err(error),
     };
     // scanners on the ground see stems from the side; parts of a survey are seen from the air
-    let is_from_air = params.statistics.is_some() || !free_segments.are_from_the_ground();
+    let is_from_air = statistics.is_some() || !free_segments.are_from_the_ground();
     let may_prove = !scanner.is_assumed && is_from_air;
     let between_returns = match pulses.as_ref().filter(|_| may_prove) {
         Some(pulses) => Some(free_segments.between_returns(cloud, pulses, &params.free_segments, control)?),

@@ -7,7 +7,7 @@ use crate::points::file_part::FilePart;
 use crate::points::read_options::{DistantFiles, ReadOptions, RowNumbers};
 use crate::points::read_report::ReadReport;
 use belvedere_data::Frame;
-use belvedere_data::cloud::{CloudFile, CloudFiles, FileRows, PointCloud, centre_rounded, to_local};
+use belvedere_data::cloud::{CloudFile, CloudFiles, FileRows, PointCloud, origin_of, to_local};
 use belvedere_data::crs::{Crs, CrsKind};
 use belvedere_data::{Error, Parameter, Result};
 
@@ -36,8 +36,7 @@ pub(crate) fn assemble(mut parts: Vec<FilePart>, options: &ReadOptions) -> Resul
 
     let found: Vec<PartPass> = parts.iter().map(|part| look(part, middle)).collect();
     let bounds = found.iter().fold(PointExtent::default(), |bounds, one| bounds.join(one.bounds));
-    // Adding zero turns −0 into 0, which prints better.
-    let chosen = || centre_rounded([bounds.low, bounds.high].into_iter()).map(|middle| middle + 0.0);
+    let chosen = || origin_of([bounds.low, bounds.high].into_iter());
     let origin = fixed.map_or_else(chosen, |frame| frame.origin);
 
     let mut cloud = PointCloud::in_frame(Frame { origin, ..Frame::default() });

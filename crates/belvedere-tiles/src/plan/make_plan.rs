@@ -8,6 +8,7 @@ use crate::plan::window;
 use crate::plan::window::without_ground;
 use crate::plan::{LAYOUT, Plan, PlanFrame, on_surface};
 use belvedere::apps::ask::Remark;
+use belvedere::cloud::survey_origin;
 use belvedere::control::Control;
 use belvedere::crs::Crs;
 use belvedere::io::{Insistence, LasHead, cloud_sources};
@@ -17,9 +18,6 @@ use belvedere::weather::CalendarDay;
 use belvedere::{Error, Parameter, PointCloud, Result};
 use std::path::{Path, PathBuf};
 
-/// Spacing of possible origins of local coordinates, metres. It is a multiple of 64 m blocks, and large so that
-/// neighbouring surveys share an origin.
-const ORIGIN_STEP: f64 = 1024.0;
 /// Maximum distance of a point from the origin, metres. Up to this distance f32 resolves a millimetre.
 const FARTHEST: f64 = 16_384.0;
 /// Maximum number of points that sample the ground.
@@ -93,10 +91,16 @@ impl Plan {
             // Rows at the end may all have been left out.
             input.pieces.resize(usize::try_from(input.points.div_ceil(PIECE_ROWS)).unwrap_or(0), NOWHERE);
         }
-        let bounds = found.bounds.ok_or_else(|| Error::NoPoints { what: "all points are noise".to_owned() })?;
+        let bounds = found.counts.bounds.ok_or_else(|| Error::NoPoints { what: "all points are noise".to_owned() })?;
         let model = ModelParams::default();
-        let statistics =
-            SurveyStatistics::estimate(&files[0], &found.along_lines, &found.places, &found.extremes, &model, control)?;
+        let statistics = SurveyStatistics::estimate(
+            &files[0],
+            &found.along_lines,
+            &found.places,
+            &found.counts.extremes,
+            &model,
+            control,
+        )?;
         let mut plan = Self {
             layout: LAYOUT,
             program: params.program.clone(),
@@ -123,7 +127,7 @@ impl Plan {
             low: bounds.low,
             high: bounds.high,
             statistics,
-            blocks: found.blocks,
+            blocks: found.counts.blocks,
             frame,
             name: String::new(),
             survey_name: String::new(),
@@ -213,8 +217,7 @@ fn frame_of(
     if let Some([x, y]) = params.places.iter().find(|place| !holds(place)) {
         return Err(without_ground(format!("{x}, {y}")));
     }
-    let origin: [f64; 3] =
-        std::array::from_fn(|i| (f64::midpoint(low[i], high[i]) / ORIGIN_STEP).round() * ORIGIN_STEP);
+    let origin = survey_origin(low, high);
     if (0..2).any(|i| low[i] - origin[i] < -FARTHEST || high[i] - origin[i] > FARTHEST) {
         let [width, height] = [0, 1].map(|i| ((high[i] - low[i]) / 1000.0).ceil());
         return Err(Error::invalid(

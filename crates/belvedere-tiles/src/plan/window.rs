@@ -3,18 +3,18 @@
 use crate::columns::append;
 use crate::grid::{MapArea, block_area, block_of};
 use crate::plan::Plan;
-use crate::plan::survey::is_counted;
 use belvedere::apps::targets::{grid_around, set_on_ground};
 use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams};
 use belvedere::io::{Insistence, ReadOptions, Within, read_batches};
+use belvedere::model::is_counted;
 use belvedere::weather::CalendarDay;
 use belvedere::{Error, Frame, Parameter, PointCloud, Result};
 use std::collections::HashMap;
 use std::path::PathBuf;
 
 /// Margin around the grid of a place within which points are read for its ground, metres.
-const GROUND_AROUND: f64 = 32.0;
+pub(crate) const GROUND_AROUND: f64 = 32.0;
 
 /// Reads the points of the plan's files within `area`, in the order of the files and of their points.
 ///
@@ -55,11 +55,9 @@ pub(crate) fn each_batch(
 /// # Errors
 /// [`Error::Malformed`] for a file that hides points, or has more.
 pub(crate) fn check_counts(plan: &Plan, cloud: &PointCloud, area: &MapArea) -> Result<()> {
-    let flags = cloud.attributes.flags.as_deref().unwrap_or_default();
-    let classes = cloud.attributes.classification.as_deref().unwrap_or_default();
     let mut found: HashMap<[i32; 2], u64> = HashMap::new();
     for (row, &p) in cloud.positions.iter().enumerate() {
-        if is_counted(p, classes.get(row).copied().unwrap_or(0), flags.get(row).copied().unwrap_or(0)) {
+        if is_counted(p, row, &cloud.attributes) {
             *found.entry(block_of([p[0], p[1]])).or_default() += 1;
         }
     }
