@@ -2,10 +2,8 @@
 //! answered in tiles.
 
 use crate::arguments::{
-    FarTerrainArguments, GroundChoice, PlanArguments, SceneInput, SkyOutputs, SkyPlaces, TilesArguments, UpChoice,
-    Usage, refuse,
+    FarTerrainArguments, GroundChoice, PlanArguments, SceneInput, SkyOutputs, SkyPlaces, TilesArguments, Usage, refuse,
 };
-use crate::memory;
 use crate::outputs::formats::{check_folder, extension};
 use crate::outputs::targets::TargetOutput;
 use crate::pipeline::areas;
@@ -15,10 +13,7 @@ use anyhow::{Result, bail};
 use belvedere::Error;
 use belvedere::apps::ask::{Answers, GridCells, OnTargets, Places, Question, Scene, ThroughTrees};
 use belvedere::cache::SurveyFolder;
-use belvedere::io::Insistence;
-use belvedere_tiles::{
-    Plan, PlanParams, RunReport, SideFile, SurveyCells, SurveyPlaces, SurveyQuestion, TileQuestion, TooLarge,
-};
+use belvedere_tiles::{Plan, RunReport, SideFile, SurveyCells, SurveyPlaces, SurveyQuestion, TileQuestion};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -46,9 +41,7 @@ pub(crate) struct TypedCells<'a> {
 /// A survey that is answered in tiles.
 pub(crate) struct PlannedSurvey {
     pub(crate) plan: Plan,
-    folder: SurveyFolder,
-    /// True if nobody keeps the tiles.
-    is_temporary: bool,
+    folder: TilesFolder,
     /// Memory that may be used, bytes.
     limit: u64,
     /// Cells of the question.
@@ -105,12 +98,12 @@ impl<'a> TypedCells<'a> {
     ) -> Result<SceneOfPlaces> {
         let question = question.into();
         let survey = if self.are_places(&question) { self.survey_of(&question, run)? } else { None };
-        let Some(PlannedSurvey { plan, folder, is_temporary, limit, .. }) = survey else {
+        let Some(PlannedSurvey { plan, folder, limit, .. }) = survey else {
             return Ok(SceneOfPlaces::Whole(Box::new(whole(run)?)));
         };
         run.summary.remarks(plan.remarks.clone());
         let survey = SurveyPlaces::new(plan, folder.path(), limit)?;
-        Ok(SceneOfPlaces::Tiles { survey: Box::new(survey), folder, is_temporary })
+        Ok(SceneOfPlaces::Tiles { survey: Box::new(survey), folder })
     }
 
     /// Plans tiles, or answers in tiles what one model has no memory for and passes it to `write`; `false` where one
@@ -159,8 +152,8 @@ impl<'a> TypedCells<'a> {
             return refuse(format!("--plan: -o {} comes later, with `belvedere city merge`", output.display()));
         }
         check_folder(folder)?;
-        let plan = Plan::make(&self.plan_params(), &run.control())?.with_grid_cells(&self.cells)?;
-        let plan = match self.tiles.memory.memory {
+        let plan = Plan::make(&self.scene.plan_params(), &run.control())?.with_grid_cells(&self.cells)?;
+        let plan = match self.scene.memory.memory {
             Some(memory) => plan.fitting(memory.0)?,
             None => plan,
         };
@@ -172,70 +165,31 @@ impl<'a> TypedCells<'a> {
         Ok(())
     }
 
-    fn plan_params(&self) -> PlanParams {
-        let input = &self.scene.input;
-        PlanParams {
-            clouds: input.clouds.clone(),
-            crs: input.crs.clone(),
-            crs_against_files: if input.crs_override { Insistence::Insist } else { Insistence::Refuse },
-            flown: input.flown,
-            program: PROGRAM.to_owned(),
-            ..PlanParams::default()
-        }
-    }
-
     fn changed(&self, plan: Plan, question: &Question) -> Result<Plan> {
         planned(plan, &self.scene.plan, self.far, self.trees.map(|trees| (trees, latitude(question))))
     }
 
-    /// The plan of a survey that one model has no memory for; `None` where one model is to be made.
+    /// The plan of a survey whose cells are answered in tiles; `None` where one model answers.
     pub(crate) fn survey(&self, question: &Question, run: &mut CommandContext) -> Result<Option<PlannedSurvey>> {
-        let Some(large) = self.too_large() else { return Ok(None) };
-        if self.are_places(question) {
-            return Ok(None);
+        match self.are_places(question) || self.unknown(question).is_some() {
+            true => Ok(None),
+            false => self.survey_of(question, run),
         }
-        match (self.unknown(question), self.tiles.memory.memory) {
-            (None, _) => self.survey_of(question, run),
-            // one model is tried, as if there were no tiles
-            (Some(_), None) => Ok(None),
-            (Some(what), Some(_)) => refuse(format!(
-                "{what} is not there in tiles, and {}; leave it out, or allow more memory",
-                large.in_words()
-            )),
-        }
-    }
-
-    /// Returns the need of memory of one model, if it is more than may be used.
-    fn too_large(&self) -> Option<TooLarge> {
-        let input = &self.scene.input;
-        // a part that was typed is one model
-        let limit = memory::limit(&self.tiles.memory).filter(|_| input.bounds.is_none())?;
-        TooLarge::of(&input.clouds, limit)
     }
 
     fn survey_of(&self, question: &Question, run: &mut CommandContext) -> Result<Option<PlannedSurvey>> {
-        let input = &self.scene.input;
-        let Some(large) = self.too_large() else { return Ok(None) };
-        let limit = large.limit;
-        let options = input.read_options();
-        let kept = run.cache.as_ref().and_then(|cache| cache.survey_folder(&input.clouds, &options));
-        let beside = self.output.first().map(|output| output.with_extension("tiles"));
-        let is_temporary = kept.is_none();
-        let folder = match (kept, beside) {
-            (Some(kept), _) => kept,
-            (None, Some(beside)) => made_beside(&beside)?,
-            (None, None) => return Ok(None),
-        };
-        let plan = Plan::kept_in(folder.path(), &self.plan_params(), &run.control())?;
-        let plan = plan.with_grid_cells(&self.cells)?.fitting(limit)?;
+        let Some(large) = self.scene.too_large() else { return Ok(None) };
+        let folder = TilesFolder::of(self.scene, self.output, run)?;
+        let plan = Plan::kept_in(folder.path(), &self.scene.plan_params(), &run.control())?;
+        let plan = plan.with_grid_cells(&self.cells)?.fitting(large.limit)?;
         run.summary.remarks([large.remark_on_tiles(plan.tile_size)]);
         let plan = self.changed(plan, question)?;
-        Ok(Some(PlannedSurvey { plan, folder, is_temporary, limit, cells: self.cells.clone() }))
+        Ok(Some(PlannedSurvey { plan, folder, limit: large.limit, cells: self.cells.clone() }))
     }
 
     /// Answers a question tile by tile.
     pub(crate) fn answer(survey: PlannedSurvey, question: Question, run: &mut CommandContext) -> Result<TiledAnswers> {
-        let PlannedSurvey { plan, folder, is_temporary, limit, cells } = survey;
+        let PlannedSurvey { plan, folder, limit, cells } = survey;
         let survey = SurveyQuestion::new(plan, folder.path(), question.clone(), limit, &run.control())?;
         let start = Instant::now();
         let report = survey.run(&|| start.elapsed().as_secs_f64(), &run.control())?;
@@ -244,10 +198,7 @@ impl<'a> TypedCells<'a> {
         let answers = survey.answers(&report, &run.control())?;
         run.name_question(&question, &Places::Cells(cells), answers.time_zone());
         run.answered(&answers);
-        match (&run.cache, is_temporary) {
-            (Some(cache), false) => cache.make_room_beside(&folder),
-            _ => folder.remove(),
-        }
+        folder.finish(run);
         let on = answers.found.on_targets(&answers.measures[0]);
         Ok(TiledAnswers { answers, on })
     }
@@ -267,18 +218,8 @@ impl<'a> TypedCells<'a> {
 
     /// Returns the typed arguments that places in tiles do not support.
     fn unknown_of_places(&self, question: &Question) -> Option<String> {
-        let SceneInput { input, balls, .. } = self.scene;
-        let flags = [
-            ("--up", !matches!(input.up, UpChoice::Z)),
-            ("--skip-distant", input.skip_distant),
-            ("--lines", !input.flight_lines.is_empty()),
-            ("--dates", input.dates.is_some()),
-            ("--only-classes", !input.only_classes.is_empty()),
-            ("--trees", balls.trees.is_some()),
-            ("--orient", balls.orient.is_some()),
-            ("--scene-config", balls.config.scene_config.is_some()),
-        ];
-        let flag = flags.iter().chain(&self.others).find(|(_, is_given)| *is_given).map(|(flag, _)| (*flag).to_owned());
+        let of_question = || self.others.iter().find(|(_, is_given)| *is_given).map(|(flag, _)| *flag);
+        let flag = self.scene.not_in_tiles().or_else(of_question).map(str::to_owned);
         flag.or_else(|| question.needs_whole().map(|what| format!("what was typed ({what})")))
     }
 }
@@ -288,7 +229,7 @@ pub(crate) enum SceneOfPlaces {
     /// One model.
     Whole(Box<Scene>),
     /// A survey of which only some tiles are built.
-    Tiles { survey: Box<SurveyPlaces>, folder: SurveyFolder, is_temporary: bool },
+    Tiles { survey: Box<SurveyPlaces>, folder: TilesFolder },
 }
 
 impl SceneOfPlaces {
@@ -301,11 +242,8 @@ impl SceneOfPlaces {
 
     /// Refuses answers that missing tiles may change, and removes tiles that nobody keeps.
     pub(crate) fn finish(&self, run: &CommandContext) -> Result<()> {
-        let Self::Tiles { survey, folder, is_temporary } = self else { return Ok(()) };
-        match (&run.cache, is_temporary) {
-            (Some(cache), false) => cache.make_room_beside(folder),
-            _ => folder.remove(),
-        }
+        let Self::Tiles { survey, folder } = self else { return Ok(()) };
+        folder.finish(run);
         Ok(survey.check()?)
     }
 }
@@ -321,15 +259,46 @@ fn latitude(question: &Question) -> Option<f64> {
     place.location.map(|[latitude, _]| latitude.to_radians())
 }
 
-/// The folder of tiles that nobody keeps, beside the result.
-fn made_beside(folder: &Path) -> Result<SurveyFolder> {
-    SurveyFolder::make(folder).map_err(|error| match error {
-        Error::Io { source, .. } if source.kind() == ErrorKind::AlreadyExists => {
-            let what = "tiles would be made there, but it is there already, and not made by this program";
-            Usage(format!("{}: {what}; move it away", folder.display())).into()
+/// Folder of the tiles of a survey.
+pub(crate) struct TilesFolder {
+    folder: SurveyFolder,
+    /// True if nobody keeps the tiles.
+    is_temporary: bool,
+}
+
+impl TilesFolder {
+    /// Returns the kept folder of the tiles of a scene. Without a cache it is a new one beside the first of `outputs`,
+    /// or among temporary files.
+    pub(crate) fn of(scene: &SceneInput, outputs: &[PathBuf], run: &CommandContext) -> Result<Self> {
+        let (clouds, options) = (&scene.input.clouds, scene.input.read_options());
+        if let Some(folder) = run.cache.as_ref().and_then(|cache| cache.survey_folder(clouds, &options)) {
+            return Ok(Self { folder, is_temporary: false });
         }
-        error => error.into(),
-    })
+        let path = match outputs.first() {
+            Some(output) => output.with_extension("tiles"),
+            None => std::env::temp_dir().join(format!("belvedere-{}.tiles", std::process::id())),
+        };
+        let folder = SurveyFolder::make(&path).map_err(|error| match error {
+            Error::Io { source, .. } if source.kind() == ErrorKind::AlreadyExists => {
+                let what = "tiles would be made there, but it is there already, and not made by this program";
+                Usage(format!("{}: {what}; move it away", path.display())).into()
+            }
+            error => anyhow::Error::from(error),
+        })?;
+        Ok(Self { folder, is_temporary: true })
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Removes tiles that nobody keeps, and otherwise older scenes of a full cache.
+    pub(crate) fn finish(&self, run: &CommandContext) {
+        match (&run.cache, self.is_temporary) {
+            (Some(cache), false) => cache.make_room_beside(&self.folder),
+            _ => self.folder.remove(),
+        }
+    }
 }
 
 /// The plan with what will be built, before far terrain, and with light through trees at a latitude, radians, where one

@@ -1,13 +1,15 @@
 //! Converts arguments to clouds, scene models and views. Calls the library; decides and computes nothing itself.
 
+mod joined_scene;
 mod loaded_scene;
 pub(crate) mod params;
 mod plan;
-mod scene_in_reach;
 
+pub(crate) use joined_scene::ScenePart;
 pub(crate) use loaded_scene::LoadedScene;
 pub(crate) use plan::{areas, mesh_in, planned};
-pub(crate) use scene_in_reach::scene_in_reach;
+
+use joined_scene::joined_scene;
 
 use crate::arguments::{
     CloudInput, MethodChoice, PlanArguments, ProfileChoice, SceneInput, UnprovenChoice, UpChoice, refuse,
@@ -20,7 +22,7 @@ use anyhow::{Result, anyhow, bail};
 use belvedere::apps::ask::{self};
 use belvedere::cache::{BuiltScene, ReadBefore, model_of_balls, scene_model};
 use belvedere::depth::Profile;
-use belvedere::io::{ReadReport, UpAxis, is_ball_file, read_cloud, web_address};
+use belvedere::io::{ReadOptions, ReadReport, UpAxis, is_ball_file, read_cloud, web_address};
 use belvedere::model::{BallParams, ModelParams, SceneModel};
 use belvedere::query::UnprovenAs;
 use belvedere::vector::to_f32;
@@ -32,12 +34,12 @@ use std::sync::Arc;
 
 /// Reads the cloud and reports on it.
 pub(crate) fn read(input: &CloudInput, run: &mut CommandContext) -> Result<PointCloud> {
-    Ok(read_counted(input, run)?.0)
+    Ok(read_counted(input, &input.read_options(), run)?.0)
 }
 
 /// Reads the cloud for results whose rows belong to the rows of the file, which a point left out would shift.
 pub(crate) fn read_every_row(input: &CloudInput, run: &mut CommandContext) -> Result<PointCloud> {
-    let (cloud, report) = read_counted(input, run)?;
+    let (cloud, report) = read_counted(input, &input.read_options(), run)?;
     refuse_part(input)?;
     check_every_row(&report)?;
     Ok(cloud)
@@ -81,9 +83,12 @@ pub(crate) fn check_every_row(report: &ReadReport) -> Result<()> {
     )
 }
 
-fn read_counted(input: &CloudInput, run: &mut CommandContext) -> Result<(PointCloud, ReadReport)> {
-    let options = input.read_options();
-    let read = run.stage("reading", 0, |control| read_cloud(&input.clouds, &options, control));
+fn read_counted(
+    input: &CloudInput,
+    options: &ReadOptions,
+    run: &mut CommandContext,
+) -> Result<(PointCloud, ReadReport)> {
+    let read = run.stage("reading", 0, |control| read_cloud(&input.clouds, options, control));
     let (cloud, report) = read.map_err(|error| named_for_part(input, error))?;
     run.summary.add("points", cloud.len());
     run.summary.add("reading", Summary::of(&report));
@@ -121,8 +126,18 @@ pub(crate) enum KeepPoints {
 
 /// The scene of a ball file, or of a cloud, as it will be with what is planned.
 pub(crate) fn scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandContext) -> Result<LoadedScene> {
+    scene_in_reach(arguments, None, points, run)
+}
+
+/// The same, of a question that needs only a part of it.
+pub(crate) fn scene_in_reach(
+    arguments: &SceneInput,
+    part: Option<ScenePart<'_>>,
+    points: KeepPoints,
+    run: &mut CommandContext,
+) -> Result<LoadedScene> {
     let points = if arguments.plan.clear.is_empty() { points } else { KeepPoints::Keep };
-    let present = present_scene(arguments, points, run)?;
+    let present = present_scene(arguments, part, points, run)?;
     as_planned(present, &arguments.plan, run)
 }
 
@@ -140,7 +155,7 @@ pub(crate) fn present_and_planned(
     arguments: &SceneInput,
     run: &mut CommandContext,
 ) -> Result<(LoadedScene, Option<LoadedScene>)> {
-    let mut present = present_scene(arguments, KeepPoints::Keep, run)?;
+    let mut present = present_scene(arguments, None, KeepPoints::Keep, run)?;
     let plan = &arguments.plan;
     let is_planned = !plan.add.is_empty() || !plan.clear.is_empty();
     let planned = is_planned.then(|| as_planned(present.clone(), plan, run)).transpose()?;
@@ -154,7 +169,12 @@ pub(crate) fn is_file(path: &Path) -> bool {
 }
 
 /// The scene of a ball file, or of a cloud, as it is.
-fn present_scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandContext) -> Result<LoadedScene> {
+fn present_scene(
+    arguments: &SceneInput,
+    part: Option<ScenePart<'_>>,
+    points: KeepPoints,
+    run: &mut CommandContext,
+) -> Result<LoadedScene> {
     let parameters = arguments.balls.parameters()?;
     let profile = parameters.profile();
     if let [path] = &arguments.input.clouds[..]
@@ -167,6 +187,9 @@ fn present_scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandCo
         run.summary.add("balls_read", model.balls().len());
         return Ok(LoadedScene::without_points(model, profile));
     }
+    if let Some((model, cloud, left_out)) = joined_scene(arguments, part, run)? {
+        return Ok(LoadedScene { model, cloud: Arc::new(cloud), left_out, profile, ground_store: None });
+    }
     let balls = parameters.balls(MethodChoice::Carved)?;
     if points == KeepPoints::LetGo
         && let Some(model) = kept_scene(&arguments.input, &parameters, balls, run)?
@@ -178,7 +201,8 @@ fn present_scene(arguments: &SceneInput, points: KeepPoints, run: &mut CommandCo
     let (mut cloud, left_out, notes) = match kept {
         Some((cloud, notes)) => (cloud, ReadReport::default(), notes),
         None => {
-            let (read, notes) = run.aside(|run| read_counted(&arguments.input, run));
+            let options = arguments.input.read_options();
+            let (read, notes) = run.aside(|run| read_counted(&arguments.input, &options, run));
             let (cloud, left_out) = read?;
             (cloud, left_out, notes.into_entries())
         }

@@ -306,8 +306,8 @@ impl PointCloud {
     }
 }
 
-/// Spacing of the origins of surveys, metres. It is a multiple of blocks of 64 m, and large so that neighbouring surveys
-/// share an origin.
+/// Spacing of the origins of surveys, metres. It is a multiple of blocks of 64 m, and large so that neighbouring
+/// surveys share an origin.
 const ORIGIN_STEP: f64 = 1024.0;
 /// Width from which on a cloud has the origin of a survey, metres. Smaller objects need more digits.
 const MIN_SURVEY: f64 = 64.0;

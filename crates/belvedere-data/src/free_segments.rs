@@ -1,7 +1,9 @@
 //! Pulses as columns of numbers: the pieces of lines that they prove empty.
 
+use crate::cast::to_row;
 use crate::frame::{FARTHEST, is_near};
 use crate::{Error, Parameter, Result};
+use rayon::prelude::*;
 
 /// Ways that a pulse may go: along three axes, to both sides.
 const WAYS: u8 = 6;
@@ -43,6 +45,24 @@ impl FreeSegmentColumns {
         self.slopes.append(&mut other.slopes);
         self.lengths.append(&mut other.lengths);
         self.ways.append(&mut other.ways);
+    }
+
+    /// The same rows sorted by their numbers, so that their order does not depend on where they come from.
+    #[must_use]
+    pub fn in_order(self) -> Self {
+        let key = |row: u32| {
+            let row = row as usize;
+            let start = self.starts.get(row).map(|start| start.map(f32::to_bits));
+            let length = self.lengths.get(row).map(|length| length.to_bits());
+            (start, self.slopes.get(row), length, self.ways.get(row))
+        };
+        let mut rows: Vec<u32> = (0..to_row(self.starts.len())).collect();
+        // those of one tile of a survey are sorted already
+        if rows.is_sorted_by(|&a, &b| key(a) <= key(b)) {
+            return self;
+        }
+        rows.par_sort_by(|&a, &b| key(a).cmp(&key(b)));
+        self.select(&rows)
     }
 
     /// The rows of these numbers, in their order.

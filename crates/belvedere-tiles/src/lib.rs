@@ -38,6 +38,7 @@ pub use plan::side_files::SideFile;
 pub use plan::stage::Stage;
 pub use plan::{Plan, PlanFrame};
 pub use run::any_size::{SurveyCells, SurveyPart, SurveyQuestion, TooLarge};
+pub use run::joined::JoinedSurvey;
 pub use run::merge::{Merged, UnfinishedRun, merge, merged_within, write_catalogue};
 pub use run::places::SurveyPlaces;
 pub use run::status::{StageStatus, Status, status};

@@ -1,8 +1,6 @@
 //! Flags of lines of sight and viewsheds.
 
-use super::{
-    MemoryArgument, NorthArguments, Numbers, SceneInput, TilesArguments, Usage, above_zero, at_most, height, length,
-};
+use super::{NorthArguments, Numbers, SceneInput, TilesArguments, Usage, above_zero, at_most, height, length};
 use belvedere::apps::ask::HowSure;
 use belvedere::ground::GroundPoints;
 use belvedere::query::{Curvature, MAX_RANDOM_PAIRS};
@@ -70,8 +68,6 @@ pub(crate) struct LineOfSightArguments {
     /// inside). With --terrain: block_terrain, 1 where the terrain blocks first.
     #[arg(short, long = "output", value_name = "OUT", required_unless_present = "from", help_heading = "Result")]
     pub(crate) outputs: Vec<PathBuf>,
-    #[command(flatten)]
-    pub(crate) memory: MemoryArgument,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }

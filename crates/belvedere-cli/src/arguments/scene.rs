@@ -176,6 +176,8 @@ pub(crate) struct SceneInput {
     pub(crate) plan: PlanArguments,
     #[command(flatten)]
     pub(crate) balls: SceneBalls,
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgument,
 }
 
 /// Construction of the balls of a scene, for every command that builds them. Further parameters are in a file.
@@ -231,10 +233,10 @@ pub(crate) struct BallShape {
 pub(crate) struct MemoryArgument {
     /// Memory that may be used, such as 3G or 800M [default: half of what is free]
     ///
-    /// What needs more is done in parts, where the survey is LAS or LAZ files. Shadow, sun hours, sky view, irradiance
-    /// and viewsheds on cells are answered in tiles, as rasters (.tif), maps (.png) and all that follows from them.
-    /// Tiles are kept (`belvedere cache`): a command that was stopped goes on, and the next question finds the balls.
-    /// Questions about places within a distance read only the points that they reach.
+    /// Where one model of LAS or LAZ files needs more, its balls are made in tiles. Shadow, sun hours, sky view,
+    /// irradiance and viewsheds on cells are answered in tiles as well. Other questions need a third of the memory of
+    /// one model, and less where they reach only a distance from places. Answers are the same. Tiles are kept
+    /// (`belvedere cache`): a command that was stopped goes on, and the next question finds the balls.
     #[arg(long, value_name = "SIZE", help_heading = "Scene", hide_short_help = true)]
     pub(crate) memory: Option<MemoryAmount>,
 }
@@ -242,8 +244,6 @@ pub(crate) struct MemoryArgument {
 /// Tiles of a question on cells.
 #[derive(Args, Clone)]
 pub(crate) struct TilesArguments {
-    #[command(flatten)]
-    pub(crate) memory: MemoryArgument,
     /// Plan tiles in this folder for many computers, instead of answering
     ///
     /// The steps of city compute the plan and join the tiles. None of them takes more memory than is allowed.

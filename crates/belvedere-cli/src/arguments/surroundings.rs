@@ -1,8 +1,8 @@
 //! Flags of mesh targets, landmarks, protected views, isovists and horizons.
 
 use super::{
-    Earth, FarTerrainArguments, GivingWay, GroundChoice, IntervalArgument, MapPosition, MemoryArgument, NorthArguments,
-    SceneInput, above_zero, height,
+    Earth, FarTerrainArguments, GivingWay, GroundChoice, IntervalArgument, MapPosition, NorthArguments, SceneInput,
+    above_zero, height,
 };
 use belvedere::query::BackFaces;
 use clap::{Args, ValueEnum};
@@ -204,8 +204,6 @@ pub(crate) struct IsovistArguments {
     pub(crate) output: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) interval: IntervalArgument,
-    #[command(flatten)]
-    pub(crate) memory: MemoryArgument,
     #[command(flatten)]
     pub(crate) scene: SceneInput,
 }

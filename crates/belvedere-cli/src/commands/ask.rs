@@ -1,6 +1,6 @@
 //! `belvedere ask`: questions in JSON, and those of rasters.
 
-use crate::arguments::{AreaOutputs, AskArguments, CloudInput, Global, MapPosition, SkyOutputs, refuse};
+use crate::arguments::{AreaOutputs, AskArguments, CloudInput, Global, SkyOutputs, refuse};
 use crate::in_tiles::{TiledAnswers, TypedCells};
 use crate::inputs::typed_places::on_map;
 use crate::outputs::formats::{check_outputs, extension};
@@ -12,6 +12,7 @@ use anyhow::{Context, Result};
 use belvedere::apps::ask::{
     Answers, Found, GivenPlaces, GridCells, PlacedQuestion, Question, Scene, end_on_map, position_on_map,
 };
+use belvedere::apps::isovist::IsovistParams;
 use belvedere::apps::result_columns::{ResultColumn, ResultValues};
 use belvedere::io::read_weather;
 use belvedere::report::rounded;
@@ -33,11 +34,9 @@ pub(crate) fn run(arguments: &AskArguments, global: &Global) -> Result<Summary> 
     if is_of_cells && cells.answered(placed.question.clone(), write, &mut run)? {
         return Ok(run.finish());
     }
-    let distance = reach(&placed, arguments);
+    let part = reach(&placed, arguments).filter(|_| !places.is_empty()).map(|distance| (&places[..], distance));
     let whole = |run: &mut CommandContext| {
-        let memory = &arguments.tiles.memory;
-        let input = pipeline::scene_in_reach((&arguments.scene, memory), &places, distance, run)?;
-        let mut scene = pipeline::scene(&input, KeepPoints::Keep, run)?;
+        let mut scene = pipeline::scene_in_reach(&arguments.scene, part, KeepPoints::Keep, run)?;
         arguments.far.set(&mut scene, run)?;
         scene.into_question_scene(None, arguments.shell.shell, run)
     };
@@ -111,7 +110,7 @@ fn check(placed: &PlacedQuestion, arguments: &AskArguments) -> Result<()> {
 }
 
 /// Returns the places that are given one by one, as far as headers tell in coordinates of the file.
-fn places_in_file_coordinates(places: &GivenPlaces, input: &CloudInput) -> Result<Vec<MapPosition>> {
+fn places_in_file_coordinates(places: &GivenPlaces, input: &CloudInput) -> Result<Vec<[f64; 2]>> {
     let given = places.on_map();
     let map = if given.is_empty() { None } else { on_map(input)? };
     let position = |place: [f64; 2]| match &map {
@@ -119,13 +118,14 @@ fn places_in_file_coordinates(places: &GivenPlaces, input: &CloudInput) -> Resul
         Some((crs, bounds)) => end_on_map(place, crs, *bounds),
         None => Ok(place),
     };
-    given.into_iter().map(|place| Ok(MapPosition(position(place)?, None))).collect()
+    given.into_iter().map(|place| Ok(position(place)?)).collect()
 }
 
 /// Returns the distance from its places within which the question needs the scene, metres; `None` for any distance.
 fn reach(placed: &PlacedQuestion, arguments: &AskArguments) -> Option<f64> {
     let distance = match &placed.question {
         Question::LineOfSight(_) => Some(0.0),
+        Question::Isovist(question) => Some(question.max_distance.unwrap_or(IsovistParams::default().max_range)),
         Question::Viewshed(question) => question.limits.max_distance,
         _ => None,
     };

@@ -30,7 +30,7 @@ pub(crate) fn run(arguments: &GlareArguments, global: &Global) -> Result<Summary
     // wrong reflectors must not be found out after the balls were made
     let mut question = question(arguments, read(arguments, &Frame::default(), &mut run)?.0)?;
     question.check()?;
-    let scene = arguments.eyes.scene(&arguments.scene, Some(&arguments.far), &mut run)?;
+    let scene = arguments.eyes.scene(&arguments.scene, None, Some(&arguments.far), &mut run)?;
     let (reflectors, names) = read(arguments, scene.frame(), &mut run)?;
     question.reflectors = reflectors;
     let standing = arguments.eyes.standing((scene.frame(), &scene.model().bounds()), &mut run)?;

@@ -24,7 +24,7 @@ pub(crate) fn run(arguments: &HorizonArguments, global: &Global) -> Result<Summa
     question.check()?;
     check_formats(arguments, arguments.eyes.min_count()?)?;
     let mut run = CommandContext::new(global);
-    let scene = arguments.eyes.scene(&arguments.scene, Some(&arguments.far), &mut run)?;
+    let scene = arguments.eyes.scene(&arguments.scene, None, Some(&arguments.far), &mut run)?;
     let standing = arguments.eyes.standing((scene.frame(), &scene.model().bounds()), &mut run)?;
     check_formats(arguments, standing.len())?;
     let answers = run.ask(&scene, &question, &Places::Eyes(standing))?;

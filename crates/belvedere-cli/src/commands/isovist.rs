@@ -3,7 +3,6 @@
 use crate::arguments::{Global, IsovistArguments, refuse};
 use crate::inputs::observers::rows_as_given;
 use crate::outputs::formats::{check_outputs, extension};
-use crate::pipeline::scene_in_reach;
 use crate::run::CommandContext;
 use crate::summary::Summary;
 use anyhow::Result;
@@ -33,9 +32,9 @@ pub(crate) fn run(arguments: &IsovistArguments, global: &Global) -> Result<Summa
     let usual = IsovistParams::default().max_range;
     let is_typed = arguments.eyes.eyes.is_none();
     let distance = is_typed.then(|| arguments.max_distance.unwrap_or(usual));
-    let typed = (&arguments.scene, &arguments.memory);
-    let input = scene_in_reach(typed, &arguments.eyes.eye, distance, &mut run)?;
-    let scene = arguments.eyes.scene(&input, None, &mut run)?;
+    let places: Vec<[f64; 2]> = arguments.eyes.eye.iter().map(|place| place.0).collect();
+    let part = distance.map(|distance| (&places[..], distance));
+    let scene = arguments.eyes.scene(&arguments.scene, part, None, &mut run)?;
     let standing = arguments.eyes.standing((scene.frame(), &scene.model().bounds()), &mut run)?;
     check_pictures(arguments, standing.len())?;
     let answers = run.ask(&scene, &question, &Places::Eyes(standing))?;

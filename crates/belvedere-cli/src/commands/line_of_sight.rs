@@ -1,6 +1,6 @@
 //! `belvedere line-of-sight`.
 
-use crate::arguments::{Global, LineOfSightArguments, MapPosition, refuse};
+use crate::arguments::{Global, LineOfSightArguments, refuse};
 use crate::inputs::far_terrain::set_terrain;
 use crate::inputs::line_pairs::{ENDS, pairs};
 use crate::inputs::observers::{ObserverUse, observer_rows};
@@ -28,10 +28,9 @@ pub(crate) fn run(arguments: &LineOfSightArguments, global: &Global) -> Result<S
     let mut run = CommandContext::new(global);
     // ends may need the ground
     let points = if arguments.lines.random.is_some() { KeepPoints::LetGo } else { KeepPoints::Keep };
-    let ends: Vec<MapPosition> = arguments.lines.from.iter().chain(&arguments.lines.to).copied().collect();
-    let distance = arguments.terrain.is_none().then_some(0.0);
-    let input = pipeline::scene_in_reach((&arguments.scene, &arguments.memory), &ends, distance, &mut run)?;
-    let mut scene = pipeline::scene(&input, points, &mut run)?;
+    let ends: Vec<[f64; 2]> = arguments.lines.from.iter().chain(&arguments.lines.to).map(|end| end.0).collect();
+    let part = (arguments.terrain.is_none() && !ends.is_empty()).then_some((&ends[..], 0.0));
+    let mut scene = pipeline::scene_in_reach(&arguments.scene, part, points, &mut run)?;
     if let Some(path) = &arguments.terrain {
         set_terrain(path, &mut scene, &mut run)?;
     }

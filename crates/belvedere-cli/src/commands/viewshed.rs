@@ -3,7 +3,7 @@
 mod results;
 mod viewshed_observers;
 
-use crate::arguments::{Global, GroundChoice, MapPosition, ViewshedArguments};
+use crate::arguments::{Global, GroundChoice, ViewshedArguments};
 use crate::in_tiles::{TiledAnswers, TypedCells};
 use crate::inputs::far_terrain::set_terrain;
 use crate::outputs::formats::{check_output, check_outputs, extension, warn_of_geojson};
@@ -37,10 +37,10 @@ pub(crate) fn run(arguments: &ViewshedArguments, global: &Global) -> Result<Summ
     if in_tiles(arguments, &question, &mut run)? {
         return Ok(run.finish());
     }
-    let places: Vec<MapPosition> = arguments.who.observer.iter().chain(&arguments.who.target).copied().collect();
-    let distance = reach(arguments);
-    let input = pipeline::scene_in_reach((&arguments.scene, &arguments.tiles.memory), &places, distance, &mut run)?;
-    let mut scene = pipeline::scene(&input, KeepPoints::Keep, &mut run)?;
+    let places: Vec<[f64; 2]> =
+        arguments.who.observer.iter().chain(&arguments.who.target).map(|place| place.0).collect();
+    let part = reach(arguments).map(|distance| (&places[..], distance));
+    let mut scene = pipeline::scene_in_reach(&arguments.scene, part, KeepPoints::Keep, &mut run)?;
     if let Some(path) = &arguments.terrain {
         set_terrain(path, &mut scene, &mut run)?;
     }

@@ -2,7 +2,7 @@
 
 use crate::arguments::{EyesArguments, FarTerrainArguments, MapPosition, SceneInput};
 use crate::outputs::formats::extension;
-use crate::pipeline::{self, KeepPoints};
+use crate::pipeline::{self, KeepPoints, ScenePart};
 use crate::run::CommandContext;
 use anyhow::Result;
 use belvedere::apps::ask::{self, Standing, remark_on_unused};
@@ -30,16 +30,17 @@ impl EyesArguments {
         Ok(standing)
     }
 
-    /// The scene around the observers, before far terrain if there is any.
+    /// The scene around the observers, or the part of it that the question needs, before far terrain if there is any.
     pub(crate) fn scene(
         &self,
         input: &SceneInput,
+        part: Option<ScenePart<'_>>,
         far: Option<&FarTerrainArguments>,
         run: &mut CommandContext,
     ) -> Result<ask::Scene> {
         let needs_ground = self.eyes.is_some() || self.eye.iter().any(|place| place.1.is_none());
         let points = if needs_ground { KeepPoints::Keep } else { KeepPoints::LetGo };
-        let mut scene = pipeline::scene(input, points, run)?;
+        let mut scene = pipeline::scene_in_reach(input, part, points, run)?;
         if let Some(far) = far {
             far.set(&mut scene, run)?;
         }

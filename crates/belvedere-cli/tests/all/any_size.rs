@@ -18,10 +18,12 @@ fn bands(place: &Workplace, name: &str) -> Vec<Vec<u8>> {
 fn assert_alike(place: &Workplace, one: &str, other: &str) {
     let (one, other) = (bands(place, one), bands(place, other));
     assert_eq!(one.len(), other.len());
-    for (one, other) in one.iter().zip(&other) {
+    for (number, (one, other)) in one.iter().zip(&other).enumerate() {
         assert_eq!(one.len(), other.len());
         let differ = one.iter().zip(other).filter(|(a, b)| a != b).count();
-        assert!(differ * 50 < one.len(), "{differ} of {}", one.len());
+        // tiles measure unproven lengths block by block
+        let allowed = if number == 0 { 0 } else { one.len() / 1000 };
+        assert!(differ <= allowed, "{differ} of {}", one.len());
     }
 }
 
@@ -81,14 +83,10 @@ fn what_tiles_do_not_know_is_named_where_memory_was_typed() {
     let place = Workplace::new();
     town(&place);
     for (flag, word) in [
-        ("--casters", "--casters"),
-        ("--edge-mask mask.tif", "--edge-mask"),
         ("--trees opaque", "--trees"),
         ("--lines 1", "--lines"),
         ("--dates 2026", "--dates"),
         ("--only-classes 2,6", "--only-classes"),
-        ("--shell 0.1", "--shell"),
-        ("-o points.laz", "points.laz"),
     ] {
         let line = format!("shadow town/cloud.laz --sun 150,30 -o out.tif {flag} --memory 118M --no-cache");
         place.refusal(2, &line, &[word, "in tiles"]);
@@ -104,28 +102,77 @@ fn what_tiles_do_not_know_is_named_where_memory_was_typed() {
 }
 
 #[test]
+fn what_cells_in_tiles_do_not_give_comes_from_a_scene_that_is_made_in_tiles() {
+    let place = Workplace::new();
+    town(&place);
+    let info = place.summary("info town/cloud.laz");
+    let [x, y] = [0, 1].map(|axis| info["min_corner"][axis].as_f64().unwrap() + 45.0);
+    let shadow = "shadow town/cloud.laz --sun 150,30 --cell 1";
+    let view = format!("viewshed town/cloud.laz --cell 1 --observer {x},{y},30");
+    for (line, outputs) in [
+        (format!("{shadow} --casters"), vec!["out.tif"]),
+        (format!("{shadow} --edge-mask mask.tif"), vec!["out.tif", "mask.tif"]),
+        (format!("{shadow} --shell 0.1"), vec!["out.tif"]),
+        (shadow.to_owned(), vec!["out.laz"]),
+        ("shadow town/cloud.laz --sun 150,30 --self".to_owned(), vec!["out.csv"]),
+        (format!("{view} --masks masks.npy"), vec!["out.tif", "masks.npy"]),
+        (view.clone(), vec!["out.geojson"]),
+        (format!("horizon town/cloud.laz --observer {x},{y}"), vec!["out.csv"]),
+        ("landmark town/cloud.laz --target-class 6 --cell 4".to_owned(), vec!["out.tif"]),
+    ] {
+        let line = format!("{line} -o {} --cache kept", outputs[0]);
+        let whole = place.summary(&line);
+        // rasters quote their command
+        let contents = |name: &str| match name.ends_with(".tif") {
+            true => numbers(&place, name).into_iter().flat_map(|(_, band)| band).flat_map(f32::to_le_bytes).collect(),
+            false => place.bytes(name),
+        };
+        let expected: Vec<Vec<u8>> = outputs.iter().map(|name| contents(name)).collect();
+        outputs.iter().for_each(|name| std::fs::remove_file(place.path(name)).unwrap());
+        let joined = place.summary(&format!("{line} --memory 118M"));
+        assert!(remarks(&joined).contains(&"balls-in-tiles".to_owned()), "{joined}");
+        assert_eq!(joined["points"], whole["points"]);
+        for (name, expected) in outputs.iter().zip(expected) {
+            assert!(contents(name) == expected, "{line}: {name}");
+        }
+    }
+}
+
+#[test]
 fn a_question_about_a_place_reads_what_is_around_it() {
     let place = Workplace::new();
     place.summary("simulate town -o town --extent 420 --density 1");
     let info = place.summary("info town/cloud.laz");
     let corner = |key: &str, axis: usize| info[key][axis].as_f64().unwrap();
     let [x, y] = [0, 1].map(|axis| corner("min_corner", axis) + 60.0);
-    let view = format!("viewshed town/cloud.laz --observer {x},{y},30 --max-distance 40 --cell 1 --no-cache");
-    let whole = place.summary(&format!("{view} -o whole.tif"));
-    let part = place.summary(&format!("{view} -o part.tif --memory 150M"));
-    assert!(remarks(&part).contains(&"part-of-survey".to_owned()), "{part}");
-    assert!(part["points"].as_u64() < whole["points"].as_u64());
-    assert_alike(&place, "whole.tif", "part.tif");
     let (x2, y2) = (x + 20.0, y + 10.0);
-    let line = format!("line-of-sight town/cloud.laz --observer {x},{y},30 --target {x2},{y2},28 --no-cache");
-    let one = place.summary(&line);
-    let other = place.summary(&format!("{line} --memory 150M"));
-    assert!(remarks(&other).contains(&"part-of-survey".to_owned()), "{other}");
-    assert_eq!(one["answer"], other["answer"]);
-    // places of a file may be anywhere: that is not done without the memory for it
     place.write("eyes.csv", format!("x,y,z\n{x},{y},30\n"));
-    let far = "isovist town/cloud.laz --observers eyes.csv --no-cache --memory 150M -o far.csv";
-    place.refusal(2, far, &["150 MB", "reaches all of it", "a distance"]);
+    for (question, is_part) in [
+        (format!("line-of-sight town/cloud.laz --observer {x},{y} --target {x2},{y2},28"), true),
+        (format!("isovist town/cloud.laz --observer {x},{y},30 --max-distance 40"), true),
+        // places of a file may be anywhere
+        ("isovist town/cloud.laz --observers eyes.csv --max-distance 40".to_owned(), false),
+    ] {
+        let line = format!("{question} --no-cache -o out.csv");
+        let whole = place.summary(&line);
+        let bytes = place.bytes("out.csv");
+        let joined = place.summary(&format!("{line} --memory 180M"));
+        assert!(remarks(&joined).contains(&"balls-in-tiles".to_owned()), "{joined}");
+        assert_eq!(joined["points"].as_u64() < whole["points"].as_u64(), is_part);
+        // rows of balls and points are those of the part
+        let shown = |bytes: &[u8]| {
+            let text = String::from_utf8(bytes.to_vec()).unwrap();
+            let is_row = |name: &str| ["block_ball", "block_source"].contains(&name);
+            let names: Vec<bool> = text.lines().next().unwrap().split(',').map(is_row).collect();
+            let rest = |line: &str| {
+                line.split(',').zip(&names).filter(|(_, is_row)| !**is_row).map(|(v, _)| v.to_owned()).collect()
+            };
+            text.lines().map(rest).collect::<Vec<Vec<String>>>()
+        };
+        assert_eq!(shown(&place.bytes("out.csv")), shown(&bytes), "{question}");
+    }
+    let far = "isovist town/cloud.laz --observers eyes.csv --no-cache --memory 130M -o far.csv";
+    place.refusal(2, far, &["130 MB", "allow more memory", "a distance"]);
     assert!(!place.path("far.csv").exists());
 }
 
@@ -167,13 +214,6 @@ fn a_viewshed_in_tiles_is_that_of_one_model() {
             assert_alike(&place, "whole.tif", "tiled.tif");
         }
         assert!(place.path("tiled.png").is_file());
-    }
-    for (flag, word) in
-        [("--masks masks.npy", "masks"), ("-o areas.geojson", "areas.geojson"), ("--shell 0.1", "--shell")]
-    {
-        let line = format!("{look} --observer {x},{y},30 -o out.tif {flag} --memory 118M");
-        place.refusal(2, &line, &[word, "in tiles"]);
-        assert!(!place.path("out.tif").exists());
     }
 }
 
@@ -318,11 +358,11 @@ fn questions_have_all_their_options_and_bands_in_tiles_and_in_plans() {
         }
         for ((name, expected), (own, found)) in of_whole.iter().zip(&of_tiles) {
             assert_eq!((name, expected.len()), (own, found.len()), "{question}");
-            let greatest = expected.iter().copied().filter(|value| value.is_finite()).fold(0.0, f32::max);
-            let differ = |(a, b): &(&f32, &f32)| a.is_nan() != b.is_nan() || (**a - **b).abs() > 0.05 * greatest;
+            let differ = |(a, b): &(&f32, &f32)| a.is_nan() != b.is_nan() || !a.is_nan() && a.to_bits() != b.to_bits();
             let count = expected.iter().zip(found).filter(differ).count();
-            // plans take noise and scanner from samples
-            assert!(count * 50 < found.len(), "{question}, {name}: {count} of {}", found.len());
+            // tiles measure unproven lengths block by block
+            let allowed = if name == "unproven" || question.contains("unproven") { found.len() / 500 } else { 0 };
+            assert!(count <= allowed, "{question}, {name}: {count} of {}", found.len());
         }
         // the same words, with other figures
         let words =
@@ -339,11 +379,11 @@ fn places_in_a_survey_of_any_size_have_the_answers_of_one_model() {
     let [x, y] = [0, 1].map(|axis| info["min_corner"][axis].as_f64().unwrap() + 30.0);
     place.write("points.csv", format!("x,y,z\n{x},{y},9\n{},{y},2\n{x},{},30\n", x + 25.0, y + 20.0));
     let here = "--zone UTC --location 52,4.4";
-    for (question, decimals) in [
-        ("shadow --sun 150,20".to_owned(), 1.0),
-        (format!("sun-hours --date 2026-03-21 --time-step-min 20 {here}"), 0.5),
-        ("sky-view --directions 145".to_owned(), 0.02),
-        ("irradiance --clear-sky haurwitz --location 52,4.4 --sun-cell-deg 8".to_owned(), 20.0),
+    for question in [
+        "shadow --sun 150,20".to_owned(),
+        format!("sun-hours --date 2026-03-21 --time-step-min 20 {here}"),
+        "sky-view --directions 145".to_owned(),
+        "irradiance --clear-sky haurwitz --location 52,4.4 --sun-cell-deg 8".to_owned(),
     ] {
         for places in [format!("--at {x},{y} --at {},{},12", x + 20.0, y + 10.0), "--targets points.csv".to_owned()] {
             let ask = |rest: &str| place.summary(&format!("{question} town/cloud.laz {places} --cache kept {rest}"));
@@ -357,18 +397,12 @@ fn places_in_a_survey_of_any_size_have_the_answers_of_one_model() {
             };
             let (expected, found) = (rows("whole.csv"), rows("tiled.csv"));
             assert!(expected.len() >= 2 && expected.len() == found.len(), "{expected:?}");
+            // place, then the first measure
             for (expected, found) in expected.iter().zip(&found) {
-                // place, then the first measure: noise and scanner are taken from samples
-                for (axis, near) in [0.001, 0.001, 0.02, decimals].into_iter().enumerate() {
-                    assert!(
-                        (expected[axis] - found[axis]).abs() <= near,
-                        "{question} {places}: {expected:?} {found:?}"
-                    );
-                }
+                assert_eq!(expected[..4], found[..4], "{question} {places}");
             }
         }
     }
-    place.refusal(2, "shadow town/cloud.laz --sun 150,30 --self -o out.laz --memory 118M", &["--self", "in tiles"]);
 }
 
 #[test]

@@ -2,11 +2,15 @@
 
 use super::blocked_pulses::blocked_pulses;
 use super::estimate_statistics::WholeStatistics;
+use super::findings::SurveyFindings;
 use super::flight_days::FlightDays;
+use super::in_space_order::space_order;
 use super::params::{BallParams, ModelParams};
 use super::prepare::{OrientedSurvey, prepare};
 use super::report::{BallsReport, BuildReport};
+use super::statistics::SurveyStatistics;
 use super::surfaces::close_surfaces;
+use super::survey_sample::is_counted;
 use super::{FINDINGS, FLIGHT_DAYS, LOOKS_UP, ModelParts, SceneModel};
 use crate::medial::{
     CarvedBalls, CarvedInput, MedialBalls, ShrinkParams, Side, Trees, carved_balls, shrink, vegetation_of_classes,
@@ -15,6 +19,7 @@ use crate::medial::{
 use crate::medium::{ExtinctionVoxels, MediumParams, PlantReturn, PlantReturns, estimate};
 use crate::planes::BuildingOutlines;
 use crate::query::{BallTree, BlockRule, BlockingTriangles};
+use belvedere_data::cast::to_row;
 use belvedere_data::control::Control;
 use belvedere_data::patches::SurfacePatches;
 use belvedere_data::{Error, Frame, PointCloud, Result};
@@ -52,6 +57,61 @@ impl SceneModel {
         let (survey, report) = prepare(Cow::Owned(cloud), params, whole.as_ref(), control)?;
         of_survey(survey, frame, (params, whole.as_ref()), report, control)
     }
+
+    /// Creates the model of a survey from models of its parts, each built with its `statistics`. `parts` has their
+    /// balls one after the other, `counts` of each. Rows are those of `cloud`, which has all points.
+    ///
+    /// # Errors
+    /// Those of [`SceneModel::from_parts`].
+    pub fn joined(
+        mut parts: ModelParts,
+        counts: &[usize],
+        cloud: &PointCloud,
+        statistics: &SurveyStatistics,
+    ) -> Result<Self> {
+        let rows = (0..).zip(cloud.positions.iter().enumerate());
+        let kept: Vec<u32> =
+            rows.filter(|(_, (row, p))| is_counted(**p, *row, &cloud.attributes)).map(|(number, _)| number).collect();
+        let counted = if kept.len() < cloud.len() { Cow::Owned(cloud.select(&kept)) } else { Cow::Borrowed(cloud) };
+        let findings = SurveyFindings { strips: statistics.strips.clone(), ..SurveyFindings::of_cloud(&counted) };
+        note_survey(&findings, &statistics.flight_days, &mut parts.provenance);
+        let order = order_of_balls(&parts.balls, counts, cloud);
+        if !parts.transmission.is_empty() {
+            parts.transmission = order.iter().filter_map(|&ball| parts.transmission.get(ball).copied()).collect();
+        }
+        parts.balls = parts.balls.select(&order);
+        Self::from_parts(parts)
+    }
+}
+
+/// Returns the order of the balls in the model of a cloud, for balls of its parts: those of points in the order of
+/// space, then those that fill gaps. The balls of each part are in this order, `counts` of them.
+fn order_of_balls(balls: &MedialBalls, counts: &[usize], cloud: &PointCloud) -> Vec<usize> {
+    let mut places: Vec<u32> = (0..to_row(cloud.len())).collect();
+    if let Some(rows) = space_order(cloud) {
+        (0..).zip(rows).for_each(|(place, row)| places[row as usize] = place);
+    }
+    let mut keys: Vec<(bool, u32, u32)> = Vec::with_capacity(balls.len());
+    let mut sources = (0..).zip(&balls.source);
+    for &count in counts {
+        let (mut are_fills, mut before) = (false, None);
+        for (ball, &source) in sources.by_ref().take(count) {
+            let place = places.get(source as usize).copied().unwrap_or(u32::MAX);
+            are_fills |= before >= Some(place);
+            before = Some(place);
+            keys.push((are_fills, if are_fills { 0 } else { place }, ball));
+        }
+    }
+    keys.sort_unstable();
+    keys.into_iter().map(|(_, _, ball)| ball as usize).collect()
+}
+
+/// Adds the findings about a survey, and the days of its flight, to the provenance of its model.
+fn note_survey(findings: &SurveyFindings, days: &FlightDays, provenance: &mut BTreeMap<String, String>) {
+    let findings = findings.to_text().filter(|_| !findings.is_empty());
+    provenance.extend(findings.map(|text| (FINDINGS.to_owned(), text)));
+    let days = days.to_text().filter(|_| !days.is_empty());
+    provenance.extend(days.map(|text| (FLIGHT_DAYS.to_owned(), text)));
 }
 
 fn of_survey(
@@ -123,13 +183,9 @@ fn of_survey(
     if let Some(offset) = report.scanner.as_ref().and_then(|scanner| scanner.time_offset) {
         offset.contradiction().note_in(&mut provenance);
     }
-    if let Some(found) = report.survey.to_text().filter(|_| !report.survey.is_empty()) {
-        provenance.insert(FINDINGS.to_owned(), found);
-    }
     // those of the whole are statistics of a part
-    let days = Some(&survey.flight_days).filter(|days| params.statistics.is_none() && !days.is_empty());
-    if let Some(days) = days.and_then(FlightDays::to_text) {
-        provenance.insert(FLIGHT_DAYS.to_owned(), days);
+    if params.statistics.is_none() {
+        note_survey(&report.survey, &survey.flight_days, &mut provenance);
     }
     // pulses at the edge of a part lack the balls beyond
     let checked = report.pulses.as_mut().filter(|_| params.statistics.is_none());

@@ -3,14 +3,12 @@
 use super::flight_days::FlightDays;
 use super::params::{BallParams, Carving, ModelParams, OrientBy};
 use super::prepare::{OrientedSurvey, prepare};
-use super::report::BuildReport;
 use super::statistics::{SurveyStatistics, lean};
 use super::survey_sample::{SampledRows, SurveySampler};
 use crate::ground::GROUND_REACH;
 use crate::medial::{BLOCK, CarvedInput, CarvedParams, RuleStatistics, rule_statistics};
 use crate::neighbors::FARTHEST_NEIGHBOR;
 use crate::pulses::{Means, ScannerReport, locate};
-use crate::strips::StripReport;
 use belvedere_data::control::Control;
 use belvedere_data::{Error, Parameter, PointCloud, Result};
 use std::borrow::Cow;
@@ -50,8 +48,6 @@ struct Estimate {
     is_from_the_ground: bool,
     /// Report of the search for the scanner along flight lines.
     scanner: ScannerReport,
-    /// Report of the model of the places.
-    places: BuildReport,
 }
 
 /// Statistics of a whole survey that is in memory, and how they were found.
@@ -59,8 +55,6 @@ pub(super) struct WholeStatistics {
     pub(super) statistics: SurveyStatistics,
     /// Report of the search for the scanner.
     pub(super) scanner: ScannerReport,
-    /// Heights of flight lines, where some of them differ.
-    pub(super) strips: Option<StripReport>,
 }
 
 impl WholeStatistics {
@@ -86,10 +80,10 @@ impl WholeStatistics {
             extremes: &sampler.finish().extremes,
         };
         match Estimate::new(&samples, params, control) {
-            Ok(Estimate { statistics, is_from_the_ground: false, scanner, places })
+            Ok(Estimate { statistics, is_from_the_ground: false, scanner })
                 if statistics.carves && !statistics.are_pulses_assumed() =>
             {
-                Ok(Some(Self { statistics, scanner, strips: places.survey.strips }))
+                Ok(Some(Self { statistics, scanner }))
             }
             Err(Error::Cancelled) => Err(Error::Cancelled),
             // the model of the cloud says what is wrong
@@ -139,9 +133,9 @@ impl Estimate {
         let free = if statistics.paths.is_empty() { params.clone() } else { params.clone().with_orient(scanner) };
         let (survey, report) = prepare(Cow::Owned(cloud), &free, None, control)?;
         statistics.isolation_radius = report.removed_by_cleaning.isolation_radius;
-        statistics.strips = report.survey.moved_strips().to_vec();
+        statistics.strips = report.survey.strips;
         statistics.noise = report.smoothing.map(|smoothing| smoothing.noise);
-        let mut estimate = Self { statistics, is_from_the_ground: false, scanner: scanner_report, places: report };
+        let mut estimate = Self { statistics, is_from_the_ground: false, scanner: scanner_report };
         let statistics = &mut estimate.statistics;
         let Some(input) = &survey.carving else {
             statistics.carves = false;

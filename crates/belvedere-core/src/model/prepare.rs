@@ -135,7 +135,7 @@ impl OrientedSurvey {
         for proving in [&input.between_returns, &input.into_the_sky].into_iter().flatten() {
             columns.append(proving.to_columns());
         }
-        Some(columns)
+        Some(columns.in_order())
     }
 }
 
@@ -188,7 +188,7 @@ pub(super) fn prepare(
         report.survey = findings(&cloud, params, whole, control)?;
     }
     let moved = match statistics {
-        Some(statistics) => statistics.strips.clone(),
+        Some(statistics) => statistics.moved_strips().to_vec(),
         None => report.survey.moved_strips().to_vec(),
     };
     if !moved.is_empty() {
@@ -272,7 +272,7 @@ fn findings(
 ) -> Result<SurveyFindings> {
     let mut findings = SurveyFindings::of_cloud(cloud);
     if let Some(whole) = whole {
-        findings.strips = whole.strips.clone();
+        findings.strips = whole.statistics.strips.clone();
         return Ok(findings);
     }
     let is_flown = cloud.scanner_positions.is_empty()

@@ -5,7 +5,7 @@ use crate::clean::{CleanParams, IsolatedPoints, IsolationRadius};
 use crate::medial::RuleStatistics;
 use crate::neighbors::FARTHEST_NEIGHBOR;
 use crate::pulses::{LinePath, VerticalParams, positions_on_paths, vertical_pulses};
-use crate::strips::StripOffset;
+use crate::strips::{StripOffset, StripReport};
 use belvedere_data::control::Control;
 use belvedere_data::{PointCloud, Result};
 use serde::{Deserialize, Serialize};
@@ -40,9 +40,9 @@ pub struct SurveyStatistics {
     /// True if ground is detected, since no point has its class.
     #[serde(default)]
     pub finds_ground: bool,
-    /// Offsets of the heights of flight lines.
+    /// Heights of flight lines, where some of them differ.
     #[serde(default)]
-    pub strips: Vec<StripOffset>,
+    pub strips: Option<StripReport>,
     /// Days on which its points were measured, by a sample of them.
     #[serde(default)]
     pub flight_days: FlightDays,
@@ -65,6 +65,12 @@ impl SurveyStatistics {
     #[must_use]
     pub fn farthest(&self) -> f32 {
         FARTHEST_NEIGHBOR
+    }
+
+    /// Returns the offsets of the flight lines that are moved.
+    #[must_use]
+    pub fn moved_strips(&self) -> &[StripOffset] {
+        self.strips.as_ref().map_or(&[], |strips| &strips.moved)
     }
 
     /// The cleaning of a part that leaves out the same points as that of the whole.

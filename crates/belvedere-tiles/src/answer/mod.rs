@@ -6,7 +6,7 @@ mod how_sure;
 pub(crate) mod lines;
 pub(crate) mod obstacles;
 mod parts;
-mod proof;
+pub(crate) mod proof;
 mod sight;
 mod strips;
 pub(crate) mod surface_cells;

@@ -103,7 +103,7 @@ impl ObstacleSearch {
     /// Adds the crowns of a tile that may take light from `lines` to `voxels`. Damaged crowns are made again.
     ///
     /// # Errors
-    /// Those of writing records, and [`Error::Cancelled`].
+    /// Those of [`ObstacleSearch::crowns`].
     pub(crate) fn add_crowns(
         &mut self,
         (plan, run, tile): (&Plan, &Path, TileId),
@@ -111,6 +111,24 @@ impl ObstacleSearch {
         voxels: &mut Vec<([i32; 3], f32)>,
         control: &Control<'_>,
     ) -> Result<()> {
+        let origin = plan.frame.origin;
+        let may_meet = |(voxel, _): &([i32; 3], f32)| {
+            let (area, top) = crown_box(*voxel, origin);
+            lines.may_meet(&area, top)
+        };
+        voxels.extend(self.crowns((plan, run, tile), control)?.into_iter().filter(may_meet));
+        Ok(())
+    }
+
+    /// Returns the voxels of crowns of a tile. Damaged crowns are made again.
+    ///
+    /// # Errors
+    /// Those of writing records, and [`Error::Cancelled`].
+    pub(crate) fn crowns(
+        &mut self,
+        (plan, run, tile): (&Plan, &Path, TileId),
+        control: &Control<'_>,
+    ) -> Result<Vec<([i32; 3], f32)>> {
         let path = Stage::Balls.crowns(plan, run, tile);
         let read = |record: TileRecord| match &record.crowns {
             Some(stamp) => Ok(read_balls(Source::bytes(&path, &stamp.read(&path)?))?.medium),
@@ -126,14 +144,7 @@ impl ObstacleSearch {
             // Missing balls of the tile are reported with its balls.
             None => None,
         };
-        let Some(found) = found else { return Ok(()) };
-        let origin = plan.frame.origin;
-        let may_meet = |(voxel, _): &([i32; 3], f32)| {
-            let (area, top) = crown_box(*voxel, origin);
-            lines.may_meet(&area, top)
-        };
-        voxels.extend(found.voxels.into_iter().zip(found.extinction).filter(may_meet));
-        Ok(())
+        Ok(found.map(|found| found.voxels.into_iter().zip(found.extinction).collect()).unwrap_or_default())
     }
 }
 

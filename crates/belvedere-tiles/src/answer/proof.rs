@@ -6,7 +6,6 @@
 //! therefore does not change the sum.
 
 use crate::answer::obstacles::ObstacleSearch;
-use crate::build::tile_pulses::in_order;
 use crate::grid::{CELL, MapArea, TileId, block_area, square_at};
 use crate::plan::Plan;
 use belvedere::Result;
@@ -45,6 +44,11 @@ pub(crate) struct Line {
 /// Returns the height up to which pulses can prove space empty, local metres.
 pub(crate) fn top(plan: &Plan) -> f64 {
     f64::from(plan.statistics.top + plan.model().free_segments.headroom)
+}
+
+/// Returns the maximum horizontal distance from a place below `top` that a pulse passes near to its return, metres.
+pub(crate) fn reach_of_pulses(plan: &Plan, top: f64) -> f64 {
+    plan.statistics.max_lean * (top - f64::from(plan.low[2])).max(0.0) + plan.nearness + ROOM
 }
 
 /// True if a piece of a line passes over an area.
@@ -111,9 +115,7 @@ fn unseen_steps(
     let mut of_blocks: Vec<([i32; 2], Vec<u32>)> = lines_of_blocks(lines, &pieces).into_iter().collect();
     // Blocks of one tile follow each other.
     of_blocks.sort_by_cached_key(|(block, _)| (plan.grid().tile_of(block_area(*block).low), *block));
-    // Maximum horizontal distance from a place that a pulse passes near to its return.
-    let reach = plan.statistics.max_lean * (top - f64::from(plan.low[2])).max(0.0) + plan.nearness + ROOM;
-    let mut pulses = TilePulses { reach, tiles: BTreeMap::new() };
+    let mut pulses = TilePulses { reach: reach_of_pulses(plan, top), tiles: BTreeMap::new() };
     for (block, rows) in of_blocks {
         control.check()?;
         let waiting: Vec<u32> = rows.into_iter().filter(|&row| unseen[row as usize] <= enough).collect();
@@ -217,7 +219,7 @@ impl TilePulses {
             all.top = own.top;
             all.append(own);
         }
-        Ok(in_order(all))
+        Ok(all.in_order())
     }
 }
 

@@ -128,8 +128,13 @@ fn cells(
     if let Some(added) = added {
         added.raise(&mut heights, &grid);
     }
+    let survey = plan.area();
     let position = |(column, row): (usize, usize)| {
         let [x, y] = grid.center(column, row);
+        // cells beside the survey have no value, as in one model
+        if !MapArea::at([x, y, 0.0]).widened(cell / 2.0).meets(&survey) {
+            return [f32::NAN; 3];
+        }
         let z = f64::from(heights.get(column, row).unwrap_or(f32::NAN)) + plan.targets.height;
         if z.is_finite() { to_f32s([x, y, z]) } else { [f32::NAN; 3] }
     };

@@ -7,12 +7,10 @@ use crate::answer::parts::TileObstacles;
 use crate::answer::proof::{Line, unproven};
 use crate::answer::sight::PartialSight;
 use crate::answer::surroundings::TileSurroundings;
-use crate::build::make_balls::make_balls;
+use crate::build::make_balls::make_missing;
 use crate::grid::MapArea;
 use crate::plan::Plan;
-use crate::plan::record::TileRecord;
 use crate::plan::side_files::Others;
-use crate::plan::stage::Stage;
 use crate::plan::window::{self, GROUND_AROUND};
 use belvedere::apps::ask::survey_parts::{Looks, SurveyParts};
 use belvedere::apps::rows::ObstacleParts;
@@ -71,10 +69,7 @@ impl SurveyScene {
     ) -> Result<TileObstacles> {
         if self.makes_balls {
             for tile in tiles(&self.plan, lines) {
-                if TileRecord::read(&self.plan, &self.run, Stage::Balls, tile).is_none() {
-                    let record = make_balls(&self.plan, &self.run, tile, control)?;
-                    record.write(&self.plan, &self.run, Stage::Balls, tile)?;
-                }
+                make_missing(&self.plan, &self.run, tile, control)?;
             }
         }
         TileObstacles::around(around, lines, control)

@@ -11,7 +11,7 @@ use crate::plan::window;
 use belvedere::cast::{to_f32, to_f32s};
 use belvedere::control::Control;
 use belvedere::io::{atomic, write_balls};
-use belvedere::medial::MedialBalls;
+use belvedere::medial::{LIMIT_TOUCH, MedialBalls};
 use belvedere::medium::VOXEL_SIDE;
 use belvedere::model::{ModelParts, SceneModel};
 use belvedere::planes::BuildingOutlines;
@@ -28,11 +28,22 @@ use std::path::Path;
 /// differs from the plan.
 pub fn make_balls(plan: &Plan, run: &Path, tile: TileId, control: &Control<'_>) -> Result<TileRecord> {
     atomic::make_folder(&Stage::Balls.folder(plan, run))?;
-    let cloud = control.stage("reading", 0, || window::read(plan, &plan.window(tile), control))?;
+    let cloud = control.stage("reading", 0, || window::read_as_stored(plan, &plan.window(tile), control))?;
     window::check_counts(plan, &cloud, &plan.grid().core(tile).in_blocks())?;
     let record = made(plan, run, tile, cloud, control)?;
     record.write(plan, run, Stage::Balls, tile)?;
     Ok(record)
+}
+
+/// Makes the balls of a tile unless a step made or tried them before.
+///
+/// # Errors
+/// Those of [`make_balls`] and of writing the record.
+pub(crate) fn make_missing(plan: &Plan, run: &Path, tile: TileId, control: &Control<'_>) -> Result<()> {
+    if TileRecord::read(plan, run, Stage::Balls, tile).is_none() {
+        make_balls(plan, run, tile, control)?;
+    }
+    Ok(())
 }
 
 fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Control<'_>) -> Result<TileRecord> {
@@ -55,9 +66,24 @@ fn made(plan: &Plan, run: &Path, tile: TileId, cloud: PointCloud, control: &Cont
     let of_ball = |row: usize| parts.balls.source.get(row).and_then(|&source| all.get(source as usize)).copied();
     let is_own = |row: &usize| of_ball(*row).is_some_and(|point| is_in(&point.0));
     let own: Vec<usize> = (0..parts.balls.len()).filter(is_own).collect();
+    // rows of the points of the tile, by rows of the points that were read
+    let own_rows = all.iter().scan(0, |next: &mut u32, point| {
+        let row = is_in(&point.0).then_some(*next);
+        *next += u32::from(row.is_some());
+        Some(row)
+    });
+    let own_rows: Vec<Option<u32>> = own_rows.collect();
     let own_points: Vec<ClassedPoint> = own.iter().filter_map(|&row| of_ball(row)).collect();
     let mut transmission = own.iter().filter_map(|&row| parts.transmission.get(row).copied()).collect();
     let mut balls = parts.balls.select(&own);
+    let row_of = |row: u32| own_rows.get(row as usize).copied().flatten();
+    for (source, touch) in balls.source.iter_mut().zip(&mut balls.touch) {
+        *source = row_of(*source).unwrap_or_default();
+        if *touch < LIMIT_TOUCH {
+            // a point of another tile has no row here
+            *touch = row_of(*touch).unwrap_or(LIMIT_TOUCH);
+        }
+    }
     let medium = parts.medium.as_ref().map(|voxels| left_crowns(plan, &core, voxels, &all, control)).transpose()?;
     drop(all);
     clear_balls(plan, &core, &mut balls, &mut transmission, &own_points, control)?;

@@ -62,7 +62,12 @@ impl Plan {
 
     /// Returns an estimate of the memory for the points of an area, bytes.
     pub(crate) fn memory_for(&self, area: &MapArea) -> u64 {
-        to_index(memory_of(self.window_points(area))) as u64
+        self.memory_at(area, [MIN_BYTES, BYTES_PER_POINT])
+    }
+
+    /// The same for work that takes a memory without any point, and for each point, bytes.
+    pub(crate) fn memory_at(&self, area: &MapArea, [least, of_point]: [f64; 2]) -> u64 {
+        to_index(least + of_point * self.window_points(area)) as u64
     }
 
     /// Returns the maximum number of balls that are tested together. They take no more memory than making the balls of

@@ -479,6 +479,17 @@ impl Plan {
 }
 
 impl PlanFrame {
+    /// Converts a place in the coordinates of the files into local metres.
+    pub(crate) fn place_in_metres(&self, place: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| place[axis] * self.metres_per_unit[axis] - self.origin[axis])
+    }
+
+    /// Converts an area from local metres into the coordinates of the files.
+    pub(crate) fn area_in_files(&self, area: &MapArea) -> [[f64; 2]; 2] {
+        let in_files = |v: f64, axis: usize| (v + self.origin[axis]) / self.metres_per_unit[axis];
+        [area.low, area.high].map(|corner| [0, 1].map(|axis| in_files(corner[axis], axis)))
+    }
+
     pub(crate) fn to_frame(&self) -> Result<Frame> {
         let named = if self.system.is_empty() { Crs::default() } else { Crs::parse(&self.system)? };
         // Units may come from another record than the reference system.

@@ -8,6 +8,7 @@ use belvedere::control::Control;
 use belvedere::ground::{Ground, GroundParams};
 use belvedere::io::{Insistence, ReadOptions, Within, read_batches};
 use belvedere::model::is_counted;
+use belvedere::strips::move_strips;
 use belvedere::weather::CalendarDay;
 use belvedere::{Error, Frame, Parameter, PointCloud, Result};
 use std::collections::HashMap;
@@ -16,17 +17,28 @@ use std::path::PathBuf;
 /// Margin around the grid of a place within which points are read for its ground, metres.
 pub(crate) const GROUND_AROUND: f64 = 32.0;
 
-/// Reads the points of the plan's files within `area`, in the order of the files and of their points.
+/// Reads the points of the plan's files within `area`, in the order of the files and of their points. Heights of flight
+/// lines are fitted to each other.
+///
+/// # Errors
+/// Those of [`read_as_stored`].
+pub(crate) fn read(plan: &Plan, area: &MapArea, control: &Control<'_>) -> Result<PointCloud> {
+    let mut cloud = read_as_stored(plan, area, control)?;
+    move_strips(&mut cloud, plan.statistics.moved_strips());
+    Ok(cloud)
+}
+
+/// The same with the heights of the files, for models, which fit them.
 ///
 /// # Errors
 /// Those of [`read_batches`], and [`Error::Malformed`] for a changed file.
-pub(crate) fn read(plan: &Plan, area: &MapArea, control: &Control<'_>) -> Result<PointCloud> {
+pub(crate) fn read_as_stored(plan: &Plan, area: &MapArea, control: &Control<'_>) -> Result<PointCloud> {
     let mut cloud = PointCloud::in_frame(plan.frame()?);
     each_batch(plan, area, control, |batch| append(&mut cloud, batch, plan.columns))?;
     Ok(cloud)
 }
 
-/// Passes the points of [`read`] to `take`, part by part.
+/// Passes the points of [`read_as_stored`] to `take`, part by part.
 pub(crate) fn each_batch(
     plan: &Plan,
     area: &MapArea,

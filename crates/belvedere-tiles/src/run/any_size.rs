@@ -13,7 +13,6 @@ use belvedere::apps::edge::EdgeReport;
 use belvedere::apps::targets::{Measure, TargetLayout, Targets};
 use belvedere::cast::to_f32s;
 use belvedere::control::Control;
-use belvedere::crs::Crs;
 use belvedere::ground::{Ground, MapGrid};
 use belvedere::io::{MetadataTag, cloud_files, read_las_head, web_address};
 use belvedere::raster::Raster;
@@ -29,9 +28,6 @@ const MIN_BYTES: u64 = 100_000_000;
 const BYTES_PER_VALUE: u64 = 10;
 /// Maximum number of files on a server whose headers are read, because each file needs one or two requests.
 const MAX_REMOTE: usize = 64;
-/// Width of the margin around places within which points are read, metres. Balls of usual surveys depend on points up
-/// to this distance.
-const AROUND: f64 = 128.0;
 
 /// Survey too large for one model: the model takes more memory than the limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,32 +70,11 @@ impl TooLarge {
         Remark::note("in-tiles", text).with("tile_size_m", tile_size)
     }
 
-    /// Returns the part of the survey that a question about `places` needs, with a note that no other points are read.
-    /// Places are in the coordinates of the files, and `distance` is in metres on the map. `None` without places.
-    ///
-    /// # Errors
-    /// Those of the given reference system and of reading the header of a file.
-    pub fn part_around(
-        &self,
-        (clouds, crs): (&[PathBuf], Option<&str>),
-        places: &[[f64; 2]],
-        distance: f64,
-    ) -> Result<Option<(SurveyPart, Remark)>> {
-        let Some(&first) = places.first() else { return Ok(None) };
-        let metres_per_unit = match (crs, cloud_files(clouds)?.first()) {
-            (Some(crs), _) => Crs::parse(crs)?.metres_per_unit,
-            (None, Some(file)) => read_las_head(file.as_path())?.crs.metres_per_unit,
-            (None, None) => 1.0,
-        };
-        let around = distance + AROUND;
-        let join = |[low, high]: SurveyPart, place: &[f64; 2]| {
-            [[0, 1].map(|axis| low[axis].min(place[axis])), [0, 1].map(|axis| high[axis].max(place[axis]))]
-        };
-        let [low, high] = places.iter().fold([first, first], join);
-        let by = around / metres_per_unit;
-        let text = format!("{}: only points within {around:.0} m of the question were read", self.in_words());
-        let remark = Remark::note("part-of-survey", text).with("around_m", around);
-        Ok(Some(([low.map(|v| v - by), high.map(|v| v + by)], remark)))
+    /// Returns a note that the balls of the survey, or of a part of it, are made in tiles.
+    #[must_use]
+    pub fn remark_on_balls(&self, tile_size: f64) -> Remark {
+        let text = format!("{}: balls are made in tiles of {tile_size} m", self.in_words());
+        Remark::note("balls-in-tiles", text).with("tile_size_m", tile_size)
     }
 }
 
@@ -284,7 +259,7 @@ impl SurveyCells {
     }
 }
 
-fn size_in_words(bytes: u64) -> String {
+pub(crate) fn size_in_words(bytes: u64) -> String {
     match bytes {
         0..1_000_000_000 => format!("{:.0} MB", bytes as f64 / 1e6),
         _ => format!("{:.1} GB", bytes as f64 / 1e9),

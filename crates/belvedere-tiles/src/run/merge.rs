@@ -87,8 +87,7 @@ fn area_of(plan: &Plan, tiles: &[TileId]) -> Result<MapArea> {
 /// Returns the part of the area of `tiles`, up to the reach of points, in which cells of a question may have a value.
 fn area_with_cells(plan: &Plan, question: &TileQuestion, tiles: &[TileId]) -> Result<MapArea> {
     let (whole, cell) = (area_of(plan, tiles)?, plan.cells.of(question));
-    // Ground beside the points is no part of the survey.
-    let near = plan.area().widened(if plan.is_on_ground() { 0.0 } else { plan.reach(cell) });
+    let near = plan.area();
     let edge =
         |axis: usize, v: f64, round: fn(f64) -> f64| whole.low[axis] + round((v - whole.low[axis]) / cell) * cell;
     Ok(MapArea {

@@ -1,6 +1,7 @@
 //! Run of all tiles that are not done yet, one after the other.
 
 pub(crate) mod any_size;
+pub(crate) mod joined;
 pub(crate) mod merge;
 pub(crate) mod places;
 pub(crate) mod status;

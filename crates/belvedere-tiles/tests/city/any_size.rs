@@ -8,15 +8,14 @@ use belvedere::apps::ask::{
 use belvedere::apps::shadow::Edges;
 use belvedere::apps::targets::Measure;
 use belvedere::control::Control;
-use belvedere::io::{ReadOptions, read_cloud};
+use belvedere::io::{ReadOptions, read_cloud, write_cloud};
 use belvedere::model::{ModelParams, SceneModel};
 use belvedere_tiles::{Plan, PlanParams, SurveyCells, SurveyQuestion, TooLarge};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Maximum share of cells with an answer that differs from one model, because a plan takes noise and scanner from
-/// samples.
-const MAX_DIFFERENCE: f64 = 0.01;
+/// Maximum share of cells whose proof differs from one model: tiles measure unproven lengths block by block.
+const MAX_DIFFERENCE: f64 = 0.0005;
 
 fn params(clouds: &[PathBuf], tile_size: f64) -> PlanParams {
     PlanParams { clouds: clouds.to_vec(), tile_size, ..PlanParams::default() }
@@ -86,7 +85,8 @@ fn cells_on_the_ground_and_proof_are_those_of_any_tiles_and_of_one_model() {
         let is_other = |(a, b): &(&f32, &f32)| a.is_nan() != b.is_nan() || !a.is_nan() && a.to_bits() != b.to_bits();
         let others = measure.values.iter().zip(&tiled.values).filter(is_other).count() as f64;
         let share = others / tiled.values.len() as f64;
-        assert!(share < MAX_DIFFERENCE, "{}: {share}", measure.name);
+        let allowed = if measure.name == "unproven" { MAX_DIFFERENCE } else { 0.0 };
+        assert!(share <= allowed, "{}: {share}", measure.name);
         let known = measure.values.iter().filter(|value| **value > 0.0).count();
         // Values all of one kind would compare nothing.
         assert!(known > tiled.values.len() / 50, "{}: {known}", measure.name);
@@ -98,8 +98,8 @@ fn cells_on_the_ground_and_proof_are_those_of_any_tiles_and_of_one_model() {
     let keys = |remarks: &[Remark]| remarks.iter().map(|remark| remark.key).collect::<Vec<_>>();
     assert_eq!(keys(&answers.remarks), keys(&whole.remarks));
     let covered = |report: &Report| report.places.cells_under_cover_left_out.unwrap() as f64;
-    let [one, other] = [covered(&answers.report), covered(&whole.report)];
-    assert!(one > 100.0 && (one - other).abs() < MAX_DIFFERENCE * one, "{one} {other}");
+    assert!(covered(&whole.report) > 100.0);
+    assert_eq!(covered(&answers.report), covered(&whole.report));
 }
 
 #[test]
@@ -148,6 +148,29 @@ fn one_model_in_the_frame_and_with_the_statistics_of_a_plan_answers_as_its_tiles
             assert_eq!(count, 0, "{number}, {}: of {known}", found.name);
         }
     }
+}
+
+#[test]
+fn cells_of_flight_lines_that_are_fitted_to_each_other_are_those_of_one_model() {
+    let place = tempfile::tempdir().unwrap();
+    let control = Control::none();
+    let (mut cloud, _) = read_cloud(&MIDDLE.clouds, &ReadOptions::new(), &control).unwrap();
+    let lines = cloud.attributes.point_source_id.clone().unwrap();
+    let first = *lines.iter().min().unwrap();
+    for (p, line) in cloud.positions.iter_mut().zip(&lines) {
+        p[2] += if *line == first { 0.0 } else { 0.4 };
+    }
+    let path = place.path().join("risen.laz");
+    write_cloud(&path, &cloud, &[]).unwrap();
+    let clouds = &[path];
+    let (_, tiled, _) = shadow(&place.path().join("kept"), &params(clouds, 64.0), [140.0, 25.0]);
+    let (cloud, _) = read_cloud(clouds, &ReadOptions::new(), &control).unwrap();
+    let (model, _) = SceneModel::build(&cloud, &ModelParams::default(), &control).unwrap();
+    assert!(!model.findings().moved_strips().is_empty());
+    let scene = Scene::new(model, Arc::new(cloud));
+    let answers = ask(&scene, &question([140.0, 25.0]), &Places::Cells(cells()), &control).unwrap();
+    let values = |measures: &[Measure]| measures[0].values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+    assert!(values(&answers.measures) == values(&tiled.measures));
 }
 
 #[test]
@@ -248,9 +271,4 @@ fn memory_of_one_model_follows_the_points_and_tables_have_none() {
     std::fs::write(&table, "1 2 3\n").unwrap();
     assert_eq!(TooLarge::of(&[table], 0), None);
     assert_eq!(TooLarge::of(&[place.path().join("gone.laz")], 0), None);
-    // Metres around places, in the unit of the files.
-    let part = both.part_around((clouds, None), &[[5.0, 7.0], [1.0, 9.0]], 100.0).unwrap().unwrap().0;
-    assert_eq!(part, [[1.0 - 228.0, 7.0 - 228.0], [5.0 + 228.0, 9.0 + 228.0]]);
-    let feet = both.part_around((clouds, Some("EPSG:2263")), &[[0.0, 0.0]], 0.0).unwrap().unwrap().0;
-    assert!((feet[1][0] - 128.0 / 0.304_800_6).abs() < 0.01, "{feet:?}");
 }

@@ -7,6 +7,7 @@ mod cells;
 mod cleared;
 mod common;
 mod hostile;
+mod joined;
 mod planned;
 mod robust;
 mod seams;
