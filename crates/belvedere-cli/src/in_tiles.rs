@@ -262,8 +262,26 @@ fn latitude(question: &Question) -> Option<f64> {
 /// Folder of the tiles of a survey.
 pub(crate) struct TilesFolder {
     folder: SurveyFolder,
-    /// True if nobody keeps the tiles.
-    is_temporary: bool,
+    kept: TilesAreKept,
+}
+
+/// How long the tiles of a survey are kept.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum TilesAreKept {
+    /// For later questions, in the cache.
+    InCache,
+    /// Until the result beside them is written. A command that failed goes on with them.
+    UntilResult,
+    /// Until the command ends.
+    UntilEnd,
+}
+
+impl Drop for TilesFolder {
+    fn drop(&mut self) {
+        if self.kept == TilesAreKept::UntilEnd {
+            self.folder.remove();
+        }
+    }
 }
 
 impl TilesFolder {
@@ -272,11 +290,14 @@ impl TilesFolder {
     pub(crate) fn of(scene: &SceneInput, outputs: &[PathBuf], run: &CommandContext) -> Result<Self> {
         let (clouds, options) = (&scene.input.clouds, scene.input.read_options());
         if let Some(folder) = run.cache.as_ref().and_then(|cache| cache.survey_folder(clouds, &options)) {
-            return Ok(Self { folder, is_temporary: false });
+            return Ok(Self { folder, kept: TilesAreKept::InCache });
         }
-        let path = match outputs.first() {
-            Some(output) => output.with_extension("tiles"),
-            None => std::env::temp_dir().join(format!("belvedere-{}.tiles", std::process::id())),
+        let (path, kept) = match outputs.first() {
+            Some(output) => (output.with_extension("tiles"), TilesAreKept::UntilResult),
+            None => {
+                let name = format!("belvedere-{}.tiles", std::process::id());
+                (std::env::temp_dir().join(name), TilesAreKept::UntilEnd)
+            }
         };
         let folder = SurveyFolder::make(&path).map_err(|error| match error {
             Error::Io { source, .. } if source.kind() == ErrorKind::AlreadyExists => {
@@ -285,7 +306,7 @@ impl TilesFolder {
             }
             error => anyhow::Error::from(error),
         })?;
-        Ok(Self { folder, is_temporary: true })
+        Ok(Self { folder, kept })
     }
 
     pub(crate) fn path(&self) -> &Path {
@@ -294,8 +315,8 @@ impl TilesFolder {
 
     /// Removes tiles that nobody keeps, and otherwise older scenes of a full cache.
     pub(crate) fn finish(&self, run: &CommandContext) {
-        match (&run.cache, self.is_temporary) {
-            (Some(cache), false) => cache.make_room_beside(&self.folder),
+        match (&run.cache, self.kept) {
+            (Some(cache), TilesAreKept::InCache) => cache.make_room_beside(&self.folder),
             _ => self.folder.remove(),
         }
     }

@@ -156,7 +156,7 @@ fn a_question_about_a_place_reads_what_is_around_it() {
         let line = format!("{question} --no-cache -o out.csv");
         let whole = place.summary(&line);
         let bytes = place.bytes("out.csv");
-        let joined = place.summary(&format!("{line} --memory 180M"));
+        let joined = place.summary(&format!("{line} --memory 190M"));
         assert!(remarks(&joined).contains(&"balls-in-tiles".to_owned()), "{joined}");
         assert_eq!(joined["points"].as_u64() < whole["points"].as_u64(), is_part);
         // rows of balls and points are those of the part

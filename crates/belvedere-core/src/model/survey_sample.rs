@@ -198,3 +198,54 @@ fn mixed(bits: u64) -> u64 {
     let bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
     bits ^ bits >> 31
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_data::Frame;
+    use belvedere_data::cast::to_row;
+
+    /// Returns a cloud of 300 x 20 m with a point a metre, two of each time, noise, and a stray high above.
+    fn cloud() -> PointCloud {
+        let mut positions: Vec<[f32; 3]> =
+            (0..6000_u16).map(|i| [f32::from(i % 300), f32::from(i / 300), f32::from(i % 7)]).collect();
+        positions.push([150.5, 10.5, 300.0]);
+        let count = positions.len();
+        let classification = (0..count).map(|row| if row % 50 == 1 { 7 } else { 2 }).collect();
+        let gps_time = (0..count).map(|row| (row / 2) as f64).collect();
+        let attributes =
+            Attributes { classification: Some(classification), gps_time: Some(gps_time), ..Attributes::default() };
+        PointCloud { frame: Frame::default(), positions, attributes, ..PointCloud::default() }
+    }
+
+    #[test]
+    fn parts_of_a_survey_give_the_samples_of_all() {
+        let all = cloud();
+        let times = all.attributes.gps_time.as_deref();
+        let corners = [[0.0, 0.0], [299.0, 19.0]];
+        // one pulse of three
+        let count = 3 * MAX_SAMPLED;
+        let mut whole = SurveySampler::new(corners, count);
+        let expected = whole.pass(&all, times);
+        let expected_counts = whole.finish();
+        let mut parts = SurveySampler::new(corners, count);
+        let mut found = SampledRows::default();
+        for rows in [0..2500, 2500..to_row(all.len())] {
+            let first = rows.start;
+            let part = all.select(&rows.collect::<Vec<u32>>());
+            let SampledRows { along_lines, in_places } = parts.pass(&part, part.attributes.gps_time.as_deref());
+            found.along_lines.extend(along_lines.iter().map(|row| first + row));
+            found.in_places.extend(in_places.iter().map(|row| first + row));
+        }
+        assert_eq!(found, expected);
+        assert_eq!(parts.finish(), expected_counts);
+        // whole pulses, and about a third of them
+        let sampled = &expected.along_lines;
+        assert!(sampled.chunk_by(|a, b| a / 2 == b / 2).all(|pulse| pulse.len() == 2 || pulse[0] == 6000));
+        assert!((1600..2400).contains(&sampled.len()), "{}", sampled.len());
+        assert!(expected.in_places.len() > 2000, "{}", expected.in_places.len());
+        // neither noise nor the stray counts for heights
+        assert_eq!((expected_counts.points, expected_counts.extremes.top), (5881, 6.0));
+        assert!(expected_counts.extremes.has_ground && expected_counts.points == expected_counts.ground);
+    }
+}

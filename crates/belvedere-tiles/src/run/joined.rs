@@ -20,7 +20,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 /// Memory of a joined model with its points for each point, and without any point, bytes, as measured in docs/scale.md.
-const BYTES_PER_POINT: f64 = 200.0;
+const BYTES_PER_POINT: f64 = 330.0;
 const MIN_BYTES: f64 = 100e6;
 /// Additional width around a part, metres, so that rounding leaves out no point at its edge.
 const EDGE: f64 = 0.01;
