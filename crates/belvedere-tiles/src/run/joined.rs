@@ -112,12 +112,12 @@ impl JoinedSurvey {
 }
 
 /// Returns the area of the tiles that lines of sight between `places` and within `distance` metres of these may meet,
-/// local metres; `None` without places.
+/// local metres; `None` for places beside the survey.
 fn area_of_tiles(plan: &Plan, places: &[[f64; 2]], distance: f64) -> Option<MapArea> {
     let places = places.iter().map(|place| plan.frame.place_in_metres(*place));
     let area = places.map(|[x, y]| MapArea::at([x, y, 0.0])).reduce(|all, one| all.joined(&one))?;
     let pulses = if plan.can_prove() { reach_of_pulses(plan, top(plan)) } else { 0.0 };
-    let area = area.widened(distance + pulses.max(MAX_BALL).max(GROUND_AROUND));
+    let area = area.widened(distance + pulses.max(MAX_BALL).max(GROUND_AROUND)).common(&plan.area().widened(EDGE))?;
     let grid = plan.grid();
     Some(grid.core(grid.tile_of(area.low)).joined(&grid.core(grid.tile_of(area.high))))
 }

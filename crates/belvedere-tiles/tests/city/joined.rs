@@ -128,6 +128,12 @@ fn lines_of_sight_through_a_part_are_those_through_the_whole() {
 fn a_scene_that_has_no_memory_even_in_tiles_is_refused() {
     let place = tempfile::tempdir().unwrap();
     let plan = plan(place.path(), &MIDDLE.clouds, 64.0);
+    // places beside the survey need all of it, however far they are
+    let far = [[1e300, -1e300], [154_700.0, 462_900.0], [f64::MAX, f64::MIN]];
+    for places in [&far[..1], &far[..2], &far] {
+        let survey = JoinedSurvey::new(plan.clone(), place.path(), Some((places, 10.0)), u64::MAX).unwrap();
+        assert!(survey.part.is_none_or(|[low, high]| low.iter().zip(&high).all(|(low, high)| high - low < 1000.0)));
+    }
     let error = JoinedSurvey::new(plan, place.path(), None, 100_000_000).err().unwrap().to_string();
     assert!(error.contains("100 MB") && error.contains("allow more memory"), "{error}");
 }
