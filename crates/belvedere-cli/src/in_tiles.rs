@@ -34,7 +34,7 @@ pub(crate) struct TypedCells<'a> {
     pub(crate) output: &'a [PathBuf],
     /// Flags of the command that tiles do not know, and whether each was typed.
     pub(crate) others: Vec<(&'static str, bool)>,
-    /// The same for flags that only cells in tiles do not know.
+    /// Flags that only cells in tiles do not know, and whether each was typed.
     pub(crate) of_points: Vec<(&'static str, bool)>,
 }
 
@@ -106,6 +106,16 @@ impl<'a> TypedCells<'a> {
         Ok(SceneOfPlaces::Tiles { survey: Box::new(survey), folder })
     }
 
+    /// Returns the scene of a question about places under sun and sky.
+    pub(crate) fn scene_of_sky(
+        &self,
+        question: impl Into<Question>,
+        (places, shell): (&SkyPlaces, Option<f32>),
+        run: &mut CommandContext,
+    ) -> Result<SceneOfPlaces> {
+        self.scene(question, |run| places.scene(self.scene, shell, places.needed_points(), run), run)
+    }
+
     /// Plans tiles, or answers in tiles what one model has no memory for and passes it to `write`; `false` where one
     /// model is to be made.
     pub(crate) fn answered(
@@ -119,7 +129,7 @@ impl<'a> TypedCells<'a> {
         self.completed(&question, complete, write, run)
     }
 
-    /// The same for a question that `complete` completes for a plan.
+    /// Answers as [`TypedCells::answered`] a question that `complete` completes for a plan.
     pub(crate) fn completed(
         &self,
         question: &Question,
@@ -262,15 +272,15 @@ fn latitude(question: &Question) -> Option<f64> {
 /// Folder of the tiles of a survey.
 pub(crate) struct TilesFolder {
     folder: SurveyFolder,
-    kept: TilesAreKept,
+    lifetime: TilesLifetime,
 }
 
-/// How long the tiles of a survey are kept.
+/// Lifetime of the tiles of a survey.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum TilesAreKept {
+enum TilesLifetime {
     /// For later questions, in the cache.
     InCache,
-    /// Until the result beside them is written. A command that failed goes on with them.
+    /// Until the result beside them is written. A command that failed goes on with them, if there are any.
     UntilResult,
     /// Until the command ends.
     UntilEnd,
@@ -278,7 +288,8 @@ enum TilesAreKept {
 
 impl Drop for TilesFolder {
     fn drop(&mut self) {
-        if self.kept == TilesAreKept::UntilEnd {
+        let has_tiles = || Plan::path(self.path()).exists();
+        if self.lifetime == TilesLifetime::UntilEnd || self.lifetime == TilesLifetime::UntilResult && !has_tiles() {
             self.folder.remove();
         }
     }
@@ -290,13 +301,13 @@ impl TilesFolder {
     pub(crate) fn of(scene: &SceneInput, outputs: &[PathBuf], run: &CommandContext) -> Result<Self> {
         let (clouds, options) = (&scene.input.clouds, scene.input.read_options());
         if let Some(folder) = run.cache.as_ref().and_then(|cache| cache.survey_folder(clouds, &options)) {
-            return Ok(Self { folder, kept: TilesAreKept::InCache });
+            return Ok(Self { folder, lifetime: TilesLifetime::InCache });
         }
-        let (path, kept) = match outputs.first() {
-            Some(output) => (output.with_extension("tiles"), TilesAreKept::UntilResult),
+        let (path, lifetime) = match outputs.first() {
+            Some(output) => (output.with_extension("tiles"), TilesLifetime::UntilResult),
             None => {
                 let name = format!("belvedere-{}.tiles", std::process::id());
-                (std::env::temp_dir().join(name), TilesAreKept::UntilEnd)
+                (std::env::temp_dir().join(name), TilesLifetime::UntilEnd)
             }
         };
         let folder = SurveyFolder::make(&path).map_err(|error| match error {
@@ -306,7 +317,7 @@ impl TilesFolder {
             }
             error => anyhow::Error::from(error),
         })?;
-        Ok(Self { folder, kept })
+        Ok(Self { folder, lifetime })
     }
 
     pub(crate) fn path(&self) -> &Path {
@@ -315,8 +326,8 @@ impl TilesFolder {
 
     /// Removes tiles that nobody keeps, and otherwise older scenes of a full cache.
     pub(crate) fn finish(&self, run: &CommandContext) {
-        match (&run.cache, self.kept) {
-            (Some(cache), TilesAreKept::InCache) => cache.make_room_beside(&self.folder),
+        match (&run.cache, self.lifetime) {
+            (Some(cache), TilesLifetime::InCache) => cache.make_room_beside(&self.folder),
             _ => self.folder.remove(),
         }
     }

@@ -129,7 +129,7 @@ pub(crate) fn scene(arguments: &SceneInput, points: KeepPoints, run: &mut Comman
     scene_in_reach(arguments, None, points, run)
 }
 
-/// The same, of a question that needs only a part of it.
+/// Reads or makes the scene of a question that needs only a part of it, as [`scene`].
 pub(crate) fn scene_in_reach(
     arguments: &SceneInput,
     part: Option<ScenePart<'_>>,

@@ -47,7 +47,7 @@ impl FreeSegmentColumns {
         self.ways.append(&mut other.ways);
     }
 
-    /// The same rows sorted by their numbers, so that their order does not depend on where they come from.
+    /// Sorts the rows by their numbers. Pulses that were joined from tiles then have one order.
     #[must_use]
     pub fn in_order(self) -> Self {
         let key = |row: u32| {

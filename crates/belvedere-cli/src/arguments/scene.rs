@@ -234,9 +234,9 @@ pub(crate) struct MemoryArgument {
     /// Memory that may be used, such as 3G or 800M [default: half of what is free]
     ///
     /// Where one model of LAS or LAZ files needs more, its balls are made in tiles. Shadow, sun hours, sky view,
-    /// irradiance and viewsheds on cells are answered in tiles as well. Other questions need half the memory of one
-    /// model, and less where they reach only a distance from places. Answers are the same. Tiles are kept
-    /// (`belvedere cache`): a command that was stopped goes on, and the next question finds the balls.
+    /// irradiance and viewsheds on cells are answered in tiles as well. Other questions need three quarters of the
+    /// memory of one model, and less where they reach only a distance from places. Tiles are kept (`belvedere cache`):
+    /// a command that was stopped goes on, and the next question finds the balls.
     #[arg(long, value_name = "SIZE", help_heading = "Scene", hide_short_help = true)]
     pub(crate) memory: Option<MemoryAmount>,
 }

@@ -29,9 +29,8 @@ pub(crate) fn run(arguments: &SkyViewArguments, global: &Global) -> Result<Summa
     if cells.answered(question.clone(), write, &mut run)? {
         return Ok(run.finish());
     }
-    let points = arguments.places.needed_points();
-    let whole = |run: &mut CommandContext| arguments.places.scene(&arguments.scene, arguments.shell.shell, points, run);
-    let of_places = cells.scene(question.clone(), whole, &mut run)?;
+    let places = (&arguments.places, arguments.shell.shell);
+    let of_places = cells.scene_of_sky(question.clone(), places, &mut run)?;
     let scene = of_places.scene();
     let (places, source) = arguments.places.places(scene, &mut run)?;
     let answers = run.ask(scene, &question, &places)?;

@@ -6,9 +6,9 @@ use crate::in_tiles::{PROGRAM, TilesFolder};
 use crate::memory;
 use crate::run::CommandContext;
 use anyhow::Result;
-use belvedere::PointCloud;
 use belvedere::io::{Insistence, ReadReport};
 use belvedere::model::SceneModel;
+use belvedere::{Error, PointCloud};
 use belvedere_tiles::{JoinedSurvey, Plan, PlanParams, TooLarge};
 
 /// Places in the coordinates of the files, and a distance from them in metres, within which a question needs its scene.
@@ -71,7 +71,13 @@ pub(super) fn joined_scene(
         };
     }
     let folder = TilesFolder::of(scene, &[], run)?;
-    let plan = Plan::kept_in(folder.path(), &scene.plan_params(), &run.control())?.fitting(large.limit)?;
+    let kept = Plan::kept_in(folder.path(), &scene.plan_params(), &run.control());
+    let plan = match kept {
+        Err(Error::Cancelled) => return Err(Error::Cancelled.into()),
+        // tiles do not know scans from the ground; what else is wrong, reading the files says as well
+        Err(_) if !is_typed => return Ok(None),
+        plan => plan?.fitting(large.limit)?,
+    };
     run.summary.remarks([large.remark_on_balls(plan.tile_size)]);
     run.summary.remarks(plan.remarks.clone());
     let survey = JoinedSurvey::new(plan, folder.path(), part, if is_typed { large.limit } else { u64::MAX })?;

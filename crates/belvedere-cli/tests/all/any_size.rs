@@ -76,6 +76,15 @@ fn without_a_cache_tiles_lie_beside_the_result_while_it_is_made() {
     std::fs::create_dir(place.path("hours.tiles")).unwrap();
     place.refusal(2, &format!("{hours} -o hours.tif --zone UTC --location 52,4.4"), &["hours.tiles", "move it away"]);
     assert!(place.path("hours.tiles").is_dir());
+    // a survey that cannot be read leaves nothing
+    let bytes = place.bytes("town/cloud.laz");
+    std::fs::write(place.path("cut.laz"), &bytes[..bytes.len() / 2]).unwrap();
+    for command in ["shadow cut.laz --sun 150,30 -o cut.tif", "horizon cut.laz --observer 1,1,1 -o cut.csv"] {
+        place.refusal(1, &format!("{command} --no-cache --memory 118M"), &["cut.laz", "cut off"]);
+        for left in ["cut.tiles", "cut.tif", "cut.csv"] {
+            assert!(!place.path(left).exists(), "{left}");
+        }
+    }
 }
 
 #[test]

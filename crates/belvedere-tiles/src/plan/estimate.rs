@@ -65,7 +65,8 @@ impl Plan {
         self.memory_at(area, [MIN_BYTES, BYTES_PER_POINT])
     }
 
-    /// The same for work that takes a memory without any point, and for each point, bytes.
+    /// Returns the memory for the points of an area, bytes, of work that takes `least` without any point, and
+    /// `of_point` for each.
     pub(crate) fn memory_at(&self, area: &MapArea, [least, of_point]: [f64; 2]) -> u64 {
         to_index(least + of_point * self.window_points(area)) as u64
     }

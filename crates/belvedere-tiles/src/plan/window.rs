@@ -28,7 +28,7 @@ pub(crate) fn read(plan: &Plan, area: &MapArea, control: &Control<'_>) -> Result
     Ok(cloud)
 }
 
-/// The same with the heights of the files, for models, which fit them.
+/// Reads points as [`read`], with the heights of the files. Models fit these themselves.
 ///
 /// # Errors
 /// Those of [`read_batches`], and [`Error::Malformed`] for a changed file.
